@@ -39,9 +39,10 @@ import sys
 sys.path[:0] = [sys.argv[1], sys.argv[1] + "/benchmarks"]
 import bench_graph as it
 plan = it.plan_of(it.Size(*map(int, sys.argv[3:]), 1))
-graph = it.to_json(it.graph_of(plan))
-open(sys.argv[2] + "-plan.json", "w").write(it.plan_to_json(plan))
-open(sys.argv[2] + "-graph.json", "wb").write(graph if isinstance(graph, bytes) else graph.encode())
+texts = {"plan": getattr(it, "plan_to_json", it.to_json)(plan), "graph": it.to_json(it.graph_of(plan))}
+for name, text in texts.items():
+    data = text if isinstance(text, bytes) else text.encode()
+    open(f"{sys.argv[2]}-{name}.json", "wb").write(data)
 """
 HEAD = """\
 # Against an earlier commit

@@ -27,18 +27,16 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 import live_fleet  # the nodes of the tests
 import zenoh_robots  # and its sessions
 from one_page import write_section
+from plans import planned_end
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.spelling.plan_file import from_json as plan_from_json
-from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
-from multibot_rewrite.spelling.plan_file import to_json as plan_to_json
+from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.json import from_json, from_yaml, to_json
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,
@@ -156,7 +154,7 @@ def specs(size: Size) -> list[list[dict[str, Any]]]:
 def plan_file(size: Size) -> Iterator[str]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "plan.json")
-        path.write_text(plan_to_json(plan_of(size)))
+        path.write_bytes(to_json(plan_of(size)))
         yield str(path)
 
 
@@ -307,8 +305,8 @@ def pure() -> Iterator[Row]:
             yaml, json = to_yaml(plan).encode(), to_json(graph)
             of_yaml = timed(lambda y=yaml: from_yaml(y, ""))  # type: ignore[misc]
             yield computed("reading the plan, YAML", size, of_yaml, "ms", "")
-            data = plan_to_json(plan).encode()
-            of_json = timed(lambda j=data: plan_from_json(j, ""))  # type: ignore[misc]
+            data = to_json(plan)
+            of_json = timed(lambda j=data: from_json(j, ""))  # type: ignore[misc]
             yield computed("reading the plan, JSON", size, of_json, "ms", "")
             yield computed("YAML against JSON", size, [min(of_yaml) / min(of_json)], "x", "10")
             values = timed(lambda j=json: from_json(j, ""))  # type: ignore[misc]
@@ -338,7 +336,7 @@ def saved(size: Size) -> list[Ended]:
     plan = plan_of(size)
     with tempfile.TemporaryDirectory() as folder:
         files = Path(folder, "plan.json"), Path(folder, "graph.json")
-        files[0].write_text(plan_to_json(plan))
+        files[0].write_bytes(to_json(plan))
         files[1].write_bytes(to_json(graph_of(plan)))
         del plan
         command = [*COMMAND, str(files[0]), "--from", str(files[1])]

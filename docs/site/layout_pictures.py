@@ -8,14 +8,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from xml.sax.saxutils import escape
 
-import yaml
 from lxml import etree
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.naming import LAYOUTS
+from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.system import records
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "pictures"
@@ -64,10 +65,10 @@ def robots_in(layout: str) -> Mapping[str, Robot]:
             **{"description": str(ROVER), "robots": [{"name": it} for it in ROBOTS]},
         }
     )
-    plan = yaml.safe_load(fleet.text("plan.yaml"))
+    plan = read_plan(fleet.text("plan.yaml").encode(), "plan.yaml")
     return {
-        name: _robot(name, first_link(fleet.text(f"{name}/{ROVER.name}")), it, plan["topics"])
-        for name, it in plan["robots"].items()
+        it.name: _robot(it, first_link(fleet.text(f"{it.name}/{ROVER.name}")), plan)
+        for it in plan.robots
     }
 
 
@@ -76,14 +77,16 @@ def first_link(text: str) -> str:
     return str(etree.fromstring(text.encode()).find("link").get("name"))
 
 
-def _robot(name: str, link: str, planned: Mapping[str, Any], bridged: Mapping[str, Any]) -> Robot:
-    ends = [end[2] for ends in planned["nodes"].values() for end in ends]
+def _robot(planned: records.Robot, link: str, plan: records.System) -> Robot:
+    name, nodes = planned.name, tuple(it.name for it in plan.nodes if it.robot == planned.name)
+    ends = (it.name for it in plan.ends if it.node in nodes)
+    bridged = (it.name for it in plan.topics)
     topics = dict.fromkeys(it for it in (*ends, *bridged) if name in it.split("/"))
     shown = [it for word in SHOWN for it in topics if set(it.split("/")) - {"", name} == {word}]
-    odom = next(it for it in planned["other_frames"] if "odom" in it)
-    frames = dict(zip(_links(), planned["frames"], strict=True))
+    odom = next(it for it in planned.other_frames if "odom" in it)
+    frames = dict(zip(_links(), planned.frames, strict=True))
     tree = ((frames[link], depth) for link, depth in _depths())
-    return Robot(link, planned["tf"], ((odom, 0), *tree), tuple(planned["nodes"]), tuple(shown))
+    return Robot(link, planned.tf_topic, ((odom, 0), *tree), nodes, tuple(shown))
 
 
 def _links() -> list[str]:

@@ -63,8 +63,7 @@ _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
     """The bytes of a file, which may be a device without an end; raises OSError, also for a file that
     is too large or a pipe in a folder, and ValueError for a path that no system takes."""
-    if stat.S_ISFIFO(os.stat(path).st_mode) and not path.startswith(_OF_A_SHELL):
-        raise OSError(errno.EINVAL, "it is a pipe: who reads it may wait for ever", path)
+    _refuse_pipe(path)
     with open(path, "rb") as file:
         # Not the limit at once: the memory for it takes longer to get than most files to read.
         size = min(os.fstat(file.fileno()).st_size, limit)
@@ -74,6 +73,19 @@ def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
     if len(data) > limit:
         raise OSError(errno.EFBIG, f"it is over the limit of {limit:,} bytes", path)
     return data
+
+
+@outside
+def read_start(path: str, most: int) -> bytes:
+    """The first bytes of a file; raises OSError, also for a pipe, and ValueError."""
+    _refuse_pipe(path)
+    with open(path, "rb") as file:
+        return file.read(most)
+
+
+def _refuse_pipe(path: str) -> None:
+    if stat.S_ISFIFO(os.stat(path).st_mode) and not path.startswith(_OF_A_SHELL):
+        raise OSError(errno.EINVAL, "it is a pipe: who reads it may wait for ever", path)
 
 
 def read_text(path: str) -> str:
@@ -115,8 +127,11 @@ def load_yaml(text: str, file: str, remedy: str = CORRECT) -> Any:
 
 
 def load_own_yaml(module: str, name: str) -> Any:
-    """Return the value of a YAML file of this package; ``module`` is the ``__file__`` beside it."""
-    return load_yaml(own_text(module, name), name)
+    """Return the value of a YAML file of this package, whose bounds are not checked; ``module`` is the
+    ``__file__`` beside it."""
+    import yaml
+
+    return yaml.load(own_text(module, name), _loader())
 
 
 def _within_bounds(parse: Callable[[str], Any], text: str, file: str, remedy: str) -> Any:

@@ -123,6 +123,18 @@ TOOLS = (
 )
 
 
+# Words for parts of any robot and for what they send: topics and frames are called so, whatever robots
+# are called. The sensors of SDF (sdformat sdf/1.9/sensor.sdf, type), REP 105, REP 144, and sides.
+PARTS = frozenset({
+    "camera", "rgbd_camera", "depth_camera", "thermal_camera", "depth", "color", "rgb", "image",
+    "lidar", "gpu_lidar", "ray", "laser", "scan", "points", "imu", "gps", "navsat", "gnss", "sensor",
+    "magnetometer", "altimeter", "sonar", "radar", "contact", "bumper", "battery", "odom", "odometry",
+    "map", "cmd", "cmd_vel", "joint", "joints", "link", "base", "wheel", "wheels", "arm", "gripper",
+    "hand", "head", "tool", "torso", "front", "rear", "back", "left", "right", "top", "bottom", "upper",
+    "lower",
+})  # fmt: skip
+
+
 # Nodes of a simulator, one for all robots: gazebo_ros gazebo_ros_init.cpp.
 WORLD_NODES = frozenset({"gazebo"})
 

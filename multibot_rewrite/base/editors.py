@@ -12,7 +12,7 @@ _PACKAGE = os.path.dirname(os.path.dirname(__file__))
 FLEET, NODES, PLAN = (
     "fleet/fleet.schema.json",
     "knowledge/nodes.schema.json",
-    "spelling/plan.schema.json",
+    "system/system.schema.json",
 )
 
 

@@ -110,12 +110,12 @@ BESIDE = (
         lazy_compile(rb"^[^\S\n]*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE),
     ),
 )
-# What follows ``robots:`` in a fleet file is a list; a plan has keys of its own besides, and rules
-# alone have no more than a layout and a release.
+# What follows ``robots:`` in a fleet file is a list; a plan has its schema, or had its ignored nodes,
+# and rules alone have no more than a layout and a release.
 ROBOTS = rb"^robots:(?:\s|#[^\n]*\n)*"
 _OTHERS = (
+    (PLAN, lazy_compile(rb"^(?:schema:[ ]?\d|ignored_nodes:)", re.MULTILINE)),
     (FLEET, lazy_compile(ROBOTS + rb"[-\[]", re.MULTILINE)),
-    (PLAN, lazy_compile(rb"^(?:ignored_nodes|ways):", re.MULTILINE)),
     (RULES, lazy_compile(rb"^layout:[^\n]*\n(?:distro:[^\n]*\n)?robots:", re.MULTILINE)),
     (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*-", re.MULTILINE)),
     (BAG, lazy_compile(rb"^rosbag2_bagfile_information:", re.MULTILINE)),
@@ -126,7 +126,7 @@ _ENDS = rb'"(?:nodes|ends|endpoints)"\s*:'
 _JSON = (
     (BUILT, lazy_compile(rb'"format": "multibot build')),
     (SESSION, lazy_compile(rb"\b(?:connect|listen)[\"']?\s*:\s*\{")),
-    (PLAN, lazy_compile(rb'"ways"|\A(?=.*?"layout").*?' + _ENDS, re.DOTALL)),
+    (PLAN, lazy_compile(rb'\A(?=.*?"layout").*?' + _ENDS, re.DOTALL)),
     (SNAPSHOT, lazy_compile(_ENDS)),
     (FLEET, lazy_compile(rb'"robots"')),
 )

@@ -34,7 +34,7 @@ from multibot_rewrite.rules.check import check, doubts
 from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.spelling.plan import robot_words
-from multibot_rewrite.spelling.plan_file import is_fleet, is_json, read_plan
+from multibot_rewrite.spelling.plan_file import is_fleet, read_plan
 from multibot_rewrite.system.domains import by_domain, side_by_side
 from multibot_rewrite.system.records import System, answering
 
@@ -135,7 +135,7 @@ def plan_of(options: argparse.Namespace) -> System:
         from multibot_rewrite.producers.snapshot_file import read_snapshot
 
         return seen_plan(diagnose(read_snapshot(path)))
-    if is_json(data) or not is_fleet(data):
+    if not is_fleet(data):
         return _of_release(options, read_plan(data, path))
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
     from multibot_rewrite.fleet.checks.closed_plan import closed_plan

@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import shlex
 from collections.abc import Sequence
+from functools import partial
 
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.cli import check, pictures, unplanned
@@ -13,13 +14,14 @@ from multibot_rewrite.cli.fleet import own_nodes
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report, chosen
 from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.fleet.checks.manager_remedy import with_remedies
 from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.findings import not_read
 from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words
-from multibot_rewrite.rules.check import check as compared
 from multibot_rewrite.rules.check import side_by_side
+from multibot_rewrite.rules.domains import check_view
 from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch, placed
 
 
@@ -27,24 +29,25 @@ def run(options: argparse.Namespace) -> int:
     """Read the launch file, make the graph that it would start, report; returns the exit code."""
     orders = orders_of(options, options.words)
     _check_use(options, orders)
-    plan = check.plan_of(options) if options.plan else None
+    plan, own = check.plan_of(options) if options.plan else None, own_nodes(options)
     told = release_told(options.distro) or (plan.release if plan else "")
-    made = launched_by(orders, told, *own_nodes(options))
+    read = partial(launched_by, told=told, nodes=own[0], nodl=own[1])
+    made = read(orders)
     for it in made.system.environment.caveats:
         if not it.incomplete:
             note(options, it.message)
-    found = [*judge_launch(made), *named_findings(made)]
+    found = [*with_remedies(judge_launch(made), orders, read), *named_findings(made)]
     if options.format != "text":
         found += not_read(made.graph)
     if plan is not None:
         whose = side_by_side(plan, made.system)[1]
-        sure = (as_sure(it, made, whose) for it in compared(plan, made.system))
+        sure = (as_sure(it, made, whose) for it in check_view(plan, made.with_bridged))
         judged = [*as_one_of_several(sure, plan, made.system)]
         return check.conclude(options, plan, made.system, judged, chosen(options, found))
     # What a check is told besides: there is no snapshot, and nothing to begin.
     whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
     seen = diagnose(made.system)
-    every = (*found, *(placed(as_sure(it, made, seen.whose), made) for it in seen.findings))
+    every = (*found, *placed((as_sure(it, made, seen.whose) for it in seen.findings), made))
     return unplanned.report_on(whole, seen._replace(findings=every))
 
 

@@ -142,7 +142,7 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
     if options.verbose and goes_to_file(options):
         sys.stdout.write(text)
     deliver(options, text.encode(), FLEET)
-    for line in made.notes:
+    for line in (*made.notes, *filter(None, (made.chosen,))):
         say(line, PROGRAM)
     robots = sum(len(it.names) for it in made.members)
     files = {os.path.basename(it.looked.path) for it in made.members}

@@ -23,9 +23,10 @@ from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
 from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.spelling.enclaves import to_policy
-from multibot_rewrite.spelling.plan_file import to_json, to_yaml
+from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
+from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.ownership import without_name
 from multibot_rewrite.system.records import System
 
@@ -80,7 +81,7 @@ def _is_alone(options: argparse.Namespace) -> bool:
 
 def _write(options: argparse.Namespace, plan: System) -> None:
     if (options.output or "").endswith(".json"):
-        deliver(options, to_json(plan).encode())
+        deliver(options, to_json(plan))
     else:
         deliver(options, to_yaml(plan).encode(), PLAN_SCHEMA)
 
@@ -107,7 +108,7 @@ def _of_launch(options: argparse.Namespace) -> int:
 
 def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
     """Write the rules in the form that is asked for."""
-    known = {node.robot for node in made.table.nodes}
+    known = {node.robot for node in made.table.runs}
     nothing = [robot for robot in made.inventories if robot not in known]
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
@@ -122,7 +123,7 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
 
 def _bridge(options: argparse.Namespace, made: Fleet) -> str:
     carried, left = bridged_topics(
-        made.inventories, made.naming, made.models, made.table.names, made.placed
+        made.inventories, made.naming, made.models, made.table.runs, made.placed
     )
     for item in left:
         message = f"line {item.line}: {item.what} is not bridged: {item.why}"

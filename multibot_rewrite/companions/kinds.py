@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.base.bounded import MAX_BYTES
+from multibot_rewrite.base.bounded import MAX_BYTES, read_start
 from multibot_rewrite.base.file_kinds import BESIDE, BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
 
 SUFFIXES = (".yaml", ".yml", ".rviz", ".lua", ".xml")
@@ -39,8 +39,7 @@ def is_linted(path: str) -> bool:
 
 def _text_of(path: str) -> bytes | None:
     try:
-        with open(path, "rb") as file:
-            return file.read(MAX_BYTES)
+        return read_start(path, MAX_BYTES)
     except OSError:
         return None
 

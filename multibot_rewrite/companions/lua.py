@@ -59,6 +59,8 @@ class Token(NamedTuple):
     kind: str
     text: str
     at: int
+    line: int
+    column: int
 
 
 class LuaOption(NamedTuple):
@@ -95,13 +97,16 @@ def _text(data: bytes, file: str) -> str:
 
 def tokens_of(text: str, file: str) -> Iterator[Token]:
     """The tokens of Lua code without comments; InputError where one does not end."""
+    line, start = 1, 0
     for found in _TOKEN.finditer(text):
         kind = found.lastgroup or "mark"
         if kind == "open":
-            place = f"{file}:{text.count(chr(10), 0, found.start()) + 1}"
+            place = f"{file}:{line}"
             raise InputError(f"{place}: not valid Lua: {found['opening']} is not closed; close it")
         if kind not in _SILENT:
-            yield Token(kind, found[0], found.start())
+            yield Token(kind, found[0], found.start(), line, found.start() - start + 1)
+        if lines := found[0].count("\n"):
+            line, start = line + lines, found.start() + found[0].rfind("\n") + 1
 
 
 def _options(tokens: Sequence[Token]) -> Iterator[LuaOption]:
@@ -143,27 +148,23 @@ def _named(text: str, file: str, context: Context) -> NamedFile:
     tokens = list(tokens_of(text, file))
     options = list(_options(tokens))
     values = {it.value.at: (it.name.text, it.value) for it in options if it.value}
-    names = tuple(_site(text, "frame", it, key) for key, it in values.values())
-    computed = tuple(_site(text, "", it.name, it.name.text) for it in options if it.value is None)
+    names = tuple(_site("frame", it, key) for key, it in values.values())
+    computed = tuple(_site("", it.name, it.name.text) for it in options if it.value is None)
     strings = (it for it in tokens if it.kind in ("string", "long") and it.at not in values)
-    others = tuple(_site(text, "", it) for it in strings)
-    included = tuple(_site(text, "", it) for it in _included(tokens))
+    others = tuple(_site("", it) for it in strings)
+    included = tuple(_site("", it) for it in _included(tokens))
     return NamedFile(
         LUA, file, text, context, {}, names, others, included=included, computed=computed
     )
 
 
-def _site(text: str, kind: str, token: Token, key: str = "") -> Site:
+def _site(kind: str, token: Token, key: str = "") -> Site:
     end = token.at + len(token.text)
     value = token.text[1:-1] if kind else _plain(token)
     return Site(
-        kind, value, key, Slot(*_place(text, token.at), token.at + 1, end - 1, value, AS_IS)
+        kind, value, key, Slot(token.line, token.column, token.at + 1, end - 1, value, AS_IS)
     )
 
 
 def _plain(token: Token) -> str:
     return token.text.strip("\"'[]=")
-
-
-def _place(text: str, at: int) -> tuple[int, int]:
-    return text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)

@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
+from itertools import pairwise
 
 import yaml
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
+
+# What ends a line in YAML 1.1.
+_END = lazy_compile("\r\n?|[\n\x85\u2028\u2029]")
+_ENDS = ("\n", "\r", "\x85", "\u2028", "\u2029")
 
 
 class Block(NamedTuple):
@@ -27,12 +32,13 @@ def is_block(node: yaml.Node | None) -> bool:
 
 def newline(document: YamlText) -> str:
     """How the lines of a text end."""
-    return "\r\n" if "\r\n" in document.text else "\n"
+    found = _END.search(document.text)
+    return found[0] if found else "\n"
 
 
 def inserted(document: YamlText, at: int, text: str) -> Splice:
     """Lines inserted at the start of a line, or after a last line without a line end."""
-    unended = at == len(document.text) and not document.text.endswith("\n")
+    unended = at == len(document.text) and not document.text.endswith(_ENDS)
     return Splice(at, at, (newline(document) if unended and text else "") + text)
 
 
@@ -64,13 +70,15 @@ def end_of(node: yaml.Node) -> int:
 
 def line_start(document: YamlText, at: int) -> int:
     """Where the line of a character starts."""
-    return document.text.rfind("\n", 0, at) + 1
+    start = document.text.rfind("\n", 0, at) + 1
+    others = (it.end() for it in _END.finditer(document.text, start, at))
+    return max(others, default=start)
 
 
 def line_end(document: YamlText, at: int) -> int:
     """Where the next line starts."""
-    end = document.text.find("\n", at)
-    return len(document.text) if end < 0 else end + 1
+    found = _END.search(document.text, at)
+    return found.end() if found else len(document.text)
 
 
 def cut_out(document: YamlText, start: int, end: int, splices: Iterable[Splice] = ()) -> str:
@@ -81,12 +89,13 @@ def cut_out(document: YamlText, start: int, end: int, splices: Iterable[Splice] 
         parts += [document.text[at:first], new]
         at = last
     text = "".join([*parts, document.text[at:end]])
-    return text if not text or text.endswith("\n") else text + newline(document)
+    return text if not text or text.endswith(_ENDS) else text + newline(document)
 
 
 def lines_of(text: str) -> list[str]:
-    """The lines of a text with their ends; only line feeds end one."""
-    return [line for line in re.split(r"(?<=\n)", text) if line]
+    """The lines of a text with their ends."""
+    ends = [0, *(it.end() for it in _END.finditer(text)), len(text)]
+    return [text[start:end] for start, end in pairwise(ends) if start < end]
 
 
 def moved(text: str, by: int) -> str:

@@ -35,13 +35,22 @@ from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.spelling.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
 from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan import expect, from_text, named_frames, planned_end, vacuous
-from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.spelling.plan import expect, named_frames, vacuous
+from multibot_rewrite.spelling.records import GivenNode, Run, Table
 from multibot_rewrite.spelling.table import build_table, joined, plugin_nodes
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
 from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.parameters import parameter_text
-from multibot_rewrite.system.records import SIM_TIME, Edge, End, Parameter, System, Topic
+from multibot_rewrite.system.records import (
+    SIM_TIME,
+    Edge,
+    End,
+    Origin,
+    Parameter,
+    Place,
+    System,
+    Topic,
+)
 
 NOTHING: Mapping[str, str] = {}
 ALIKE: Mapping[str, Inventory] = {}
@@ -52,24 +61,21 @@ FRAME_PREFIX = "frame_prefix"
 
 class Fleet(NamedTuple):
     """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
-    each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
-    description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
-    that names it. ``tags`` are the robots whose prefix or postfix
-    differs from their namespace, with it. ``read`` are the files that were read for descriptions,
-    ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
+    each robot's nodes publish. ``facts`` are the nodes of the stacks, ``tags`` the robots whose
+    prefix or postfix differs from their namespace, with it. ``read`` are the files that were read for
+    descriptions, ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
     ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
     robots whose simulator gets another file, ``apart`` the domains of robots that are not in one,
     ``models`` what each robot's model is spawned as, if not as the robot is called, ``placed`` the
-    robots whose files have a node that sends the transform which their drive sends, too."""
+    robots whose files have a node that sends the transform which their drive sends, too, or that
+    transform on another topic."""
 
     table: Table
     inventories: dict[str, Inventory]
     naming: Naming
     edges: Edges
     facts: tuple[NodeFacts, ...]
-    sources: dict[str, str]
-    origins: dict[str, str]
     tags: dict[str, str]
     read: tuple[str, ...]
     gaps: tuple[Finding, ...] = ()
@@ -141,7 +147,7 @@ def _with_bridge_and_findings(
     # Nothing is started, and nothing says that they are simulated.
     wrong = (it._replace(level=WARNING) for it in found)
     table = table._replace(problems=(*table.problems, *wrong, *findings))
-    topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, table.names)
+    topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, table.runs)
     own = topics if any(it.robot for it in topics) else ()
     gaps = tuple(shared_by_nothing(fleet))
     return fleet._replace(table=table, bridged=bridged_as(own), gaps=gaps)
@@ -176,10 +182,10 @@ def facts_of(
     return tuple(found)
 
 
-def _origin(node: NodeFacts, stack: str) -> str:
+def _origin(node: NodeFacts, stack: str) -> Origin:
     # Without its folder: a plan is the same from every working directory.
     file = os.path.basename(node.interface)
-    return f"stack {stack}, described in {file}" if file else f"stack {stack}"
+    return Origin(f"{stack}, described in {file}" if file else stack)
 
 
 def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> NodeKnowledge:
@@ -195,15 +201,17 @@ def assemble(
     facts: tuple[NodeFacts, ...],
     naming: Naming,
     release: str,
+    given: Sequence[GivenNode] = (),
 ) -> Fleet:
-    """The fleet of robots that run the same nodes of a release."""
+    """The fleet of robots that run the same nodes of a release, with parameters that are ``given``."""
     inventories = {it.robot: it.inventory for it in members}
-    plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
+    plugins = {it.robot: _plugins(it) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
-        own = [node for node, _ in plugins[it.robot]]
+        own = [run.fact for run in plugins[it.robot]]
         edges |= edges_of(it.robot, it.described, facts, own, naming, it.tag, it.plain)
-    table = build_table([it.robot for it in members], facts, naming, plugins, release=release)
+    robots = [it.robot for it in members]
+    table = build_table(robots, facts, naming, plugins, given, release=release)
     unread = dict.fromkeys(found for it in members for found in it.unread)
     table = table._replace(problems=(*table.problems, *unread))
     return Fleet(
@@ -212,32 +220,22 @@ def assemble(
         naming,
         edges,
         facts,
-        _sources(members),
-        _origins(table, facts),
         {it.robot: it.tag for it in members if it.tag != it.robot},
         _read(members),
         described={it.robot: it.described for it in members if it.described is not it.inventory},
     )
 
 
+def _plugins(member: Member) -> list[Run]:
+    """The plugins' nodes, placed in the source: inserted text moves the lines of the result."""
+    runs, source = plugin_nodes(member.reading, member.robot), member.source
+    lines = (line_of(source, "plugin", it.number) for it in member.reading.nodes)
+    each = zip(runs, lines, strict=True)
+    return [run._replace(place=Place(source.file, line)) for run, line in each]
+
+
 def _read(members: Sequence[Member]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(path for it in members for path in it.read))
-
-
-def _sources(members: Sequence[Member]) -> dict[str, str]:
-    """The places of the plugins in the source: inserted text moves the lines of the result."""
-    found = {}
-    for it in members:
-        for node in it.reading.nodes:
-            line = line_of(it.source, "plugin", node.number)
-            found[node.full_name] = f"{it.source.file}:{line}"
-    return found
-
-
-def _origins(table: Table, facts: tuple[NodeFacts, ...]) -> dict[str, str]:
-    """By full name: the file or stack that names a node."""
-    known = {it.name: it.origin for it in facts}
-    return {it.full_name: origin for it in table.nodes if (origin := known.get(it.node, ""))}
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:
@@ -250,8 +248,6 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             first.naming,
             {**first.edges, **other.edges},
             tuple(dict.fromkeys((*first.facts, *other.facts))),
-            {**first.sources, **other.sources},
-            {**first.origins, **other.origins},
             {**first.tags, **other.tags},
             tuple(dict.fromkeys((*first.read, *other.read))),
             described={**first.described, **other.described},
@@ -279,12 +275,8 @@ def planned(fleet: Fleet) -> System:
         for robot, found in {**fleet.inventories, **fleet.described}.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
-    tags, places = fleet.tags, fleet.sources
-    plan = expect(
-        fleet.table, fleet.naming, frames, fleet.facts, named, places, tags, fleet.maybe_real
-    )
+    plan = expect(fleet.table, fleet.naming, frames, named, fleet.tags, fleet.maybe_real)
     whole = plan._replace(
-        nodes=tuple(from_text(it, fleet.origins.get(it.name, "")) for it in plan.nodes),
         edges=tuple(_sends(fleet)),
         release=fleet.table.release,
         gaps=fleet.gaps,
@@ -299,12 +291,11 @@ def _parameters(fleet: Fleet) -> Iterator[Parameter]:
     """The clock of each node of a robot, where one in a plugin has that of the simulator, and what
     puts the robot's name before the frames of its description."""
     clocks = dict(fleet.clocks)
-    described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
-    for it in merged(fleet.table.nodes):
+    for it in merged(fleet.table.runs):
         given: dict[str, object] = {}
-        if it.robot in clocks and not it.home.plugin:
+        if it.robot in clocks and not it.fact.plugin:
             given[SIM_TIME] = clocks[it.robot]
-        if it.robot and it.node in described and fleet.naming.layout.at_run_time:
+        if it.robot and it.fact.package == STATE_PUBLISHER and fleet.naming.layout.at_run_time:
             given[FRAME_PREFIX] = f"{fleet.tags.get(it.robot, it.robot)}/"
         for name, value in given.items():
             yield Parameter(it.full_name, name, parameter_text(value))
@@ -312,10 +303,9 @@ def _parameters(fleet: Fleet) -> Iterator[Parameter]:
 
 def _sends(fleet: Fleet) -> Iterator[Edge]:
     """The transforms that nodes' parameters name."""
-    described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
-    for it in fleet.table.nodes:
+    for it in fleet.table.runs:
         edges = fleet.edges.get((it.robot, it.node), ())
-        if edges and it.node not in described:
+        if edges and it.fact.package != STATE_PUBLISHER:
             sender = (it.full_name,)
             yield from (edge._replace(publishers=sender) for edge in edges)
 
@@ -323,8 +313,7 @@ def _sends(fleet: Fleet) -> Iterator[Edge]:
 def possible(fleet: Fleet) -> tuple[End, ...]:
     """Every endpoint that its nodes may have, by parameter too."""
     return tuple(
-        planned_end(it.node, end.kind, end.role, it.name, end.type, end.name)
-        for it in fleet.table.names
-        for end in [it.endpoint]
+        End(end.kind, end.role, name, end.type, node=run.full_name, code_name=end.name)
+        for run, end, name in fleet.table.ends
         if end.role
     )

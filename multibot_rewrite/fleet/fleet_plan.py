@@ -163,7 +163,8 @@ def _fleet(
     notes: list[Finding] = []
     for key, group in groups.items():
         found = evidence[key]
-        fleets.append(assemble([it.member for it in group], found.nodes, naming, file.distro))
+        members = [it.member for it in group]
+        fleets.append(assemble(members, found.nodes, naming, file.distro, found.given))
         notes += found.findings
     fleet = merge(fleets)
     members = [it.member for it in robots]

@@ -17,9 +17,7 @@ from typing import Any
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.companions.params.rcl_parameters import (
-    check_values,
-)
+from multibot_rewrite.companions.params.rcl_parameters import check_values
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.build import Outputs, make_outputs

@@ -30,7 +30,7 @@ A node:
     frames     parameters of no section that hold frames: name -> default, or a list of {default,
                releases, source}; those under ``params`` are taken from there
     sends      the parameter of the parent -> that of the child in a transform it sends, or {child,
-               if}
+               if}, or a list of these
     claims     command or state -> the interfaces that a controller claims, as templates over its
                parameters (``producers/evidence/claims.py``)
     ids        a word in <> -> the parameter that lists what it stands for; the type of a list of

@@ -56,6 +56,8 @@ class Declared(NamedTuple):
 
 def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
     """Each check in a text with its arguments."""
+    if ")" not in bounds:
+        return ()
     checks = (it.partition("(") for it in _BETWEEN_CHECKS.split(bounds) if it.endswith(")"))
     return tuple((name, arguments[:-1]) for name, _, arguments in checks)
 

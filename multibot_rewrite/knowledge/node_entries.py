@@ -115,7 +115,10 @@ def _sends(
 ) -> Iterator[SentTransform]:
     """The transforms that a node publishes, as the parameters that hold their frames."""
     known = {frame.parameter: frame.parameter for frame in frames}
-    for parent, item in table_of(keys, "sends").items():
+    each = (
+        (parent, it) for parent, item in table_of(keys, "sends").items() for it in variants(item)
+    )
+    for parent, item in each:
         if parent not in known:
             wrong(item, unknown("frame", parent, known))
         if isinstance(item.value, str):

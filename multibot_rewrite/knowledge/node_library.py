@@ -44,7 +44,7 @@ from multibot_rewrite.system.records import ROLES
 STACK_KEYS = ("about", "include", "container", "nodes", "remaps", "releases")
 ENTRY_KEYS = (
     *("node", "as", "plugin", "shared", "when", "with", "names", "remaps", "releases"),
-    "parameters",
+    *("parameters", "by_sensor"),
 )
 ENTRY_OF_NODE = tuple(dict.fromkeys((*NODE_KEYS, *PARAMETER_KEYS)))
 # The schema of such a file, for editors.
@@ -254,13 +254,17 @@ def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
         when=condition_of(keys, "when") or node.when,
         releases=releases_of(keys) or node.releases,
         endpoints=_remapped(_named(endpoints, keys), keys),
-        usual=tuple(_usual(keys)),
+        usual=tuple(_usual(table_of(keys, "parameters"))),
+        by_sensor=tuple(
+            (type_, tuple(_usual(table(it, f"by_sensor {type_}"))))
+            for type_, it in table_of(keys, "by_sensor").items()
+        ),
     )
 
 
-def _usual(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
+def _usual(values: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
     """The parameters that the stack's own file gives a node."""
-    for name, item in table_of(keys, "parameters").items():
+    for name, item in values.items():
         if not isinstance(item.value, str | float | int):
             wrong(item, f"parameter {name} is no word or number")
         yield name, _number(item.value)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.system.records import NO_ORIGIN, Origin
 
 MANAGER, MOVE_GROUP, TWIST_MUX = "controller_manager", "move_group", "twist_mux"
 # Topics that image_transport's plugins derive from a base name.
@@ -144,7 +145,7 @@ class NodeFacts(NamedTuple):
     always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes. ``ids``
     are words in <> of its names, with the parameter that lists what they stand for. ``claims`` are the
     interfaces that a controller needs. ``known`` is its name in its entry if it has another one.
-    ``origin`` is where a robot's own files name it (``file:line``), or its stack. ``releases`` and
+    ``origin`` is where a robot's own files name it, or its stack. ``releases`` and
     ``source`` as in ``Endpoint``. ``programs`` are the executables that run it, those of
     other packages as ``package/executable``, the usual one first; ``component`` is its class as a
     component. ``interface`` is the NoDL file that its endpoints are from, empty for the library.
@@ -170,7 +171,7 @@ class NodeFacts(NamedTuple):
     ids: tuple[tuple[str, str], ...] = ()
     claims: tuple[Claim, ...] = ()
     known: str = ""
-    origin: str = ""
+    origin: Origin = NO_ORIGIN
     releases: str = ""
     source: tuple[str, ...] = ()
     programs: tuple[str, ...] = ()
@@ -183,6 +184,7 @@ class NodeFacts(NamedTuple):
     prefix_switch: str = ""
     unmanaged: str = ""
     usual: tuple[tuple[str, str | float], ...] = ()
+    by_sensor: tuple[tuple[str, tuple[tuple[str, str | float], ...]], ...] = ()
 
     @property
     def kind(self) -> str:
@@ -193,3 +195,7 @@ class NodeFacts(NamedTuple):
     def is_controller(self) -> bool:
         """Does the controller manager load it? The hardware's nodes are in its process, too."""
         return self.host == MANAGER and not self.of_hardware
+
+
+# What is known of a node that nobody knows.
+UNKNOWN = NodeFacts("", "", ())

@@ -19,6 +19,7 @@ from multibot_rewrite.launch.context import (
     robot_of,
 )
 from multibot_rewrite.launch.robot_words import NUMBERS, WORDS
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
 FILE = "file"
@@ -41,7 +42,7 @@ def rviz_config(file: Text, robot: Text = None, fleet: Text = None) -> Substitut
 
 def bridge_config(robot: Text = None, fleet: Text = None) -> Substitution:
     """The path of a robot's ros_gz_bridge file, or of the one for all robots."""
-    return value(FILE, "bridge.yaml", robot, fleet)
+    return value(FILE, BRIDGE_FILE, robot, fleet)
 
 
 def value(word: Text, name: Text = "", robot: Text = None, fleet: Text = None) -> Substitution:

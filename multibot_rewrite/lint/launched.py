@@ -28,13 +28,14 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.described import in_use, may_stop
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.bridges import expands, is_bridge, told_rows
 from multibot_rewrite.producers.launch.launched import (
     InSimulator,
     Launched,
     file_of,
 )
-from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
+from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.rules.files.bridges import (
     GzTopic,
     GzTopics,
@@ -45,6 +46,7 @@ from multibot_rewrite.rules.files.bridges import (
 from multibot_rewrite.rules.files.judge import judged
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import NOWHERE, Place
 
 # What is wrong as soon as a second model has it, too.
@@ -112,7 +114,7 @@ def _parameters(launched: Launched) -> Iterator[Finding]:
 def _values(launched: Launched) -> Iterator[Finding]:
     """What is wrong with the parameters that a launch file gives a node itself, at the node."""
     settings = Settings(select=_OF_VALUES, distro=launched.release)
-    nodes = {(it.place, it.namespace, it.program): it for it in launched.nodes if it.facts}
+    nodes = {(it.place, it.namespace, it.program): it for it in launched.nodes if it.has_fact}
     for it in launched.graph.nodes:
         running = nodes.get((it.place, it.namespace, f"{it.package}/{it.executable}"))
         given = _given(it) if running else {}
@@ -168,13 +170,13 @@ def bridge_findings(launched: Launched) -> Iterator[Finding]:
             yield one if at == NOWHERE else one._replace(file=at.file, line=at.line, column=1)
 
 
-def _told(it: RunningNode) -> Iterator[_Told]:
+def _told(it: Run) -> Iterator[_Told]:
     given = it.values.get("config_file") if is_bridge(it) else None
     if given and os.path.isfile(str(given.value)):
         path = os.path.realpath(str(given.value))
         yield _Told(path, read_file(path).decode("utf-8", "replace"), expands(it), NOWHERE)
     if text := told_rows(it):
-        yield _Told("bridge.yaml", text, expands(it), it.place)
+        yield _Told(BRIDGE_FILE, text, expands(it), it.place)
 
 
 def _of_bridge(told: _Told, release: str, known: Mapping[str, GzTopic]) -> Iterable[Finding]:

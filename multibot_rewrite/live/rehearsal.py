@@ -14,18 +14,17 @@ from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
-from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
+from multibot_rewrite.spelling.records import Rules, Run, Table
 from multibot_rewrite.spelling.targets import ACTION_PARTS
 from multibot_rewrite.spelling.transforms import Edges
 from multibot_rewrite.spelling.way_checks import (
-    RunningNode,
     bound_to,
     is_stand_in,
     running_nodes,
 )
-from multibot_rewrite.spelling.ways import Pair, ros_arguments
+from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -54,17 +53,6 @@ PART_TYPES = {
 PROCESSES = 8
 
 
-class StubEndpoint(NamedTuple):
-    """An endpoint with the name in its node's code; ``helper`` and ``by`` as in ``Endpoint``."""
-
-    kind: str
-    role: str
-    name: str
-    type: str
-    helper: bool
-    by: str = ""
-
-
 class StubNode(NamedTuple):
     """A stub: its name in the code, its arguments for rcl and those of its process, which are a
     helper node's, its endpoints, what it sends on tf."""
@@ -72,7 +60,7 @@ class StubNode(NamedTuple):
     name: str
     arguments: tuple[str, ...]
     process_arguments: tuple[str, ...]
-    endpoints: tuple[StubEndpoint, ...]
+    endpoints: tuple[Endpoint, ...]
     edges: tuple[Edge, ...]
 
 
@@ -84,22 +72,22 @@ def stub_nodes(
     ``edges`` are by robot and node. Rules that stand at one of the ways ``left_out`` are not given;
     without any a node gets only its namespace and its name.
     """
-    types = {name.name: name.endpoint.type for name in table.names if name.endpoint.type}
-    names: dict[str, list[EndpointName]] = {}
-    for name in table.names:
-        if not name.endpoint.when:
-            names.setdefault(name.node, []).append(name)
-    spaces = {(it.robot, it.node): it.namespace for it in table.nodes}
-    for it in running_nodes(table, left_out):
-        node, own = it.node, names.get(it.node.full_name, [])
-        space, other = _as_started(node, spaces.get((node.robot, node.home.host)))
+    types = {name: end.type for _, end, name in table.ends if end.type}
+    names: dict[str, list[tuple[Endpoint, str]]] = {}
+    for run, end, name in table.ends:
+        if not end.when:
+            names.setdefault(run.full_name, []).append((end, name))
+    spaces = {(it.robot, it.node): it.namespace for it in table.runs}
+    for _, node in running_nodes(table, left_out):
+        own = names.get(node.full_name, [])
+        space, other = _as_started(node, spaces.get((node.robot, node.fact.host)))
         yield (
             node.robot,
             StubNode(
                 node.code_name,
-                tuple(ros_arguments(space, other, _rules(it, own))),
-                tuple(ros_arguments(it.process_namespace, "", it.process_rules)),
-                tuple(dict.fromkeys(_stub_endpoint(name, types) for name in own)),
+                tuple(ros_arguments(space, other, _rules(node, own))),
+                tuple(ros_arguments(node.process_namespace, "", node.process_rules)),
+                tuple(dict.fromkeys(_stub_endpoint(*it, types) for it in own)),
                 tuple(edges.get((node.robot, node.node), ())),
             ),
         )
@@ -109,7 +97,7 @@ def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
     """The bridge to a simulator that a plan needs, if it needs one: it has what the simulator's world
     serves, too."""
     rows = [
-        StubEndpoint(SERVICE if role == SERVES else TOPIC, role, topic.name, topic.type, False)
+        Endpoint(SERVICE if role == SERVES else TOPIC, role, topic.name, topic.type)
         for topic in topics
         for role in topic.bridge
     ]
@@ -119,44 +107,41 @@ def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
 
 def domain_bridge_stubs(plan: System) -> Iterator[tuple[str, StubNode]]:
     """The nodes of domain_bridge in a plan of one domain."""
-    ends: dict[str, list[StubEndpoint]] = {}
+    ends: dict[str, list[Endpoint]] = {}
     for it in plan.ends:
-        stub = StubEndpoint(it.kind, it.role, it.name, it.type, False)
+        stub = Endpoint(it.kind, it.role, it.name, it.type)
         ends.setdefault(it.node, []).append(stub)
     for node in plan.nodes:
         if node.stack == DOMAIN_BRIDGE:
             yield node.robot, StubNode(node.name[1:], (), (), tuple(ends.get(node.name, ())), ())
 
 
-def _as_started(node: NodeTable, host: str | None) -> tuple[str, str]:
+def _as_started(node: Run, host: str | None) -> tuple[str, str]:
     """The namespace and the other name that a node is given; ``host`` is the namespace of its host.
 
     Where the code of a host places the node itself (a costmap), it asks nobody for either.
     """
-    if host is None or not node.home.apart:
+    if host is None or not node.fact.apart:
         return node.namespace, node.other_name
     return f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
 
 
-def _rules(running: RunningNode, names: Iterable[EndpointName]) -> tuple[Pair, ...]:
+def _rules(node: Run, names: Iterable[tuple[Endpoint, str]]) -> Rules:
     """The rules of a node; a controller manager that stands in for its controllers has theirs."""
-    node = running.node
-    theirs = {it.endpoint.name for it in names if is_stand_in(node, it.endpoint)}
+    theirs = {end.name for end, _ in names if is_stand_in(node, end)}
     if not theirs:
-        return running.rules
+        return node.rules
     bare = bound_to(node, ())
     full = {resolve_bound(it, TOPIC, bare) for it in theirs}
-    own = (it for it in running.rules if resolve_bound(it[0], TOPIC, bare) not in full)
-    return (*own, *running.handed_on)
+    own = (it for it in node.rules if resolve_bound(it[0], TOPIC, bare) not in full)
+    return (*own, *node.handed_on)
 
 
-def _stub_endpoint(name: EndpointName, types: Mapping[str, str]) -> StubEndpoint:
-    kind, role, own, type_, *_ = name.endpoint
+def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> Endpoint:
+    kind, role, own, type_, *_ = end
     # A topic without a role is nearly always a sensor's output.
-    return StubEndpoint(
-        *(kind, role or PUBLISHES, own, type_ or types.get(name.name, "")),
-        *(name.endpoint.helper, name.endpoint.by),
-    )
+    made = Endpoint(kind, role or PUBLISHES, own, type_ or types.get(name, ""))
+    return made._replace(helper=end.helper, by=end.by)
 
 
 def split_over_processes(nodes: Iterable[tuple[str, StubNode]]) -> list[list[StubNode]]:
@@ -186,10 +171,10 @@ def with_substitutes(plan: System, replaced: Mapping[str, str]) -> System:
 
 def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
     if planned.kind == ACTION and planned.type in replaced:
-        action = StubEndpoint(planned.kind, planned.role, planned.name, planned.type, False)
+        action = Endpoint(planned.kind, planned.role, planned.name, planned.type)
         for kind, role, name, type_, *_ in action_parts(action):
             code_name = planned.code_name + name.removeprefix(planned.name)
-            yield planned_end(planned.node, kind, role, name, type_, code_name)
+            yield End(kind, role, name, type_, node=planned.node, code_name=code_name)
     else:
         also = tuple(replaced.get(type_, type_) for type_ in planned.also)
         yield planned._replace(type=replaced.get(planned.type, planned.type), also=also)
@@ -214,7 +199,7 @@ def with_own_types(it: System, plan: System, replaced: Mapping[str, str]) -> Sys
     return it._replace(ends=tuple(map(own, it.ends)), topics=plan.topics)
 
 
-def action_parts(action: StubEndpoint) -> Iterator[StubEndpoint]:
+def action_parts(action: Endpoint) -> Iterator[Endpoint]:
     """The services and topics that make up an action, for an action without its type."""
     roles = {
         (SERVES, SERVICE): SERVES, (SERVES, TOPIC): PUBLISHES,
@@ -223,7 +208,7 @@ def action_parts(action: StubEndpoint) -> Iterator[StubEndpoint]:
     for suffix, kind in ACTION_PARTS:
         type_ = PART_TYPES.get(suffix, SUBSTITUTE_TYPES[kind])
         name = f"{action.name}/{suffix}"
-        yield StubEndpoint(kind, roles[action.role, kind], name, type_, action.helper, action.by)
+        yield action._replace(kind=kind, role=roles[action.role, kind], name=name, type=type_)
 
 
 def substitute_type(kind: str, type_: str) -> str:
@@ -233,7 +218,10 @@ def substitute_type(kind: str, type_: str) -> str:
 
 def to_order(nodes: Iterable[StubNode]) -> tuple[Any, ...]:
     """Stub nodes as plain values, the order of the process that runs them."""
-    return tuple(nodes)
+    return tuple(
+        (*it[:3], [(*end[:4], end.helper, end.by) for end in it.endpoints], it.edges)
+        for it in nodes
+    )
 
 
 def from_order(value: Sequence[Any]) -> list[StubNode]:
@@ -243,7 +231,10 @@ def from_order(value: Sequence[Any]) -> list[StubNode]:
             name,
             tuple(words),
             tuple(process),
-            tuple(StubEndpoint(*end) for end in endpoints),
+            tuple(
+                Endpoint(kind, role, own, type_, helper=helper, by=by)
+                for kind, role, own, type_, helper, by in endpoints
+            ),
             tuple(edge_of(parent, child, static) for child, parent, _, static, *_ in edges),
         )
         for name, words, process, endpoints, edges in value

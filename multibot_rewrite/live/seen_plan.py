@@ -9,7 +9,6 @@ from multibot_rewrite.base.conventions import EVERYBODYS, SENT_BY_EVERY_NODE, WO
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, TF_TOPICS
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.live.diagnose import Diagnosis
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.guess import GuessedRobot
 from multibot_rewrite.system.records import End, Node, Robot, System
 from multibot_rewrite.system.tf_copies import tree_topic
@@ -77,5 +76,4 @@ def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[End]:
         )
         if end.node in nodes and not common:
             code = seen.whose.plain(end.name)
-            own = (end.node, end.kind, end.role, end.name)
-            yield planned_end(*own, end.type, code)
+            yield End(end.kind, end.role, end.name, end.type, node=end.node, code_name=code)

@@ -18,9 +18,9 @@ from typing import Any
 from multibot_rewrite.base.conventions import CLIENT, LISTENER
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.live.rehearsal import (
     TF,
-    StubEndpoint,
     StubNode,
     action_parts,
     from_order,
@@ -84,14 +84,14 @@ def _create_node(stubs: _Stubs, stub: StubNode, number: int) -> Iterator[Publish
         yield from _create_endpoint(stubs, owner, _named(node, endpoint), stub.edges)
 
 
-def _helper(endpoint: StubEndpoint) -> str:
+def _helper(endpoint: Endpoint) -> str:
     """How the helper node of an endpoint is called: as tf2's listener, or behind its node's name."""
     if endpoint.name.strip("/") in TF_TOPICS:
         return endpoint.by or f"{LISTENER}*"
     return endpoint.by or CLIENT
 
 
-def _named(node: Any, endpoint: StubEndpoint) -> StubEndpoint:
+def _named(node: Any, endpoint: Endpoint) -> Endpoint:
     """An endpoint of a helper node below the name of the node that makes it.
 
     As moveit_servo does (src/utils/common.cpp:510): with ~ it would be below the helper's own name.
@@ -102,7 +102,7 @@ def _named(node: Any, endpoint: StubEndpoint) -> StubEndpoint:
 
 
 def _create_endpoint(
-    stubs: _Stubs, node: Any, endpoint: StubEndpoint, edges: Iterable[Edge]
+    stubs: _Stubs, node: Any, endpoint: Endpoint, edges: Iterable[Edge]
 ) -> Iterator[Publish]:
     """Create one endpoint, with a substitute where its type is not installed."""
     type_ = _installed(endpoint.type)
@@ -135,7 +135,7 @@ _CREATORS: dict[tuple[bool, str], Callable[[Any, Any, str], object]] = {
 
 
 def _create_publisher(
-    stubs: _Stubs, node: Any, type_: Any, endpoint: StubEndpoint, edges: Iterable[Edge]
+    stubs: _Stubs, node: Any, type_: Any, endpoint: Endpoint, edges: Iterable[Edge]
 ) -> Iterator[Publish]:
     static = endpoint.name.rpartition("/")[2] == STATIC
     publisher = ros.publish(node, type_, endpoint.name, static)

@@ -14,7 +14,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS
 from multibot_rewrite.knowledge.records import Param
 from multibot_rewrite.producers import evidence
-from multibot_rewrite.producers.evidence.records import Given
+from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import CALIBRATION, COMPUTER, DEVICE, OWN, Address, Place
 
 _DEVICE = lazy_compile(r"/dev/\S+|v?can\d+")

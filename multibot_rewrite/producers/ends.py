@@ -6,17 +6,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.bridge_entry import BOTH, FRAME, GZ, ROS, below
 from multibot_rewrite.companions.bridge_entry import SERVICE as SERVICE_ROW
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.description.readback.reading import Reading
-from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.spelling.of_runs import ends_of, with_names
+from multibot_rewrite.spelling.records import GivenNode, Run
+from multibot_rewrite.spelling.targets import expanded
 from multibot_rewrite.system.records import (
     CALLS,
     MAY,
-    NOWHERE,
     PUBLISHES,
     RUNS,
     SERVES,
@@ -44,17 +44,20 @@ def node_ends(node: NodeFacts, section: GivenNode | None) -> Iterator[End]:
     """The ends of a node by the names of its code, or what the usual launch files make of them;
     ``section`` is what a file sets for it. A node for all robots needs nothing of this one."""
     above, _, name = f"/{node.name}".rpartition("/")
-    values = section.values if section else {}
-    at = section.place if section else NOWHERE
-    for it in (it for it in node.endpoints if "<" not in it.name):
-        if node.shared and it.role in NEEDS:
-            continue
-        full = expand(it.remapped or it.name, above or "/", name)
-        place = values[it.parameter].place if it.parameter in values else at
-        # A node with parameters is meant to run.
-        sure = RUNS if not it.when and (section or not node.when) else MAY
-        own = (it.kind, it.role, full, it.type, "", f"/{node.name}", None, "")
-        yield from either_way(End(*own, it.name, it.also, sure, place))
+    rules = tuple(it for end in node.endpoints if end.remapped for it in _usual_rules(end))
+    run = Run("", name, above or "/", name, rules, node)
+    run = run._replace(values=section.values, place=section.place) if section else run
+    # A node with parameters is meant to run.
+    may = bool(node.when) and section is None
+    for it in ends_of(with_names(run)):
+        if not (node.shared and it.role in NEEDS):
+            yield from either_way(it._replace(node=run.full_name, sure=MAY if may else it.sure))
+
+
+def _usual_rules(end: Endpoint) -> Iterator[tuple[str, str]]:
+    meant = expanded(end._replace(name=end.remapped))
+    for (_, source), (_, target) in zip(expanded(end), meant, strict=True):
+        yield source, target
 
 
 def plugin_ends(reading: Reading) -> Iterator[End]:

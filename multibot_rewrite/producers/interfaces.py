@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.claims import COMMAND, Claimed, claimed_twice, claims_of
 from multibot_rewrite.producers.evidence.hardware import Exported
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.system.records import CLAIMS, EXPORTS, Controller, Interface, System
 
 ACTIVE = "active"

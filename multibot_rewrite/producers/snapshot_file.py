@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 
 from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
+from multibot_rewrite.base.file_kinds import KINDS, PLAN
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.rosgraph.reading import from_message, from_yaml, is_message
@@ -26,7 +27,10 @@ def read_snapshot(path: str) -> System:
     value = json_value(data, path)
     if isinstance(value, dict) and is_message(value):
         return from_message(value, path)
-    return from_value(value, path)
+    system = from_value(value, path)
+    if system.layout:
+        raise InputError(f"{path}: {KINDS[PLAN].words}; {KINDS[PLAN].use}")
+    return system
 
 
 def read_snapshots(paths: Sequence[str]) -> System:

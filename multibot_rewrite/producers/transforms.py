@@ -10,8 +10,8 @@ from multibot_rewrite.base.conventions import USUAL_FRAMES, WORLD_FRAMES
 from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
 from multibot_rewrite.knowledge.records import MOVE_GROUP, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled, lookup
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics
+from multibot_rewrite.spelling.records import Given, GivenNode
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, sent_by
 from multibot_rewrite.system.records import (
     NOWHERE,

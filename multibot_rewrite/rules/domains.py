@@ -12,12 +12,18 @@ from collections.abc import Iterator, Mapping, Set
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.system.differing import COMPARED
+from multibot_rewrite.rules.system.planned_ends import missing_endpoint
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
-from multibot_rewrite.system.domains import by_domain, domain_of, side_by_side
+from multibot_rewrite.system.domains import by_domain, domain_of, seen_by_domain, side_by_side
 from multibot_rewrite.system.records import System
 
 _MISSING = frozenset((missing_node.code, missing_robot.code))
+
+
+def check_view(plan: System, seen: System) -> list[Finding]:
+    """What is other than planned in one view of all nodes, each in the domain that it is planned in."""
+    return check_domains(plan, seen_by_domain(plan, seen)) if plan.domains else check(plan, seen)
 
 
 def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
@@ -76,8 +82,14 @@ def in_domain(it: Finding, number: int) -> Finding:
 
 
 def _of_bridge(it: Finding, plan: System) -> Finding:
-    """Without a bridge that is missing on one side nothing crosses."""
-    if it.code != missing_node.code or it.node not in _bridges(plan):
+    """Without a bridge that is missing on one side nothing crosses; its file has its topics."""
+    if it.node not in _bridges(plan):
+        return it
+    if it.code == missing_endpoint.code:
+        return it._replace(
+            hint=f"the file of {DOMAIN_BRIDGE} has no such topic: build the fleet again"
+        )
+    if it.code != missing_node.code:
         return it
     level = ERROR if it.level == WARNING else it.level
     hint = f"nothing crosses: does {DOMAIN_BRIDGE} run for the robot, with the file that was built?"

@@ -20,6 +20,7 @@ from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.bridge_rows import (
     PLUGINS,
     SENSORS,
@@ -30,7 +31,7 @@ from multibot_rewrite.spelling.bridge_rows import (
     is_there,
     rows_of,
 )
-from multibot_rewrite.spelling.records import EndpointName
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES, Topic
 
 # How libraries for gz-sim are called; those for Gazebo Classic that are ROS nodes have the other word.
@@ -97,14 +98,14 @@ def bridged_topics(
     inventories: Mapping[str, Inventory],
     naming: Naming,
     models: Models = AS_ROBOTS,
-    names: Sequence[EndpointName] = (),
+    runs: Sequence[Run] = (),
     placed: Collection[str] = (),
 ) -> tuple[list[BridgedTopic], list[UnbridgedTopic]]:
     """Return the bridged topics of a fleet, and those that cannot be bridged.
 
     ``inventories`` are those of the rewritten descriptions, ``models`` what they are spawned as,
-    ``names`` the ends of the robots' nodes: a topic has the type and, where the description does not
-    say it, the name that these have. Robots that are ``placed`` by nodes do without the transforms of
+    ``runs`` the robots' nodes: a topic has the type and, where the description does not say it,
+    the name that these have. Robots that are ``placed`` by nodes do without the transforms of
     their drives.
     """
     bridged = [
@@ -118,20 +119,23 @@ def bridged_topics(
             if isinstance(item, BridgedTopic) and item.ros == tf:
                 continue
             (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
-    return [_fitting(it, names) for it in dict.fromkeys(bridged)], list(dict.fromkeys(left))
+    ends: dict[str, list[tuple[Endpoint, str]]] = defaultdict(list)
+    for run in runs:
+        ends[run.robot] += (it for it in run.names if not it[0].when)
+    fitting = [_fitting(it, ends[it.robot]) for it in dict.fromkeys(bridged)]
+    return fitting, list(dict.fromkeys(left))
 
 
-def _fitting(topic: BridgedTopic, names: Iterable[EndpointName]) -> BridgedTopic:
+def _fitting(topic: BridgedTopic, ends: Sequence[tuple[Endpoint, str]]) -> BridgedTopic:
     """Return the topic with the name and type that the nodes at its end have, where the bridge can
-    convert that type."""
+    convert that type; ``ends`` are those of its robot."""
     role = SUBSCRIBES if topic.direction == DIRECTIONS["in"] else PUBLISHES
-    ends = [it for it in names if it.robot == topic.robot and not it.endpoint.when]
-    sides = [it for it in ends if it.endpoint.role == role]
-    if topic.is_free and all(it.name != topic.ros for it in sides):
-        sent = {it.name for it in ends if it.endpoint.role not in (role, "")}
-        alike = {it.name for it in sides if it.endpoint.type == topic.ros_type} - sent
+    sides = [it for it in ends if it[0].role == role]
+    if topic.is_free and all(name != topic.ros for _, name in sides):
+        sent = {name for end, name in ends if end.role not in (role, "")}
+        alike = {name for end, name in sides if end.type == topic.ros_type} - sent
         topic = topic._replace(ros=alike.pop()) if len(alike) == 1 else topic
-    own = [it.endpoint for it in sides if it.name == topic.ros]
+    own = [end for end, name in sides if name == topic.ros]
     types = {it for end in own for it in (end.type, *end.also)}
     if len(types) == 1 and topic.gz_type.rpartition(".")[2] in _pairs(*types):
         return topic._replace(ros_type=types.pop())

@@ -16,7 +16,6 @@ from multibot_rewrite.base.conventions import CLOCK, SENT_BY_EVERY_NODE, is_from
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.domains import domain_of
 from multibot_rewrite.system.records import (
     CALLS,
@@ -70,8 +69,8 @@ def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
         nodes += [it._replace(stack=DOMAIN_BRIDGE) for it in made]
         for it in own:
             from_, to = (here, there) if it.out else (there, here)
-            ends.append(planned_end(from_, TOPIC, SUBSCRIBES, it.name, it.type, it.name))
-            ends.append(planned_end(to, TOPIC, PUBLISHES, it.name, it.type, it.name))
+            ends.append(End(TOPIC, SUBSCRIBES, it.name, it.type, node=from_, code_name=it.name))
+            ends.append(End(TOPIC, PUBLISHES, it.name, it.type, node=to, code_name=it.name))
     return plan._replace(nodes=tuple(nodes), ends=tuple(ends))
 
 

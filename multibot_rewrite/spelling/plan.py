@@ -8,38 +8,26 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
-from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.spelling.records import EndpointName, Table
+from multibot_rewrite.spelling.of_runs import ends_of
+from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.ways import HOST, PLUGIN, PROCESS, deliveries
-from multibot_rewrite.system.records import MAY, RUNS, End, Node, Robot, Sure, System, place_of
+from multibot_rewrite.system.records import (
+    MAY,
+    NO_ORIGIN,
+    NOWHERE,
+    RUNS,
+    End,
+    Node,
+    Robot,
+    Sure,
+    System,
+)
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.collect import Inventory
 
 NOTHING: Mapping[str, Sequence[str]] = {}
-NOWHERE: Mapping[str, str] = {}
-# What names a node, if no file does.
-STACK = "stack "
-
-
-def planned_end(
-    node: str,
-    kind: str,
-    role: str,
-    name: str,
-    type_: str = "",
-    code_name: str = "",
-    also: tuple[str, ...] = (),
-) -> End:
-    """An end of which nothing is known that only a running system shows."""
-    return End(kind, role, name, type_, "", node, None, "", code_name, also)
-
-
-def from_text(node: Node, origin: str) -> Node:
-    """The node with what names it: a text such as ``stack nav2``, or a place."""
-    if origin.startswith(STACK):
-        return node._replace(stack=origin.removeprefix(STACK))
-    return node._replace(place=place_of(origin))
+NO_WORDS: Mapping[str, str] = {}
 
 
 def robot_words(plan: System) -> dict[str, str]:
@@ -61,20 +49,17 @@ def expect(
     table: Table,
     naming: Naming,
     frames: Mapping[str, Sequence[str]],
-    facts: Sequence[NodeFacts] = (),
     named: Mapping[str, Sequence[str]] = NOTHING,
-    sources: Mapping[str, str] = NOWHERE,
-    words: Mapping[str, str] = NOWHERE,
+    words: Mapping[str, str] = NO_WORDS,
     maybe_real: Container[str] = (),
 ) -> System:
     """The plan that follows from a remap table.
 
     ``frames`` are the declared frames of each robot, ``named`` further frames in its description.
-    ``facts`` describe the nodes that every robot runs, ``sources`` has ``file:line`` of the plugin of a
-    node. ``words`` has the name of a robot in its frames, where that is another one than its name;
+    ``words`` has the name of a robot in its frames, where that is another one than its name;
     plugins of ``maybe_real`` robots may be missing.
     """
-    usual = dict.fromkeys((*_defaults(facts), *USUAL_FRAMES))
+    usual = dict.fromkeys((*_defaults(table), *USUAL_FRAMES))
 
     def robot(name: str) -> Robot:
         word, own = words.get(name, name), tuple(frames.get(name, ()))
@@ -82,12 +67,12 @@ def expect(
         tag = word if word != name else ""
         return Robot(name, own, tf_topic(name, naming), _further(others, own, naming), tag)
 
-    own, made = _own_nodes(table, facts, maybe_real), _private_nodes(table.names)
+    own, made = _own_nodes(table, maybe_real), _private_nodes(table)
     names = dict.fromkeys((*frames, *filter(None, own)))
     nodes = _by_robot(table, own, made, (*names, ""))
     return System(
-        nodes=tuple(_placed(nodes, table, sources)),
-        ends=tuple(dict.fromkeys(_planned(table.names))),
+        nodes=tuple(_placed(nodes, table)),
+        ends=tuple(dict.fromkeys(_planned(table))),
         robots=tuple(map(robot, names)),
         layout=table.layout,
         shared_topics=tuple(sorted(f"/{topic}" for topic in naming.shared_topics)),
@@ -104,26 +89,19 @@ def _by_robot(
     robots: Iterable[str],
 ) -> Iterator[Node]:
     """The nodes of each robot, with those that they make for themselves."""
-    always = _private_nodes(it for it in table.names if not it.endpoint.when)
+    always = _private_nodes(table, always=True)
     for name in robots:
         private = made.get(name, ()) if name else ()
         for full, sure in _with_made(own.get(name, {}), private, always.get(name, ())):
             yield Node(full, robot=name, sure=sure)
 
 
-def _own_nodes(
-    table: Table, facts: Sequence[NodeFacts], maybe_real: Container[str]
-) -> dict[str, dict[str, Sure]]:
+def _own_nodes(table: Table, maybe_real: Container[str]) -> dict[str, dict[str, Sure]]:
     """By robot: the full names of its nodes, each with whether it runs; those for all robots do."""
-    optional = {node.name for node in facts if node.when}
-    conditional = {
-        (it.robot, it.node)
-        for it in table.nodes
-        if it.node in optional or (it.home.written and it.robot in maybe_real)
-    }
     found: dict[str, dict[str, Sure]] = {}
-    for it in table.nodes:
-        own, may = found.setdefault(it.robot, {}), (it.robot, it.node) in conditional
+    for it in table.runs:
+        own = found.setdefault(it.robot, {})
+        may = it.fact.when or (it.written and it.robot in maybe_real)
         own[it.full_name] = MAY if it.robot and may else own.get(it.full_name, RUNS)
     return found
 
@@ -144,30 +122,35 @@ def _further(others: Iterable[str], own: Iterable[str], naming: Naming) -> tuple
     return tuple(frame for frame in dict.fromkeys(others) if frame not in known)
 
 
-def _placed(nodes: Iterable[Node], table: Table, sources: Mapping[str, str]) -> Iterator[Node]:
-    """Each node with its plugin, and its way and taker, where it has no --ros-args of its own."""
+def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
+    """Each node with its plugin and what else names it, and its way and taker, where it has no
+    --ros-args of its own."""
     ways = dict(_ways(table))
+    plugins = {it.full_name: it.place for it in table.runs if it.written}
+    origins = {it.full_name: it.fact.origin for it in table.runs if it.fact.origin != NO_ORIGIN}
     for it in nodes:
         way, taker = ways.get(it.name, ("", ""))
-        yield it._replace(way=way, taker=taker, plugin=place_of(sources.get(it.name, "")))
+        stack, place = origins.get(it.name, NO_ORIGIN)
+        plugin = plugins.get(it.name, NOWHERE)
+        yield it._replace(way=way, taker=taker, plugin=plugin, stack=stack, place=place)
 
 
 def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:
     found = {it.node.full_name: it for it in reversed(deliveries(table))}
-    full = {(it.robot, it.node): it.full_name for it in table.nodes}
-    for node in table.nodes:
+    full = {(it.robot, it.node): it.full_name for it in table.runs}
+    for node in table.runs:
         it = found.get(node.full_name)
-        if it is None or it.way == PROCESS or node.home.plugin:
+        if it is None or it.way == PROCESS or node.fact.plugin:
             continue
         taker = full.get((node.robot, it.taker), "")
         yield node.full_name, (it.way, taker if it.way in (HOST, PLUGIN) else "")
 
 
-def _defaults(facts: Iterable[NodeFacts]) -> Iterator[str]:
+def _defaults(table: Table) -> Iterator[str]:
     """The default frames of parameters; a name in <> stands for another parameter."""
-    for node in facts:
-        names = (frame.default.strip("/") for frame in node.frames)
-        yield from (name for name in names if name and "<" not in name)
+    facts = {id(it.fact): it.fact for it in table.runs if not it.written}
+    names = (frame.default.strip("/") for it in facts.values() for frame in it.frames)
+    yield from (name for name in names if name and "<" not in name)
 
 
 def named_frames(inventory: Inventory) -> tuple[str, ...]:
@@ -180,25 +163,24 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
     return tuple(dict.fromkeys(filter(None, values)))
 
 
-def _private_nodes(names: Iterable[EndpointName]) -> dict[str, tuple[str, ...]]:
-    """By robot: patterns of the nodes that its nodes make for themselves."""
+def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, ...]]:
+    """By robot: patterns of the nodes that its nodes make for themselves, or ``always`` make."""
     found: dict[str, tuple[str, ...]] = {}
-    for name in names:
-        full = f"{name.node}{name.endpoint.by}"
-        if name.endpoint.by and full not in found.get(name.robot, ()):
-            found[name.robot] = (*found.get(name.robot, ()), full)
+    for run, end, _ in table.ends:
+        full = f"{run.full_name}{end.by}"
+        if end.by and not (always and end.when) and full not in found.get(run.robot, ()):
+            found[run.robot] = (*found.get(run.robot, ()), full)
     return found
 
 
-def _planned(names: Iterable[EndpointName]) -> Iterator[End]:
-    """The endpoints that do not depend on parameters."""
-    for name in names:
-        end = name.endpoint
-        if end.when or (end.helper and not end.by):
-            continue
-        if end.role and name.name not in SENT_BY_EVERY_NODE:
-            own = (f"{name.node}{end.by}", end.kind, end.role, name.name)
-            yield planned_end(*own, end.type, end.name, end.also)
+def _planned(table: Table) -> Iterator[End]:
+    """The ends that do not depend on parameters."""
+    for run in table.runs:
+        # What is planned is not said by a place.
+        bare = run._replace(values={}, place=NOWHERE)
+        for (fact, _), end in zip(run.names, ends_of(bare), strict=True):
+            if (fact.by or not fact.helper) and end.sure == RUNS and end.role:
+                yield from [end] * (end.name not in SENT_BY_EVERY_NODE)
 
 
 def tf_topic(robot: str, naming: Naming) -> str:

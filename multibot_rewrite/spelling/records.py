@@ -1,71 +1,90 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Records of the remap table: remap rules, and the names that they lead to."""
+"""Nodes as they run: their rules, and the names that these lead to."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeAlias
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
+from multibot_rewrite.system.parameters import ANY_NAME, Value
+from multibot_rewrite.system.records import NOWHERE, Place
+from multibot_rewrite.system.tool_nodes import is_viewer
+
+# A remap rule, as rcl takes it: what it matches, and what comes in its place.
+Rule: TypeAlias = tuple[str, str]
+Rules: TypeAlias = tuple[Rule, ...]
+# The ends of a node, each with its full name.
+Names: TypeAlias = tuple[tuple[Endpoint, str], ...]
 
 
-class Home(NamedTuple):
-    """Where a node runs if not in a process of its own: ``host``, ``container`` and ``plugin`` as in
-    ``NodeFacts``, ``apart`` and ``of_hardware``. ``written`` is true for a plugin of a description,
-    ``process_wide`` if its rules hold for its whole process."""
+class Given(NamedTuple):
+    """The value of a parameter, with the type that rcl gives it, and where it is set."""
 
-    host: str = ""
-    container: str = ""
-    plugin: str = ""
-    written: bool = False
-    process_wide: bool = False
-    apart: bool = False
-    of_hardware: bool = False
-
-    @property
-    def is_controller(self) -> bool:
-        """As in ``NodeFacts``."""
-        return self.host == MANAGER and not self.of_hardware
+    value: Value
+    place: Place
 
 
-class NodeRule(NamedTuple):
-    """One remap rule of one robot's node, as rcl takes it: ``source:=target``.
+class GivenNode(NamedTuple):
+    """What a robot's parameter files set for one node.
 
-    ``node`` is its name in the stack, without the robot; ``kind`` is the kind of name that it is for,
-    empty if that is not known; ``why`` says what would go wrong without it.
+    ``name`` is its name without the robot, ``known`` the known node that it is (empty for none),
+    ``type`` the plugin type of a controller. ``values`` are its parameters by dotted name, those of
+    wildcard sections with them. ``manager`` is the controller manager that has it as a controller.
+    ``known`` may be a guess by its parameters: ``unknown_type`` is true if its type is not known,
+    ``like`` the known type that may be meant.
     """
 
-    robot: str
-    node: str
-    source: str
-    target: str
-    kind: str
-    why: str
-
-
-class EndpointName(NamedTuple):
-    """An endpoint of a robot's node, and its name with the remap rules.
-
-    ``node`` and ``name`` are absolute.
-    """
-
-    robot: str
-    node: str
-    endpoint: Endpoint
     name: str
+    known: str
+    type: str
+    values: Mapping[str, Given]
+    place: Place
+    manager: str = ""
+    unknown_type: bool = False
+    like: str = ""
 
 
-class NodeTable(NamedTuple):
-    """One node of one robot: its namespace, its name, its rules in order, and where it runs."""
+NOTHING: Mapping[str, Given] = {}
+
+
+class Run(NamedTuple):
+    """A node as it runs: its robot (empty for a node of all robots, or where that is not known), its
+    name in its stack or in its code, its namespace and name, its remap rules in the order in which rcl
+    takes them, and what is known of it with its parameters.
+
+    ``written`` is true for a plugin of a description, ``process_wide`` if its rules hold for its whole
+    process. ``names`` are its ends with their names under the rules, ``host_name`` is what the node is
+    called whose process it is in. ``process`` tells the processes
+    apart; helper nodes in it have ``process_rules`` and run in ``process_namespace``, controllers that
+    no stack names have the rules that are ``handed_on``. ``values`` are its parameters, ``texts`` other
+    files that a parameter names, ``untold`` parameters whose values only a run tells. ``program`` is
+    its package and executable, started with ``arguments`` at ``place``.
+    """
 
     robot: str
     node: str
     namespace: str
     name: str
-    rules: tuple[NodeRule, ...]
-    home: Home = Home()
+    rules: Rules
+    fact: NodeFacts = UNKNOWN
+    written: bool = False
+    process_wide: bool = False
+    names: Names = ()
+    host_name: str = ""
+    process: str = ""
+    process_namespace: str = ""
+    process_rules: Rules = ()
+    handed_on: Rules = ()
+    values: Mapping[str, Given] = NOTHING
+    texts: tuple[str, ...] = ()
+    untold: tuple[str, ...] = ()
+    program: str = ""
+    arguments: tuple[str, ...] = ()
+    place: Place = NOWHERE
 
     @property
     def full_name(self) -> str:
@@ -82,16 +101,42 @@ class NodeTable(NamedTuple):
         """Its name if it is another than that in its code, else empty."""
         return self.name if self.name != self.code_name else ""
 
+    @property
+    def has_fact(self) -> bool:
+        """Is known what it does?"""
+        return self.fact != UNKNOWN
 
-# Nodes with their tables.
-Pairs: TypeAlias = Sequence[tuple[NodeFacts, NodeTable]]
+    @property
+    def is_known(self) -> bool:
+        """Is known what it does, or that it only looks on?"""
+        return self.has_fact or is_viewer(self.name)
+
+    def value(self, name: str) -> object:
+        """What a parameter is set to; None where nothing sets it."""
+        given = self.values.get(name)
+        return given.value if given else None
+
+    def is_untold(self, name: str) -> bool:
+        """Does only a run tell what a parameter is set to, or if anything sets it?"""
+        return name in self.untold or (ANY_NAME in self.untold and name not in self.values)
 
 
 class Table(NamedTuple):
     """The remap table of a fleet for a release of ROS, and what it cannot do or does wrongly."""
 
     layout: str
-    nodes: tuple[NodeTable, ...]
-    names: tuple[EndpointName, ...]
+    runs: tuple[Run, ...]
     problems: tuple[Finding, ...]
     release: str
+
+    @property
+    def ends(self) -> Iterator[tuple[Run, Endpoint, str]]:
+        """Every end, with its node and its full name."""
+        yield from ((run, end, name) for run in self.runs for end, name in run.names)
+
+    def by_robot(self, robots: Iterable[str]) -> dict[str, Table]:
+        """Return the nodes of each of the robots as a table without problems."""
+        runs: dict[str, list[Run]] = defaultdict(list)
+        for run in self.runs:
+            runs[run.robot].append(run)
+        return {it: self._replace(runs=tuple(runs[it]), problems=()) for it in robots}

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -14,9 +14,9 @@ from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import every_release
-from multibot_rewrite.spelling.records import NodeRule, NodeTable, Pairs
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.targets import expanded, target_of
-from multibot_rewrite.system.records import SERVICE, TOPIC, place_of
+from multibot_rewrite.system.records import SERVICE, TOPIC
 
 # A stand-in for a second robot: names of a single robot cannot collide.
 PROBE = "multibot_probe"
@@ -57,35 +57,35 @@ class _Names(NamedTuple):
     full: frozenset[tuple[str, str]]
 
 
-def useless_rules(pairs: Pairs, release: str, controllers: Pairs | None = ()) -> Iterator[Finding]:
+def useless_rules(
+    runs: Iterable[Run], release: str, controllers: Sequence[Run] | None = ()
+) -> Iterator[Finding]:
     """Rules that match no name of their node, and rules after one that matches first.
 
     ``controllers`` are those that a plugin hands its rules on to; None if they are not known. A
     description may serve robots with other controllers: a rule for one known in ``release`` is right.
     """
-    others = [_names(*pair) for pair in controllers or ()]
+    others = [*map(_names, controllers or ())]
     known = _of_managers(release)
-    by_file = any(place_of(node.origin).line for node, _ in controllers or ())
-    for node, table in pairs:
-        own = _names(node, table)
-        wide = table.home.process_wide
+    by_file = any(it.fact.origin.place.line for it in controllers or ())
+    for run in runs:
+        own, wide, node = _names(run), run.process_wide, run.node
         asked = [own, *(others if wide else ())]
-        robot = "" if table.robot == PROBE else table.robot
+        robot = "" if run.robot == PROBE else run.robot
         seen: set[tuple[str, str]] = set()
-        for rule in table.rules:
-            text = f"{rule.source}:={rule.target}"
-            whose, source = _split(rule.source)
-            match = (whose, resolve_bound(source, rule.kind or TOPIC, own.bare))
+        for left, target in run.rules:
+            text, (whose, source) = f"{left}:={target}", _split(left)
+            match = (whose, resolve_bound(source, TOPIC, own.bare))
             if match in seen:
                 message = f"{text} has no effect: an earlier rule matches first"
-                yield LATER_RULE.finding(message, "remove it", robot=robot, node=node.name)
+                yield LATER_RULE.finding(message, "remove it", robot=robot, node=node)
             elif wide and (controllers is None or source.lstrip("/") in TF_TOPICS):
                 pass  # the rewrite itself writes those of tf
             elif wide and not whose and _is_for(source, known, by_file):
                 pass
-            elif not any(_matches(rule, it) for it in asked):
+            elif not any(_matches(left, it) for it in asked):
                 message = f"{text} matches no name of this node"
-                yield RULE_WITHOUT_NAME.finding(message, "remove it", robot=robot, node=node.name)
+                yield RULE_WITHOUT_NAME.finding(message, "remove it", robot=robot, node=node)
             seen.add(match)
 
 
@@ -106,15 +106,15 @@ def _is_for(source: str, known: frozenset[str], by_file: bool) -> bool:
     return source in known or below in known
 
 
-def _names(node: NodeFacts, table: NodeTable) -> _Names:
-    bare = bind(table.name, table.namespace, ())
+def _names(run: Run) -> _Names:
+    bare = bind(run.name, run.namespace, ())
     # What is known of a controller manager only by its rules proves none of them.
-    known = [it for it in node.endpoints if it.role or not table.home.process_wide]
+    known = [it for it in run.fact.endpoints if it.role or not run.process_wide]
     asked = {
         (kind, name)
         for endpoint in known
         for kind, source in expanded(endpoint)
-        for name in asked_for(source, endpoint, table.namespace)
+        for name in asked_for(source, endpoint, run.namespace)
     }
     return _Names(bare, frozenset((kind, resolve_bound(name, kind, bare)) for kind, name in asked))
 
@@ -125,13 +125,12 @@ def asked_for(name: str, endpoint: Endpoint, namespace: str) -> tuple[str, ...]:
     return (name, f"{above}/{name.lstrip('/')}") if endpoint.above and above else (name,)
 
 
-def _matches(rule: NodeRule, names: _Names) -> bool:
-    whose, source = _split(rule.source)
+def _matches(left: str, names: _Names) -> bool:
+    whose, source = _split(left)
     if whose not in ("", names.bare.node):
         return False
-    match = resolve_bound(source, rule.kind or TOPIC, names.bare)
-    kinds = (rule.kind,) if rule.kind else (TOPIC, SERVICE)
-    return not names.full.isdisjoint((kind, match) for kind in kinds)
+    match = resolve_bound(source, TOPIC, names.bare)
+    return not names.full.isdisjoint((kind, match) for kind in (TOPIC, SERVICE))
 
 
 def _split(source: str) -> tuple[str, str]:

@@ -20,6 +20,7 @@ from multibot_rewrite.spelling.ways import (
     Started,
     arguments,
     deliveries,
+    key_of,
     launch_arguments,
     rules_by_taker,
     started,
@@ -41,7 +42,7 @@ def ros_args(table: Table) -> str:
 
 def _comment(table: Table) -> str:
     """A line that says whose facts the table rests on, for shells and Python."""
-    return f"# ROS 2 {table.release}\n" if table.nodes else ""
+    return f"# ROS 2 {table.release}\n" if table.runs else ""
 
 
 def _ros_args(it: Started) -> str:
@@ -107,14 +108,14 @@ def as_data(table: Table) -> dict[str, object]:
         },
         "names": [
             {
-                "robot": name.robot,
-                "node": name.node,
-                "kind": name.endpoint.kind,
-                "role": name.endpoint.role,
-                "asked": name.endpoint.name,
-                "name": name.name,
+                "robot": run.robot,
+                "node": run.full_name,
+                "kind": end.kind,
+                "role": end.role,
+                "asked": end.name,
+                "name": name,
             }
-            for name in table.names
+            for run, end, name in table.ends
         ],
         "problems": [{key: getattr(it, key) for key in OF_A_PROBLEM} for it in table.problems],
     }
@@ -135,13 +136,13 @@ def as_yaml(table: Table) -> str:
 def gazebo(table: Table) -> str:
     """``<ros>`` blocks for Gazebo Classic and gz_ros2_control plugins, one for each node."""
     blocks = [f"<!-- ROS 2 {table.release} -->\n"] * bool(table.release)
-    for node in table.nodes:
+    for node in table.runs:
         rows = [f"  <namespace>{node.namespace.translate(ESCAPES)}</namespace>"] * (
             node.namespace != "/"
         )
         rows += [
-            f"  <remapping>{f'{rule.source}:={rule.target}'.translate(ESCAPES)}</remapping>"
-            for rule in node.rules
+            f"  <remapping>{f'{source}:={target}'.translate(ESCAPES)}</remapping>"
+            for source, target in node.rules
         ]
         if rows:
             comment = f"<!-- {node.robot or EVERY_ROBOT}: {node.node} -->"
@@ -163,7 +164,7 @@ def standing_by_robot(table: Table) -> Iterator[tuple[str, list[Delivery]]]:
     well; nodes for all robots are under a name that no robot can have."""
     given = deliveries(table)
     rules = rules_by_taker(given)
-    each = {it.node: it for it in reversed(given)}
+    each = {key_of(it.node): it for it in reversed(given)}
     whole = [
         it._replace(rules=rules.get((it.node.robot, it.taker), it.rules))
         if it.taker == it.node.node

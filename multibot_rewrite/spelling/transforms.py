@@ -51,6 +51,8 @@ def edges_of(
         named = _once(by_naming) if _is_static(node) else by_naming
         frames = [
             frame._replace(default=plain.get(("link", frame.default)) or named(frame.default))
+            if frame.default
+            else frame
             for frame in node.frames
         ]
         own = [*sent_by(node._replace(frames=tuple(frames)), root)]

@@ -17,44 +17,32 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import BoundNode, bind, parse_remap, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import ControllerWay, controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint
-from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
+from multibot_rewrite.spelling.records import Names, Rule, Rules, Run, Table
 from multibot_rewrite.spelling.ways import (
     COMPONENT,
     PLUGIN,
     SPAWNER,
     Delivery,
     Key,
-    Pair,
     deliveries,
+    key_of,
     rules_by_taker,
 )
 from multibot_rewrite.system.records import ACTION, PUBLISHES, TOPIC
 
 
-class RunningNode(NamedTuple):
-    """A node as it is started: the rules that it has, and the namespace and rules that its process
-    has, which are those of a helper node in it. ``handed_on`` are the rules of controllers that it
-    loads and that no stack names."""
-
-    node: NodeTable
-    way: str
-    rules: tuple[Pair, ...]
-    process_namespace: str
-    process_rules: tuple[Pair, ...]
-    handed_on: tuple[Pair, ...] = ()
-
-
 class _Standing(NamedTuple):
     """The rules by robot and taker, and those that hold for the whole process of the simulator."""
 
-    rules: Mapping[Key, tuple[Pair, ...]]
-    world: tuple[Pair, ...]
-    nodes: Mapping[Key, NodeTable]
+    rules: Mapping[Key, Rules]
+    world: Rules
+    nodes: Mapping[Key, Run]
     controllers: ControllerWay
 
 
-def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[RunningNode]:
-    """Every node with its rules; those that stand at one of the ways ``left_out`` are missing."""
+def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tuple[Delivery, Run]]:
+    """Where the rules of each node stand, and the node with the rules that rcl has for it and its
+    process; those that stand at one of the ways ``left_out`` are missing."""
     meant = deliveries(table)
     given = [it for it in meant if it.way not in left_out]
     standing = _Standing(
@@ -64,16 +52,16 @@ def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[Runn
         controller_way(table.release),
     )
     # A component's first delivery is its own, the second that of its helper nodes.
-    first = {it.node: it for it in reversed(meant)}
-    yield from (_running(it, standing) for it in reversed(first.values()))
+    first = {key_of(it.node): it for it in reversed(meant)}
+    yield from ((it, _running(it, standing)) for it in reversed(first.values()))
 
 
-def _of_simulator(given: Iterable[Delivery]) -> tuple[Pair, ...]:
+def _of_simulator(given: Iterable[Delivery]) -> Rules:
     """The rules of the first plugin that starts ROS in the simulator."""
-    return next((it.rules for it in given if it.node.home.process_wide), ())
+    return next((it.rules for it in given if it.node.process_wide), ())
 
 
-def _running(it: Delivery, standing: _Standing) -> RunningNode:
+def _running(it: Delivery, standing: _Standing) -> Run:
     node, own = it.node, standing.rules.get((it.node.robot, it.taker), ())
     if it.way == SPAWNER:
         # A tf listener that its code makes has the arguments of the manager's process alone.
@@ -86,40 +74,44 @@ def _running(it: Delivery, standing: _Standing) -> RunningNode:
             ),
             *own,
         )
-        return RunningNode(node, it.way, rules, node.namespace, process)
+        return _in_process(node, rules, node.namespace, process)
     if it.way == PLUGIN:
         rules, wide = _of_plugin(node, own, standing), standing.world
         given = own if standing.controllers.forwarded else ()
         handed_on = wide if standing.controllers.process_wide else given
-        return RunningNode(node, it.way, rules, node.namespace, wide, handed_on)
+        return _in_process(node, rules, node.namespace, wide)._replace(handed_on=handed_on)
     taker = standing.nodes.get((node.robot, it.taker), node)
-    container = standing.nodes.get((node.robot, taker.home.container))
+    container = standing.nodes.get((node.robot, taker.fact.container))
     if container is None:
-        return RunningNode(node, it.way, own, taker.namespace, own)
+        return _in_process(node, own, taker.namespace, own)
     process = standing.rules.get((node.robot, container.node), ())
     # What a component makes has the arguments of the process as well, the component has not.
     rules = own if it.way == COMPONENT else (*own, *process)
-    return RunningNode(node, it.way, rules, container.namespace, process)
+    return _in_process(node, rules, container.namespace, process)
 
 
-def _of_plugin(node: NodeTable, own: tuple[Pair, ...], standing: _Standing) -> tuple[Pair, ...]:
+def _in_process(run: Run, rules: Rules, namespace: str, wide: Rules) -> Run:
+    return run._replace(rules=rules, process_namespace=namespace, process_rules=wide)
+
+
+def _of_plugin(node: Run, own: Rules, standing: _Standing) -> Rules:
     """A plugin's rules are its own; nodes without any have those of the first robot's plugin."""
-    if node.home.written and not node.home.process_wide:
+    if node.written and not node.process_wide:
         return own
-    if not node.home.written or standing.controllers.process_wide:
+    if not node.written or standing.controllers.process_wide:
         return standing.world
     return tuple(dict.fromkeys((*own, *standing.world)))
 
 
-def is_stand_in(node: NodeTable, endpoint: Endpoint) -> bool:
+def is_stand_in(node: Run, endpoint: Endpoint) -> bool:
     """Is this a topic of a controller of the plugin, and not of the controller manager itself?
 
     Those are what the plugin is known to publish, and without a role what its rules name.
     """
-    return node.home.process_wide and endpoint.role in (PUBLISHES, "")
+    return node.process_wide and endpoint.role in (PUBLISHES, "")
 
 
-def bound_to(node: NodeTable, rules: Iterable[Pair]) -> BoundNode:
+def bound_to(node: Run, rules: Iterable[Rule]) -> BoundNode:
     """The node under these rules."""
     found = (parse_remap(f"{source}:={target}") for source, target in rules)
     return bind(node.name, node.namespace, filter(None, found))
@@ -144,85 +136,81 @@ def not_taken(table: Table) -> Iterator[Finding]:
     """
     of_manager = controller_way(table.release).of_manager
     some = _of_robots(table, _robots_worth_a_look(table))
-    names: dict[tuple[str, str], list[EndpointName]] = {}
-    for it in some.names:
-        if not (it.endpoint.fixed or it.endpoint.when):
-            names.setdefault((it.robot, it.node), []).append(it)
+    names: dict[tuple[str, str], Names] = {}
+    for run in some.runs:
+        own = tuple(it for it in run.names if not (it[0].fixed or it[0].when))
+        key = run.robot, run.full_name
+        names[key] = (*names.get(key, ()), *own)
     owners = cache(partial(_owners, table))
-    for running in _worth_a_look(some):
-        plain = tuple((it.source, it.target) for it in running.node.rules)
-        if running.node.home.process_wide or running.rules != plain:
-            own = names.get((running.node.robot, running.node.full_name), ())
-            if running.node.home.process_wide and not of_manager:
-                own = [it for it in own if it.endpoint.role != PUBLISHES]
+    for it, running in _worth_a_look(some):
+        if running.process_wide or running.rules != it.node.rules:
+            own = names.get((running.robot, running.full_name), ())
+            if running.process_wide and not of_manager:
+                own = tuple(it for it in own if it[0].role != PUBLISHES)
             wrong = dict.fromkeys(_wrong(own, running, owners))
             if wrong:
-                yield _finding(running, list(wrong), table.release)
+                yield _finding(it, list(wrong), table.release)
 
 
 def _robots_worth_a_look(table: Table) -> set[str]:
     """Those of which descriptions decide something, and the first with each of the stack's nodes."""
     first: dict[str, set[str]] = {}
     found = {""}
-    for it in table.nodes:
+    for it in table.runs:
         robots = first.setdefault(it.node, set())
-        if len(robots) < ENOUGH or it.home.plugin or it.home.is_controller:
+        if len(robots) < ENOUGH or it.fact.plugin or it.fact.is_controller:
             robots.add(it.robot)
             found.add(it.robot)
     return found
 
 
 def _of_robots(table: Table, robots: Set[str]) -> Table:
-    return table._replace(
-        nodes=tuple(it for it in table.nodes if it.robot in robots),
-        names=tuple(it for it in table.names if it.robot in robots),
-    )
+    return table._replace(runs=tuple(it for it in table.runs if it.robot in robots))
 
 
 def _owners(table: Table) -> dict[str, set[str]]:
     """The robots that have each name."""
     owners: dict[str, set[str]] = {}
-    for it in table.names:
-        owners.setdefault(it.name, set()).add(it.robot)
+    for run, _, name in table.ends:
+        owners.setdefault(name, set()).add(run.robot)
     return owners
 
 
-def _worth_a_look(table: Table) -> Iterator[RunningNode]:
+def _worth_a_look(table: Table) -> Iterator[tuple[Delivery, Run]]:
     """What descriptions decide, of all robots; of the stack's nodes, which all have alike, two."""
     seen: Counter[str] = Counter()
-    for it in running_nodes(table):
+    for it, running in running_nodes(table):
         seen[it.node.node] += 1
-        if it.node.home.plugin or it.node.home.is_controller or seen[it.node.node] <= ENOUGH:
-            yield it
+        if it.node.fact.plugin or it.node.fact.is_controller or seen[it.node.node] <= ENOUGH:
+            yield it, running
 
 
 def _wrong(
-    names: Iterable[EndpointName],
-    running: RunningNode,
+    names: Names,
+    running: Run,
     owners: Callable[[], Mapping[str, set[str]]],
 ) -> Iterator[str]:
     """Those called otherwise than the table says: as in the code, or like something of a robot."""
-    node = running.node
-    own, theirs, bare = (bound_to(node, it) for it in (running.rules, running.handed_on, ()))
-    for it in names:
-        kind = TOPIC if it.endpoint.kind == ACTION else it.endpoint.kind
-        given = theirs if is_stand_in(node, it.endpoint) else own
-        found = resolve_bound(it.endpoint.name, kind, given)
-        if found == it.name:
+    own, theirs, bare = (bound_to(running, it) for it in (running.rules, running.handed_on, ()))
+    for end, name in names:
+        kind = TOPIC if end.kind == ACTION else end.kind
+        given = theirs if is_stand_in(running, end) else own
+        found = resolve_bound(end.name, kind, given)
+        if found == name:
             continue
-        is_bare = found == resolve_bound(it.endpoint.name, kind, bare)
-        if is_bare or node.robot not in owners().get(found, {node.robot}):
-            yield it.endpoint.name
+        is_bare = found == resolve_bound(end.name, kind, bare)
+        if is_bare or running.robot not in owners().get(found, {running.robot}):
+            yield end.name
 
 
-def _finding(running: RunningNode, kept: list[str], release: str) -> Finding:
-    node, names = running.node, ", ".join(kept)
+def _finding(it: Delivery, kept: list[str], release: str) -> Finding:
+    node, names = it.node, ", ".join(kept)
     message = f"on {release} no rule reaches it for {names}, though one is written"
-    hint = f"give its rules to the process of {node.home.host or node.name}"
-    if node.home.process_wide and controller_way(release).spawner:
+    hint = f"give its rules to the process of {node.fact.host or node.name}"
+    if node.process_wide and controller_way(release).spawner:
         message = f"on {release} its controllers do not get its rules for {names}"
         hint = "name their stack, and start each with its spawner's --controller-ros-args"
-    elif running.way == PLUGIN:
+    elif it.way == PLUGIN:
         message = f"on {release} it gets the rules of the first robot alone, none for {names}"
         hint = "give each robot a namespace, with --topics namespace"
         if node.namespace != "/":

@@ -18,7 +18,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER
-from multibot_rewrite.spelling.records import EndpointName, NodeRule, NodeTable, Table
+from multibot_rewrite.spelling.records import Rule, Rules, Run, Table
 from multibot_rewrite.spelling.targets import expanded
 
 PROCESS, HOST, COMPONENT = "process", "host", "component"
@@ -26,7 +26,6 @@ SPAWNER, PLUGIN = "spawner", "plugin"
 WAYS = (PROCESS, HOST, COMPONENT, SPAWNER, PLUGIN)
 # A costmap has the remap rules of the component that makes it (navigation2 4cade8d2f, 1.5.0).
 COSTMAP_HAS_RULES_OF_ITS_PARENT = "lyrical+"
-Pair: TypeAlias = tuple[str, str]
 
 
 class Delivery(NamedTuple):
@@ -36,107 +35,107 @@ class Delivery(NamedTuple):
     host or its container; for a plugin the node that the plugin is known by.
     """
 
-    node: NodeTable
+    node: Run
     way: str
     taker: str
-    rules: tuple[Pair, ...]
+    rules: Rules
 
 
 # A robot and a node's name in its stack.
 Key: TypeAlias = tuple[str, str]
-Nodes: TypeAlias = Mapping[Key, NodeTable]
+Nodes: TypeAlias = Mapping[Key, Run]
 Sources: TypeAlias = Mapping[str, frozenset[str]]
+
+
+def key_of(run: Run) -> Key:
+    """Its robot and its name in its stack."""
+    return run.robot, run.node
 
 
 def deliveries(table: Table) -> tuple[Delivery, ...]:
     """Where the rules of every node stand; a node of several nodes' rules has them in that order."""
-    nodes = merged(table.nodes)
+    nodes = merged(table.runs)
     known = {(it.robot, it.node): it for it in nodes}
-    helpers = _of_helpers(table.names)
+    helpers = _of_helpers(table.runs)
     return tuple(it for node in nodes for it in _deliveries(node, known, table.release, helpers))
 
 
-def rules_by_taker(given: Iterable[Delivery]) -> dict[Key, tuple[Pair, ...]]:
+def rules_by_taker(given: Iterable[Delivery]) -> dict[Key, Rules]:
     """The rules by robot and taker; those for hosted nodes name them, so they come first.
 
     A plugin has only what is written in its description.
     """
-    found: dict[Key, dict[Pair, None]] = {}
+    found: dict[Key, dict[Rule, None]] = {}
     for it in sorted(given, key=lambda it: it.way != HOST):
-        if it.way != PLUGIN or it.node.home.written:
+        if it.way != PLUGIN or it.node.written:
             found.setdefault((it.node.robot, it.taker), {}).update(dict.fromkeys(it.rules))
     return {key: tuple(rules) for key, rules in found.items()}
 
 
-def merged(nodes: Iterable[NodeTable]) -> tuple[NodeTable, ...]:
+def merged(nodes: Iterable[Run]) -> tuple[Run, ...]:
     """The nodes, each once: one that a description and a stack have stands in the description."""
-    found: dict[tuple[str, str], NodeTable] = {}
+    found: dict[tuple[str, str], Run] = {}
     for node in nodes:
         key = (node.robot, node.full_name)
         before = found.setdefault(key, node)
-        if node.home.written and not before.home.written:
+        if node.written and not before.written:
             found[key] = node._replace(node=before.node)
     return tuple(found.values())
 
 
-def way_of(node: NodeTable, known: Nodes, release: str) -> str:
+def way_of(node: Run, known: Nodes, release: str) -> str:
     """How a node of the table gets its rules."""
-    home = node.home
-    if home.plugin:
+    if node.fact.plugin:
         return PLUGIN
-    host = known.get((node.robot, home.host))
-    if home.is_controller:
+    host = known.get((node.robot, node.fact.host))
+    if node.fact.is_controller:
         if controller_way(release).spawner:
             return SPAWNER
-        return PLUGIN if host and host.home.plugin else HOST
+        return PLUGIN if host and host.fact.plugin else HOST
     if host:
         return HOST
-    return COMPONENT if (node.robot, home.container) in known else PROCESS
+    return COMPONENT if (node.robot, node.fact.container) in known else PROCESS
 
 
-def taker_of(node: NodeTable, known: Nodes, release: str) -> str:
+def taker_of(node: Run, known: Nodes, release: str) -> str:
     """The node that is started with the rules of this one."""
-    host = known.get((node.robot, node.home.host))
-    if way_of(node, known, release) not in (HOST, PLUGIN) or not node.home.host:
+    host = known.get((node.robot, node.fact.host))
+    if way_of(node, known, release) not in (HOST, PLUGIN) or not node.fact.host:
         return node.node
     parent = has_release(COSTMAP_HAS_RULES_OF_ITS_PARENT, release)
     if host and way_of(host, known, release) == COMPONENT and not parent:
-        return host.home.container
-    return node.home.host
+        return host.fact.container
+    return node.fact.host
 
 
-def _deliveries(
-    node: NodeTable, known: Nodes, release: str, helpers: Sources
-) -> Iterator[Delivery]:
+def _deliveries(node: Run, known: Nodes, release: str, helpers: Sources) -> Iterator[Delivery]:
     way, taker = way_of(node, known, release), taker_of(node, known, release)
     lead = f"{node.name}:" if way == HOST else ""
-    yield Delivery(node, way, taker, tuple(_pair(it, lead) for it in node.rules))
+    yield Delivery(
+        node, way, taker, tuple((f"{lead}{source}", target) for source, target in node.rules)
+    )
     # A helper node has the rules of its process alone, and not by the name of the node it helps.
     process = _process_of(node, known)
     asked = helpers.get(node.full_name, frozenset())
-    asked -= {it.source for it in process.rules}
-    rules = tuple(_pair(it) for it in node.rules if it.source in asked)
+    asked -= {source for source, _ in process.rules}
+    rules = tuple(it for it in node.rules if it[0] in asked)
     if rules and process is not node:
         yield Delivery(node, HOST, process.node, rules)
 
 
-def _process_of(node: NodeTable, known: Nodes) -> NodeTable:
+def _process_of(node: Run, known: Nodes) -> Run:
     """The node whose process this one is in: its host, the container of either, or itself."""
-    host = known.get((node.robot, node.home.host), node)
-    return known.get((node.robot, host.home.container), host)
+    host = known.get((node.robot, node.fact.host), node)
+    return known.get((node.robot, host.fact.container), host)
 
 
-def _pair(rule: NodeRule, lead: str = "") -> Pair:
-    return f"{lead}{rule.source}", rule.target
-
-
-def _of_helpers(names: Iterable[EndpointName]) -> Sources:
+def _of_helpers(runs: Iterable[Run]) -> Sources:
     """By the full name of a node: what helper nodes of it use."""
     found: dict[str, frozenset[str]] = {}
-    for it in names:
-        if it.endpoint.helper:
-            asked = {name for _, name in expanded(it.endpoint)}
-            found[it.node] = found.get(it.node, frozenset()) | asked
+    for run in runs:
+        asked = {name for end, _ in run.names if end.helper for _, name in expanded(end)}
+        if asked:
+            found[run.full_name] = found.get(run.full_name, frozenset()) | asked
     return found
 
 
@@ -151,9 +150,9 @@ class Started(NamedTuple):
     ``way`` is one of ``STARTED``; ``manager`` is the name of a controller's manager.
     """
 
-    node: NodeTable
+    node: Run
     way: str
-    rules: tuple[Pair, ...]
+    rules: Rules
     manager: str = MANAGER
 
 
@@ -164,19 +163,18 @@ def started(table: Table) -> Iterator[Started]:
     """
     given = deliveries(table)
     rules = rules_by_taker(given)
-    names = {it.node.robot: it.node.name for it in given if it.node.node == MANAGER}
-    controllers = (it.node for it in given if it.node.home.is_controller)
+    controllers = (it.node for it in given if it.node.fact.is_controller)
     # The node that a stack has for the spawner of a controller is that spawner.
     spawners = {(it.robot, f"spawner_{it.node}") for it in controllers}
     # A node's first delivery is its own, another one that of its helper nodes.
-    first = {it.node: it for it in reversed(given)}
+    first = {key_of(it.node): it for it in reversed(given)}
     for it in given:
         node, own = it.node, rules.get((it.node.robot, it.taker), ())
-        if node.home.is_controller and first[node] is not it:
+        if node.fact.is_controller and first[key_of(node)] is not it:
             continue
-        if node.home.is_controller:
+        if node.fact.is_controller:
             taken = own if it.way == SPAWNER else ()
-            yield Started(node, SPAWNER, taken, names.get(node.robot, MANAGER))
+            yield Started(node, SPAWNER, taken, node.host_name or MANAGER)
         elif it.way in STARTED and (node.robot, node.node) not in spawners:
             yield Started(node, it.way, own)
 
@@ -211,7 +209,7 @@ def spawner_arguments(it: Started) -> list[str]:
     return [it.node.name, *manager, *(["--controller-ros-args", rules] if rules else [])]
 
 
-def ros_arguments(namespace: str, name: str, rules: Iterable[Pair]) -> list[str]:
+def ros_arguments(namespace: str, name: str, rules: Iterable[Rule]) -> list[str]:
     """``--ros-args`` with namespace, name (empty for that in the code) and rules; may be empty."""
     placed = [f"__ns:={namespace}"] if namespace != "/" else []
     named = [f"__node:={name}"] if name else []

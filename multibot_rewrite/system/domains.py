@@ -5,9 +5,11 @@ so what has one name in two of them is no clash. What was seen of them -> one vi
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Mapping, Set
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.wording import only, unique
 from multibot_rewrite.system.merging import WORST_LAST
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import Environment, System
@@ -36,16 +38,53 @@ def by_domain(plan: System) -> dict[int, System]:
     return {it: _part(plan, numbers, own, it) for it in sorted({*own.values()})}
 
 
-def _part(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: int) -> System:
+def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
+    """One view of nodes in several domains, taken apart: a node is in the domain that the plan has it
+    in, else in that of its robot by its name, or by those of all its ends; any other one in that of all
+    robots."""
+    numbers, robot = domain_of(plan), whose_by_plan(plan).robot
+    planned = {it.name: it.robot for it in plan.nodes}
+    theirs: dict[str, list[str]] = defaultdict(list)
+    for it in seen.ends:
+        theirs[it.node].append(robot(it.name))
+
+    def domain(node: str) -> int:
+        if node in planned:
+            return numbers[planned[node]]
+        return numbers[robot(node) or only(unique(filter(None, theirs[node])))]
+
+    own = {it.name: domain(it.name) for it in seen.nodes}
+    return {at: _of_nodes(seen, own, at) for at in sorted({*own.values(), *numbers.values()})}
+
+
+def _of_nodes(system: System, own: Mapping[str, int], at: int) -> System:
+    """What the nodes of a domain have of a system; a transform of nodes of several is in each."""
     nodes = {it for it, number in own.items() if number == at}
-    robots = tuple(it for it in plan.robots if numbers[it.name] == at)
-    ends = tuple(it for it in plan.ends if it.node in nodes)
-    return plan._replace(
-        nodes=tuple(it for it in plan.nodes if it.name in nodes),
+    ends = tuple(it for it in system.ends if it.node in nodes)
+    sent = {it.name for it in ends}
+    shared = (it for it in system.edges if not nodes.isdisjoint(it.publishers))
+    edges = (
+        it._replace(publishers=tuple(filter(nodes.__contains__, it.publishers))) for it in shared
+    )
+    return system._replace(
+        nodes=tuple(it for it in system.nodes if it.name in nodes),
         ends=ends,
+        edges=tuple(it._replace(several=len(it.publishers) > 1) for it in edges),
+        heard=tuple(it for it in system.heard if it.topic in sent),
+        parameters=tuple(it for it in system.parameters if it.node in nodes),
+        controllers=tuple(it for it in system.controllers if it.manager in nodes),
+        interfaces=tuple(it for it in system.interfaces if it.node in nodes),
+        lookups=tuple(it for it in system.lookups if it.node in nodes),
+        addresses=tuple(it for it in system.addresses if it.node in nodes),
+    )
+
+
+def _part(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: int) -> System:
+    part = _of_nodes(plan, own, at)
+    nodes = {it.name for it in part.nodes}
+    return part._replace(
         edges=tuple(it for it in plan.edges if nodes.issuperset(it.publishers)),
-        parameters=tuple(it for it in plan.parameters if it.node in nodes),
-        robots=robots,
+        robots=tuple(it for it in plan.robots if numbers[it.name] == at),
         topics=tuple(it for it in plan.topics if it.name in _named(plan, numbers, at)),
         gaps=(),
         domains=(),

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Set
 from functools import cache
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, USUAL_FRAMES
@@ -77,10 +77,10 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     frames = {it for edge in graph.edges for it in (edge.child, edge.parent)}
     if namespaces:
         found = [GuessedRobot(_name(it, namespaces), it) for it in namespaces]
-        return tuple(with_frames(it, frames) for it in found)
+        return tuple(with_frames(found, frames))
     words = _last_words(graph)
     if words:
-        return tuple(with_frames(GuessedRobot(it, ""), frames) for it in words)
+        return tuple(with_frames((GuessedRobot(it, "") for it in words), frames))
     return tuple(_by_frames(frames - parts, _parents(graph.edges)))
 
 
@@ -173,25 +173,25 @@ def _last_words(graph: System) -> list[str]:
     )
 
 
-def _parents(edges: Iterable[Edge]) -> Mapping[str, frozenset[str]]:
-    """The frames on which each hangs, and those on which these do."""
+def _parents(edges: Iterable[Edge]) -> Mapping[str, Set[str]]:
+    """The frames on which each hangs."""
     direct: dict[str, set[str]] = defaultdict(set)
     for edge in edges:
         direct[edge.child].add(edge.parent)
-
-    def above(frame: str) -> frozenset[str]:
-        todo, found = [frame], set[str]()
-        for it in todo:  # grows
-            todo += direct.get(it, set()) - found
-            found |= direct.get(it, set())
-        return frozenset(found - {frame})
-
-    return {frame: above(frame) for frame in [*direct]}
+    return direct
 
 
-def _by_frames(
-    frames: Iterable[str], parents: Mapping[str, Collection[str]]
-) -> Iterator[GuessedRobot]:
+def _above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:
+    """The frames on which these hang, and those on which those do."""
+    todo, found = [*frames], set[str]()
+    for it in todo:  # grows
+        new = parents.get(it, set()) - found
+        todo += new
+        found |= new
+    return found
+
+
+def _by_frames(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Iterator[GuessedRobot]:
     """Two or more words that are beside the usual names of frames in the same way, none of which hangs
     on another: that would be a part of it."""
     ways: dict[tuple[str, bool], dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
@@ -211,28 +211,33 @@ def _by_frames(
             yield GuessedRobot(word, "", before, behind, True)
 
 
-def _not_parts(
-    words: Mapping[str, Collection[str]], parents: Mapping[str, Collection[str]]
-) -> set[str]:
+def _not_parts(words: Mapping[str, Collection[str]], parents: Mapping[str, Set[str]]) -> set[str]:
     """The words whose frames hang on none of another word's."""
     owners = {frame: word for word, frames in words.items() for frame in frames}
     above = {
-        word: {owners.get(it, word) for frame in frames for it in parents.get(frame, ())}
+        word: {owners.get(it, word) for it in _above(frames, parents)}
         for word, frames in words.items()
     }
     return {word for word, found in above.items() if found <= {word}}
 
 
-def with_frames(robot: GuessedRobot, frames: Iterable[str]) -> GuessedRobot:
-    """With the way in which most frames have its name."""
-    word = robot.namespace.rpartition("/")[2] or robot.name
-    times: dict[tuple[str, str], int] = defaultdict(int)
-    for frame in frames:
-        for separator in ("/", *SEPARATORS):
-            times[word + separator, ""] += frame.startswith(word + separator)
-            times["", separator + word] += frame.endswith(separator + word)
-    way = max(times, key=times.__getitem__, default=("", ""))
-    return robot._replace(before=way[0], behind=way[1]) if times.get(way) else robot
+def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterator[GuessedRobot]:
+    """Each with the way in which most frames have its name."""
+    times = Counter(way for frame in frames for way in _ways(frame))
+    for robot in robots:
+        word = robot.namespace.rpartition("/")[2] or robot.name
+        marks = ("/", *SEPARATORS)
+        ways = [way for it in marks for way in ((word + it, ""), ("", it + word))]
+        way = max(ways, key=times.__getitem__)
+        yield robot._replace(before=way[0], behind=way[1]) if times[way] else robot
+
+
+def _ways(frame: str) -> Iterator[tuple[str, str]]:
+    """The words that a frame begins and ends with, with what separates them from the rest."""
+    for at, it in enumerate(frame):
+        if it == "/" or it in SEPARATORS:
+            yield frame[: at + 1], ""
+            yield "", frame[at:]
 
 
 def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
@@ -242,7 +247,15 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
     by_word = {it.namespace or it.name: it for it in there}
     by_word |= {it.name: it for it in there}
     of_name = cache(lambda name: _whose(name, by_word))
-    of_frame = cache(lambda frame: _whose_frame(frame, known))
+    by_way: dict[tuple[str, str], int] = {}
+    for at, it in enumerate(known):
+        for way in ((it.before, ""), ("", it.behind)):
+            by_way.setdefault(way, at)
+
+    @cache
+    def of_frame(frame: str) -> GuessedRobot | None:
+        first = min((by_way[way] for way in _ways(frame) if way in by_way), default=None)
+        return None if first is None else known[first]
 
     def name_of(robot: GuessedRobot | None) -> str:
         return robot.name if robot else ""
@@ -277,15 +290,6 @@ def _words_in(name: str) -> Iterator[str]:
     for found in re.finditer("_", last):
         yield last[: found.start()]
         yield last[found.end() :]
-
-
-def _whose_frame(frame: str, robots: Iterable[GuessedRobot]) -> GuessedRobot | None:
-    for robot in robots:
-        if robot.before and frame.startswith(robot.before):
-            return robot
-        if robot.behind and frame.endswith(robot.behind):
-            return robot
-    return None
 
 
 def _plain(name: str, robot: GuessedRobot | None) -> str:

@@ -276,6 +276,16 @@ def _by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
     }
 
 
+@once
+def spaces(it: Index) -> Set[str]:
+    """The namespaces that have a node in them."""
+    found: set[str] = set()
+    for space in it.nodes:
+        while (space := space.rpartition("/")[0]) and space not in found:
+            found.add(space)
+    return found
+
+
 def ends_of(it: Index, name: str) -> Iterator[End]:
     """All ends of a name, whatever their kind."""
     for kind in KINDS:
@@ -345,8 +355,12 @@ def robots_of(it: Index, nodes: Iterable[str]) -> tuple[str, ...]:
 
     A node outside of all that is called as one of theirs is of one more robot, which has no namespace.
     """
-    known = unique(nodes)
-    robots = unique(filter(None, map(it.robot, known)))
-    theirs = {it.plain(node) for node in known if it.robot(node)}
-    twins = any(node in theirs for node in known if not it.robot(node))
-    return (*robots, NO_NAMESPACE) if twins else robots
+    known, memo = unique(nodes), it.memo.setdefault(robots_of, {})
+    # All nodes that send tf are asked for with each of their frames.
+    if known not in memo:
+        robots = unique(filter(None, map(it.robot, known)))
+        theirs = {it.plain(node) for node in known if it.robot(node)}
+        twins = any(node in theirs for node in known if not it.robot(node))
+        memo[known] = (*robots, NO_NAMESPACE) if twins else robots
+    found: tuple[str, ...] = memo[known]
+    return found

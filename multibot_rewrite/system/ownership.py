@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 
+from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.records import System
 
 # What may separate a robot's name from the rest of a segment.
 SEPARATORS = "_-."
 NO_TAGS: Mapping[str, str] = {}
+NO_WORDS: frozenset[str] = frozenset()
 
 
 class NameOwnership(NamedTuple):
@@ -22,7 +24,9 @@ class NameOwnership(NamedTuple):
     with its slashes: ``robots`` maps tags to robots, ``tags`` robots to tags where the tag is not the
     robot's name. ``ambiguous_words`` are
     tags that occur as an ordinary word as well (a robot ``scan``). ``robot_is_last`` says that the
-    tag is at the end of a name; ``levels`` is the largest number of segments of a tag.
+    tag is at the end of a name; ``levels`` is the largest number of segments of a tag. A tag that is
+    only a part of a segment counts if the rest is one of ``plain_names``, or if there are none:
+    ``rover_2/lidar`` is a name of ``rover`` only if ``2/lidar`` is one that robots have.
     """
 
     exact: Mapping[str, str]
@@ -32,6 +36,7 @@ class NameOwnership(NamedTuple):
     robot_is_last: bool
     tags: Mapping[str, str] = NO_TAGS
     levels: int = 1
+    plain_names: frozenset[str] = NO_WORDS
 
     def robot(self, name: str) -> str:
         """The robot that a name belongs to, or an empty string."""
@@ -46,21 +51,28 @@ class NameOwnership(NamedTuple):
         return self._robot_by_tag(name)
 
     def _robot_by_tag(self, name: str) -> str:
+        at_its_place = self.robot_at_its_place(name)
+        if at_its_place:
+            return at_its_place
         segments = name.strip("/").split("/")
-        if len(segments) > 1:
-            found = self._at_its_place(segments) or self._longest(segments)
-            if found:
-                return self.robots[found]
+        if len(segments) > 1 and (found := self._longest(segments)):
+            return self.robots[found]
         found = self._longest(end for segment in segments for end in _ends(segment))
-        return self.robots.get(found, "")
+        robot = self.robots.get(found, "")
+        once = self.without_robot(name, robot)
+        # It may have the tag at both ends.
+        is_known = not {once, self.without_robot(once, robot)}.isdisjoint(self.plain_names)
+        return robot if is_known or not self.plain_names else ""
 
-    def _at_its_place(self, segments: Sequence[str]) -> str:
-        """The tag at the end where this plan has them; the longest of those with several levels."""
+    def robot_at_its_place(self, name: str) -> str:
+        """The robot whose tag is at the end of a name where this plan has them, or an empty string; of
+        tags of several levels the longest counts."""
+        segments = name.strip("/").split("/")
         if self.robot_is_last:
-            return segments[-1] if segments[-1] in self.robots else ""
+            return self.robots.get(segments[-1], "") if len(segments) > 1 else ""
         deepest = min(self.levels, len(segments) - 1)
         ways_in = ("/".join(segments[:count]) for count in range(deepest, 0, -1))
-        return next((it for it in ways_in if it in self.robots), "")
+        return next((self.robots[it] for it in ways_in if it in self.robots), "")
 
     def _longest(self, parts: Iterable[str]) -> str:
         """The longest tag among the parts: ``arm_left`` rather than ``arm``."""
@@ -87,7 +99,7 @@ class NameOwnership(NamedTuple):
         if places and len(segments) > 1:
             del segments[places[-1 if self.robot_is_last else 0]]
         else:
-            segments = [_without_tag(segment, tag) for segment in segments]
+            segments = [_without_tag(it, tag, self.robot_is_last) for it in segments]
         return slash + "/".join(segments)
 
 
@@ -189,34 +201,56 @@ def _ends(segment: str) -> Iterator[str]:
             yield segment[at + 1 :]
 
 
-def _without_tag(segment: str, tag: str) -> str:
-    after, before = segment.removeprefix(tag), segment.removesuffix(tag)
-    if after != segment and after.startswith(tuple(SEPARATORS)):
-        return after.lstrip(SEPARATORS)
-    if before != segment and before.endswith(tuple(SEPARATORS)):
-        return before.rstrip(SEPARATORS)
-    return segment
+def _without_tag(segment: str, tag: str, is_last: bool) -> str:
+    """Return the segment without the tag: of ``robot_state_publisher_robot`` that where tags are."""
+    before, after = segment.removesuffix(tag), segment.removeprefix(tag)
+    ends = {True: (before, before.rstrip(SEPARATORS)), False: (after, after.lstrip(SEPARATORS))}
+    found = (
+        rest
+        for with_separator, rest in (ends[is_last], ends[not is_last])
+        if with_separator not in (segment, rest)
+    )
+    return next(found, segment)
 
 
 def name_ownership(plan: System) -> NameOwnership:
     """The ownership of graph names: nodes, topics, services, actions."""
     nodes = {it.name: it.robot for it in plan.nodes if it.robot}
-    planned = ((w.name, nodes[w.node]) for w in plan.ends if w.node in nodes)
+    planned = [(w.name, nodes[w.node]) for w in plan.ends if w.node in nodes]
     robots = {robot.name: robot.name for robot in plan.robots}
     tf = ((robot.tf_topic, robot.name) for robot in plan.robots)
-    last = _is_last((*nodes.items(), *tf))
-    exact = _of_one_robot((*nodes.items(), *planned))
+    last = _is_last((*nodes.items(), *planned, *tf))
     levels = max((name.count("/") + 1 for name in robots), default=1)
-    draft = NameOwnership(exact, nodes, robots, frozenset(), last, levels=levels)
-    return draft._replace(ambiguous_words=frozenset(robots.keys() & _plain_words(plan, draft)))
+    draft = NameOwnership({}, nodes, robots, frozenset(), last, levels=levels)
+    topics = _robots_of_topics(plan, draft)
+    draft = draft._replace(exact={**topics, **_of_one_robot((*nodes.items(), *planned))})
+    words = _plain_words(plan, draft, topics)
+    return draft._replace(ambiguous_words=frozenset(robots.keys() & words))
 
 
-def _plain_words(plan: System, draft: NameOwnership) -> set[str]:
+def _robots_of_topics(plan: System, draft: NameOwnership) -> dict[str, str]:
+    """The topics of which a plan says more, each with the robot whose tag is at its place there, or in
+    the topic that it is below: of /scan/a/points that of /scan/a."""
+    found: dict[str, str] = {}
+    for name in sorted(it.name for it in plan.topics):
+        robot = found.get(name.rpartition("/")[0]) or draft.robot_at_its_place(name)
+        if robot:
+            found[name] = robot
+    return found
+
+
+def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) -> set[str]:
     """The words of nodes and names without their robot's name, as far as they may be a robot."""
     nodes = draft.nodes
     likely = draft.robots.keys() & _words({w.code_name for w in plan.ends})
-    in_code = {(w.code_name, nodes.get(w.node, "")) for w in plan.ends if likely}
-    return _words({draft.without_robot(name, robot) for name, robot in (*in_code, *nodes.items())})
+    # A node of all robots may name a robot's topic in its code, as a domain_bridge does.
+    in_code = {
+        (w.code_name, nodes.get(w.node) or draft.exact.get(w.code_name, ""))
+        for w in plan.ends
+        if likely
+    }
+    every = (*in_code, *nodes.items(), *topics.items())
+    return _words({draft.without_robot(name, robot) for name, robot in every})
 
 
 def frame_ownership(plan: System) -> NameOwnership:
@@ -225,12 +259,27 @@ def frame_ownership(plan: System) -> NameOwnership:
     others = ((frame, robot.name) for robot in plan.robots for frame in robot.other_frames)
     tags = {robot.name: robot.tag for robot in plan.robots if robot.tag}
     robots = {tags.get(robot.name, robot.name): robot.name for robot in plan.robots}
-    last = _is_last((frame, tags.get(robot, robot)) for frame, robot in declared)
+    tagged = [(frame, tags.get(robot, robot)) for frame, robot in declared]
+    loose = {tag for frame, tag in tagged if not _is_glued(frame, tag)}
+    is_glued = not loose.issuperset(tag for _, tag in tagged)
+    # lidar_link of a robot link has no robot's name where others of its frames have none.
+    last = _is_last(it for it in tagged if is_glued or it[1] in it[0].split("/"))
     exact = _of_one_robot((*declared, *others))
-    draft = NameOwnership(exact, {}, robots, frozenset(), last, tags)
-    # All robots have the same description: the first robot's frames are enough.
-    plain = (draft.without_robot(*pair) for pair in declared if pair[1] == declared[0][1])
-    return draft._replace(ambiguous_words=frozenset(robots.keys() & _words(plain)))
+    # Robots with a tf topic each may have the same frames, whatever these are called.
+    common = dict.fromkeys({frame for frame, _ in declared} - exact.keys(), "")
+    draft = NameOwnership({**exact, **common}, {}, robots, frozenset(), last, tags)
+    plain = frozenset((*(draft.without_robot(*pair) for pair in declared), *common))
+    any_rest = is_glued or not plain
+    return draft._replace(
+        ambiguous_words=frozenset(robots.keys() & _words(plain)),
+        plain_names=NO_WORDS if any_rest else plain.union(USUAL_FRAMES, SENT_FRAMES),
+    )
+
+
+def _is_glued(name: str, tag: str) -> bool:
+    """Does the tag begin or end the name without being a segment of it, as in robot1_base_link?"""
+    at_an_end = name.startswith(tag) or name.endswith(tag)
+    return at_an_end and tag not in name.split("/") and _without_tag(name, tag, True) != name
 
 
 def _of_one_robot(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:

@@ -9,6 +9,12 @@ from collections.abc import Iterable, Mapping
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.records import Controller, Node, Parameter, System
 
+# The value of a parameter, as rcl has it.
+Scalar = bool | int | float | str
+Value = Scalar | list[Scalar]
+# Stands for all names of parameters, where only a run tells them.
+ANY_NAME = "*"
+
 
 def parameter_text(value: object) -> str:
     """A value as JSON: ``true``, ``1``, ``1.0``, ``"base_link"``."""

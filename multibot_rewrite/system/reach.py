@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.system.environment import machine
@@ -14,9 +15,11 @@ from multibot_rewrite.system.records import ZENOH, System
 
 LOCALHOST = "LOCALHOST"
 MERGED = "looks-merged"
+# The nodes of each machine.
+Machines = Mapping[str, Sequence[str]]
 
 
-def machines(graph: System) -> dict[str, list[str]]:
+def machines(graph: System) -> Machines:
     """The nodes of each machine, by what Fast DDS calls it; a Zenoh router does not say which."""
     found: dict[str, list[str]] = defaultdict(list)
     for node in graph.nodes if graph.environment.rmw != ZENOH else ():
@@ -25,8 +28,8 @@ def machines(graph: System) -> dict[str, list[str]]:
     return dict(found)
 
 
-def hidden_from_here(graph: System) -> bool:
-    """Whether a robot on another machine may run unseen: nothing but one machine was seen.
+def hidden_from_here(graph: System, seen: Machines) -> bool:
+    """Whether a robot on another machine may run unseen: nothing but one machine was ``seen``.
 
     Then multicast may be lost, or the other machine keeps to itself. Under LOCALHOST without peers
     only this machine was asked for, and a discovery server or a router knows all that use it.
@@ -34,10 +37,10 @@ def hidden_from_here(graph: System) -> bool:
     around = graph.environment
     asked_for_all = around.range not in (LOCALHOST, "OFF") or bool(around.static_peers)
     one_look = not any(it.code == MERGED for it in around.caveats)
-    return asked_for_all and one_look and not around.discovery_server and len(machines(graph)) == 1
+    return asked_for_all and one_look and not around.discovery_server and len(seen) == 1
 
 
-def why_not_seen(graph: System, robot: str) -> str:
+def why_not_seen(graph: System, robot: str, seen: Machines) -> str:
     """What is known of where ``robot`` may be, and what to do, in one sentence."""
     around = graph.environment
     if around.rmw == ZENOH:
@@ -45,8 +48,7 @@ def why_not_seen(graph: System, robot: str) -> str:
         return f"is it started, in this domain, and connected to the router at {router}?"
     if around.discovery_server:
         return f"is it started, and does it use the discovery server {around.discovery_server}?"
-    seen = machines(graph)
-    if hidden_from_here(graph):
+    if hidden_from_here(graph, seen):
         (names,) = seen.values()
         return (
             f"all that is seen runs on one machine ({shorten(names)}). If {robot} is on another,"

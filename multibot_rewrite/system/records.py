@@ -58,6 +58,33 @@ def place_of(text: str) -> Place:
     return Place(file, int(last))
 
 
+# What a plan writes before the name of a stack that names a node.
+_STACK = "stack "
+
+
+class Origin(NamedTuple):
+    """What names a node: a stack, or a place in a file; as a text, it is what a plan writes."""
+
+    stack: str = ""
+    place: Place = NOWHERE
+
+    def __str__(self) -> str:
+        text = str(self.place)
+        # A file of such a name is no stack.
+        text = f"./{text}" if text.startswith(_STACK) else text
+        return f"{_STACK}{self.stack}" if self.stack else text
+
+
+NO_ORIGIN = Origin()
+
+
+def origin_of(text: str) -> Origin:
+    """Return the origin that a plan writes as this text."""
+    if text.startswith(_STACK):
+        return Origin(text.removeprefix(_STACK))
+    return Origin(place=place_of(text))
+
+
 class Sure(NamedTuple):
     """Whether something is there: ``runs`` always, ``may`` on a condition, is switched ``off``, or
     it is ``unknown``.
@@ -148,10 +175,10 @@ class End(NamedTuple):
     role: str
     name: str
     type: str
-    type_hash: str
-    node: str
-    qos: Qos | None
-    process: str
+    type_hash: str = ""
+    node: str = ""
+    qos: Qos | None = None
+    process: str = ""
     code_name: str = ""
     also: tuple[str, ...] = ()
     sure: Sure = RUNS
@@ -168,9 +195,9 @@ class Edge(NamedTuple):
 
     child: str
     parent: str
-    topic: str
-    static: bool
-    publishers: tuple[str, ...]
+    topic: str = ""
+    static: bool = False
+    publishers: tuple[str, ...] = ()
     several: bool = False
     transform: tuple[float, ...] = ()
     rate: float = 0.0
@@ -180,7 +207,7 @@ class Edge(NamedTuple):
 
 def edge_of(parent: str, child: str, static: bool = False) -> Edge:
     """A transform of which neither the topic nor the sender is told."""
-    return Edge(child, parent, "", static, ())
+    return Edge(child, parent, static=static)
 
 
 class Heard(NamedTuple):

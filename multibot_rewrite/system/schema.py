@@ -4,30 +4,58 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from types import NoneType
 from typing import Any, get_args, get_origin, get_type_hints
 
-from multibot_rewrite.system.json import (
+from multibot_rewrite.system.json import BEFORE, SCHEMA
+from multibot_rewrite.system.nested import ROW
+from multibot_rewrite.system.record_values import (
     ALLOWED_WORDS,
     FULL_NAMES,
     LEFT_OUT,
     MAYBE_FULL_NAMES,
-    SCHEMA,
+    POLICIES,
+    POLICY_NAMES,
+    SHORT,
+    is_needed,
 )
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import End, Node, Robot, Sure, System
 
 _PLAIN = {str: "string", int: "integer", bool: "boolean"}
+_TEXT = {"type": "string"}
+_ROW = {
+    "type": "array",
+    "description": f"[{', '.join(ROW)}]; types are joined with |",
+    "prefixItems": [
+        *({"enum": [*ALLOWED_WORDS[End, it]]} for it in ROW[:2]), {"type": "string", "pattern": "^/"},
+        _TEXT, _TEXT,
+    ],
+    "items": False,
+    "minItems": len(ROW),
+}  # fmt: skip
+_SCALAR = {"type": ["string", "number", "boolean"]}
+_SCALARS = {"anyOf": [_SCALAR, {"type": "array", "items": _SCALAR}]}
+# What may be below a record; what it is of is not said again.
+_BELOW: Mapping[type, dict[str, dict[str, object]]] = {
+    Robot: {"nodes": {"type": ["array", "null"], "items": {"$ref": "#/$defs/Node"}}},
+    Node: {
+        "ends": {"type": ["array", "null"], "items": {"anyOf": [_ROW, {"$ref": "#/$defs/End"}]}},
+        "parameters": {"type": ["object", "null"], "additionalProperties": _SCALARS},
+    },
+}
 
 
 def schema() -> dict[str, object]:
     """JSON schema, draft 2020-12."""
     found: dict[str, object] = {}
     top = _record(System, found)
-    top["properties"] = {"schema": {"const": SCHEMA}, **top["properties"]}
+    top["properties"] = {"schema": {"enum": [BEFORE, SCHEMA]}, **top["properties"]}
+    top["properties"]["ends"]["items"]["required"] = ["node"]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "$id": "urn:multibot_rewrite:system",
-        "title": "A system of robots: multibot snapshot",
+        "title": "A system of robots: multibot snapshot, plan, build, check",
         **top,
         "required": ["schema"],
         "$defs": dict(sorted(found.items())),
@@ -36,7 +64,6 @@ def schema() -> dict[str, object]:
 
 def _record(kind: Any, found: dict[str, object]) -> dict[str, Any]:
     hints = get_type_hints(kind)
-    usual = kind._field_defaults
     return {
         "type": "object",
         "description": " ".join(kind.__doc__.split()),
@@ -44,15 +71,17 @@ def _record(kind: Any, found: dict[str, object]) -> dict[str, Any]:
             name: _field(kind, name, it, found)
             for name, it in hints.items()
             if LEFT_OUT.get(kind) != name
-        },
-        "required": [name for name in hints if name not in usual],
+        }
+        | _BELOW.get(kind, {}),
+        "required": [it for it in hints if is_needed(kind, it) and (kind, it) != (End, "node")],
         "additionalProperties": False,
     }
 
 
 def _field(kind: Any, name: str, hint: Any, found: dict[str, object]) -> dict[str, object]:
     if words := ALLOWED_WORDS.get((kind, name)):
-        return {"enum": list(words)}
+        word: dict[str, object] = {"enum": list(words)}
+        return {"type": "array", "items": word} if get_origin(hint) is tuple else word
     made = _value(hint, found)
     if MAYBE_FULL_NAMES.get(kind) == name:
         return {**made, "pattern": "^(/|$)"}
@@ -61,6 +90,9 @@ def _field(kind: Any, name: str, hint: Any, found: dict[str, object]) -> dict[st
 
 def _value(hint: Any, found: dict[str, object]) -> dict[str, object]:
     options = get_args(hint)
+    if hint == POLICIES:
+        names = {"enum": [*POLICY_NAMES]}
+        return {"type": "object", "propertyNames": names, "additionalProperties": _TEXT}
     if NoneType in options:
         return {"anyOf": [_value(options[0], found), {"type": "null"}]}
     if get_origin(hint) is tuple:
@@ -69,7 +101,9 @@ def _value(hint: Any, found: dict[str, object]) -> dict[str, object]:
         if hint.__name__ not in found:
             found[hint.__name__] = {}
             found[hint.__name__] = _record(hint, found)
-        return {"$ref": f"#/$defs/{hint.__name__}"}
+        whole: dict[str, object] = {"$ref": f"#/$defs/{hint.__name__}"}
+        short = {"enum": [*ALLOWED_WORDS[Sure, "word"]]} if hint is Sure else _TEXT
+        return {"anyOf": [short, whole]} if hint in SHORT else whole
     return {"type": ["number", "null"]} if hint is float else {"type": _PLAIN[hint]}
 
 

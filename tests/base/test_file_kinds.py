@@ -34,7 +34,7 @@ TEXTS = {
     "tree": '<root BTCPP_format="4"><BehaviorTree ID="M"/></root>',
     "lua": 'options = {\n  map_frame = "map",\n}\n',
     "fleet": "layout: postfix\nrobots:\n  # two\n  - {name: robot1, description: a.urdf}\n",
-    "plan": "layout: postfix\nrobots:\n  robot1:\n    namespace: /robot1\nways: {}\n",
+    "plan": "schema: 3\nlayout: postfix\nrobots:\n- name: robot1\n",
     "built": '{\n "format": "multibot build 1",\n "robots": {"robot1": "robot1"}}',
     "rules": "layout: postfix\ndistro: jazzy\nrobots:\n  robot1:\n    amcl: []\n",
     "snapshot": '{"schema": 2, "nodes": []}',
@@ -106,7 +106,7 @@ def test_a_file_that_the_lint_does_not_take(kind: str, name: str) -> None:
     assert (it.code, it.message, it.hint) == ("MB101", KINDS[kind].words, KINDS[kind].use)
 
 
-def test_a_plan_is_known_without_the_ways_of_its_rules() -> None:
+def test_a_plan_of_an_earlier_version_is_known() -> None:
     plan = "layout: postfix\nshared_nodes: {}\nignored_nodes: []\nrobots:\n  robot1: {}\n"
     assert recognised(plan.encode()) == "plan"
 

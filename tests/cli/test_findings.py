@@ -15,8 +15,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.findings.formats import FORMATS
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
-from multibot_rewrite.spelling.plan_file import from_yaml
-from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.json import from_yaml, to_json
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
 SIBLINGS = str(FIXTURES / "robots" / "siblings.urdf")

@@ -13,6 +13,7 @@ from healthy_systems import single
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.spelling.table_formats import FORMS
 from multibot_rewrite.system.json import to_json
 
@@ -124,9 +125,10 @@ def test_a_robot_without_a_name_has_a_plan(
     file = tmp_path / "plan.yaml"
     words = ("--stack", "nav2", "--distro", "jazzy", "-o", str(file))
     assert main(["plan", ROVER, *words]) == 0
-    own = yaml.safe_load(file.read_text())["robots"]["robot1"]
-    assert own["tf"] == "/tf" and "base_link" in own["frames"]
-    assert {"/amcl", "/bt_navigator", "/diff_drive"} <= own["nodes"].keys()
+    plan = read_plan(file.read_bytes(), "plan.yaml")
+    (own,) = plan.robots
+    assert own.tf_topic == "/tf" and "base_link" in own.frames
+    assert {"/amcl", "/bt_navigator", "/diff_drive"} <= {it.name for it in plan.nodes}
     assert "/robot1" not in file.read_text().partition("\nrobots:")[2]
     graph = single()
     for lost, code in (("", 0), ("/amcl", 1)):

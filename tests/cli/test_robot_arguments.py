@@ -8,11 +8,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-import yaml
 from lxml import etree
 from paths import FIXTURES
+from plans import robot_named
 
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
+from multibot_rewrite.spelling.plan_file import read_plan
 
 XACROS = FIXTURES / "xacros"
 ARM, BASE = str(XACROS / "arm.urdf.xacro"), str(XACROS / "base.urdf.xacro")
@@ -153,10 +154,10 @@ def test_a_plan_has_the_names_of_the_argument(tmp_path: Path) -> None:
     plan = tmp_path / "plan.yaml"
     words = ["plan", ARM, "left", "right", PREFIX, "--stack", "robot_state_publisher"]
     assert multibot.main([*words, "-o", str(plan), "--layout", "frames-per-robot"]) == 0
-    robots = yaml.safe_load(plan.read_text())["robots"]
+    robots = read_plan(plan.read_bytes(), "plan.yaml")
     for name in ("left", "right"):
         own = [f"{name}_base_link", f"{name}_tool0", f"{name}_gripper", f"camera_link/{name}"]
-        assert robots[name]["frames"] == own
+        assert [*robot_named(robots, name).frames] == own
 
 
 @pytest.mark.more

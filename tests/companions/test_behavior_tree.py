@@ -280,11 +280,8 @@ def test_another_file_is_said() -> None:
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_services_are_those_that_the_table_has(layout: str) -> None:
     naming = make_naming(layout, "postfix" if layout == "L4" else "prefix")
-    served = {
-        it.name
-        for it in build_table(["amr", "b"], FACTS, naming, release=NEWEST_LTS).names
-        if it.robot == "amr"
-    }
+    ends = build_table(["amr", "b"], FACTS, naming, release=NEWEST_LTS).ends
+    served = {name for run, _, name in ends if run.robot == "amr"}
     for name in ("local_costmap/clear_entirely_local_costmap", "planner_selector", "spin"):
         port = "server_name" if name == "spin" else "service_name"
         node = etree.fromstring(one(f'<A {port}="{name}"/>', layout))

@@ -161,3 +161,9 @@ def test_tokens_are_the_text(pieces: list[str]) -> None:
     found = list(tokens_of(text, "a.lua"))
     assert all(text.startswith(it.text, it.at) for it in found)
     assert [it.text for it in found] == [it for it in pieces if not it.startswith("--")]
+
+
+def test_a_place_has_its_line_and_column() -> None:
+    text = 'a = {\n--[[ of\ntwo ]] odom_frame = "odom",\n  tracking_frame = "base_link"}\n'
+    found = [(it.text, it.line, it.column) for it in tokens_of(text, "f") if it.kind == "string"]
+    assert found == [('"odom"', 3, 21), ('"base_link"', 4, 20)]

@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 import yaml
 from paths import ROBOTS
+from plans import planned_end
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.companions.rviz import of_plan
 from multibot_rewrite.companions.rviz.of_plan import windows_of_plan
 from multibot_rewrite.companions.rviz.read_config import read_config, rviz_data
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.spelling.plan_file import from_yaml
+from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,

@@ -42,7 +42,8 @@ from multibot_rewrite.companions.yaml_text import (
     replaced,
     spliced,
 )
-from multibot_rewrite.spelling.plan_file import _quoted
+from multibot_rewrite.system.json import to_yaml
+from multibot_rewrite.system.records import System
 
 
 def read(text: str) -> YamlText:
@@ -70,7 +71,8 @@ def test_words_that_yaml_1_1_reads_as_something_else_are_quoted() -> None:
     """yaml.org/type/bool.html, null.html; rcl reads as YAML 1.1."""
     for word in ("~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"):
         for it in (word, word.upper(), word.title()):
-            assert quoted(it) == _quoted(it) == f'"{it}"'
+            assert quoted(it) == f'"{it}"'
+            assert f'shared_frames: ["{it}"]' in to_yaml(System(shared_frames=(it,)))
 
 
 def test_a_scalar_is_replaced_with_its_quotes() -> None:
@@ -291,3 +293,31 @@ def test_of_yaml_in_a_folder_what_is_known_is_linted(tmp_path: Path) -> None:
     # What cannot be read is reported where it is read.
     assert [kinds.is_linted(it) for it in found] == [True, False, True, True]
     assert (kinds.kind_of(PARAMS.encode()), kinds.kind_of(b"a: 1")) == (kinds.PARAMS, "")
+
+
+@pytest.mark.parametrize("end", ["\r", "\r\n", "\x85", "\u2028"])
+def test_lines_end_where_yaml_ends_them(end: str) -> None:
+    """A group of displays is whole lines: the file of an editor with its own line ends is one line to
+    who looks for line feeds alone."""
+    lines = ["Visualization Manager:", "  Displays:"]
+    for name in ("scan", "more"):
+        lines += [
+            "    - Class: rviz_default_plugins/LaserScan",
+            f"      Name: {name}",
+            "      Topic:",
+        ]
+        lines += [f"        Value: /{name}"]
+    whole = read_yaml("\n".join([*lines, ""]).encode(), "f")
+    other = read_yaml(end.join([*lines, ""]).encode(), "f")
+
+    def entries(document: YamlText) -> list[str]:
+        assert document.root is not None
+        ((_, below),) = pairs(document.root)
+        ((_, displays),) = pairs(below)
+        assert newline(document) == ("\n" if document is whole else end)
+        return [document.text[it.start : it.end] for it in blocks(document, displays)]
+
+    assert entries(other) == [it.replace("\n", end) for it in entries(whole)]
+    assert [moved(it, 2) for it in entries(other)] == [
+        moved(it, 2).replace("\n", end) for it in entries(whole)
+    ]

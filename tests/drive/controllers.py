@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import gazebo
 import programs
 import yaml
-from nodes import Node, sections_of
+from nodes import Node, rules_in, sections_of
 
 # Which parameters name joints, and which interfaces they take (the .yaml files of ros2_controllers).
 CLAIMS = {
@@ -34,6 +34,8 @@ class Manager(NamedTuple):
     rules: tuple[tuple[str, str], ...]
     inside: bool
     gone: str = ""
+    # Those of one controller alone, which its spawner hands over.
+    own: tuple[tuple[str, str], ...] = ()
 
 
 class Found(NamedTuple):
@@ -62,6 +64,7 @@ def read(
             robot, inside = fits[0].robot, fits[0].inside
             has = exported(roots.get(robot), joints.get(robot) if inside else None)
             manager = with_files(fits[0], name, files_of(start["arguments"]))
+            manager = manager._replace(own=tuple(rules_of(start["arguments"])))
             controller(found, who, manager, name, has, given.release)
     return found
 
@@ -113,6 +116,12 @@ def files_of(words: list[str]) -> list[Mapping[str, Any]]:
     return [yaml.safe_load(it.read_text()) or {} for it in files if it.is_file()]
 
 
+def rules_of(words: list[str]) -> list[tuple[str, str]]:
+    """The rules that a spawner gives its controllers (spawner.py: node_options_args)."""
+    given = (words[at + 1] for at, it in enumerate(words[:-1]) if it == "--controller-ros-args")
+    return rules_in([it for text in given for it in text.split()])
+
+
 def with_files(manager: Manager, name: str, files: list[Mapping[str, Any]]) -> Manager:
     """The manager with what a spawner tells it of a controller: its files, and the type that the
     controller's own section in them has (controller_manager_services.py,
@@ -141,6 +150,7 @@ def controller(
     values = {**programs.defaults(what, release), **programs.parameters_of(own, manager.sections)}
     found.faults.extend((who, it) for it in unclaimed(own, what, values, has))
     rules = manager.rules if not manager.inside or release not in ("lyrical", "rolling") else ()
+    rules = (*manager.own, *rules)
     ends = tuple(programs.opened(what, values, release))
     # What nobody has read is called as its file calls it.
     what = what if programs.is_known(what, release) else str(kind)

@@ -26,11 +26,15 @@ import yaml
 from gazebo import GzEnd
 from lxml import etree
 from nodes import SPAWNERS, Node, Reader, nodes_of, plugin_nodes, sections_of
-from trees import Edge, edges_of
+from trees import Edge, edges_of, with_odometry
 
 HERE = Path(__file__).parent
 # TinyXML-2 asks for no declaration of prefixes.
 LOOSE = etree.XMLParser(recover=True)
+
+
+# What rcl_action makes of the name of an action.
+GOAL = "/_action/send_goal"
 
 
 class End(NamedTuple):
@@ -130,6 +134,7 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
     bridges = tuple(bridges_of(given, nodes, resolved))
     ends = tuple(ends_of(nodes, resolved))
     gz = tuple(end for it in there for end in simulator.ends_of(it, world))
+    nodes = [with_odometry(it, nodes, ends, gz, bridges) for it in nodes]
     edges = tuple(edges_of(given, nodes, roots, ends, gz, bridges))
     unknown = tuple(sorted({*strangers(given, nodes), *gazebo.strangers(spawned, models)}))
     faults += [*undelivered(given, nodes, ends), *lifecycles.faults(given, nodes)]
@@ -214,33 +219,45 @@ def models_of(given: Reader) -> Iterator[tuple[str, str]]:
         yield who, words[words.index(SPAWNERS[it["executable"]]) + 1]
 
 
-def resolve(nodes: list[Node]) -> dict[tuple[Node | str, str, str], str]:
-    """Where each name of each node leads, by the real rcl; a rule of a program reaches all in it."""
+def resolve(nodes: list[Node]) -> dict[tuple[str, programs.Opened], str]:
+    """Where each name of each node leads, by the real rcl; a rule of a program reaches all in it, and
+    what a helper opens is in the namespace of the process."""
+    parts = [
+        (f"{at}", it, place, ends)
+        for at, it in enumerate(nodes)
+        for helper, place in ((False, (it.namespace, it.rules)), (True, it.process))
+        if (ends := [end for end in it.ends if "<" not in end.name and is_in(it, end) == helper])
+    ]
     cases = [
         {
             "ask": "started",
             "node": it.name,
-            "namespace": it.namespace,
-            "process_rules": [f"{old}:={new}" for old, new in it.rules],
+            "namespace": space,
+            "process_rules": [f"{old}:={new}" for old, new in rules],
             "node_rules": [],
             "use_process_rules": True,
-            "names": [
-                [kind_of(end.role), above(it, end.name)] for end in it.ends if "<" not in end.name
-            ],
+            "names": [asked(it, end) for end in ends],
         }
-        for it in nodes
+        for _, it, (space, rules), ends in parts
     ]
     answers = rcl_names.ask(cases)
     return {
-        (f"{at}", end.role, end.name): name
-        for at, (it, answer) in enumerate(zip(nodes, answers, strict=True))
+        (at, end): name.removesuffix(GOAL)
+        for (at, _, _, ends), answer in zip(parts, answers, strict=True)
         if answer
-        for end, name in zip([e for e in it.ends if "<" not in e.name], answer[1:], strict=True)
+        for end, name in zip(ends, answer[1:], strict=True)
     }
 
 
-def kind_of(role: str) -> str:
-    return "topic" if role in ("publishes", "subscribes") else "service"
+def is_in(node: Node, end: programs.Opened) -> bool:
+    """Does a helper in a process of several nodes open it?"""
+    return end.helper and node.process is not None
+
+
+def asked(node: Node, end: programs.Opened) -> list[str]:
+    """What rcl resolves for an end; of an action that is the service that takes its goals."""
+    kind = "topic" if end.role in ("publishes", "subscribes") else "service"
+    return [kind, above(node, end.name) + (GOAL if "/action/" in end.type else "")]
 
 
 def above(node: Node, name: str) -> str:
@@ -252,7 +269,7 @@ def above(node: Node, name: str) -> str:
 def ends_of(nodes: list[Node], resolved: Mapping[Any, str]) -> Iterator[End]:
     for at, it in enumerate(nodes):
         for end in it.ends:
-            name = resolved.get((f"{at}", end.role, end.name))
+            name = resolved.get((f"{at}", end))
             if name:
                 yield End(it.robot, it.fqn, end.role, name, end.type, end.sure)
 

@@ -26,6 +26,8 @@ FRAMES = {
     ),
     "": ("frame_id", "child_frame_id", "{model}/odom", "{model}/{link}"),
 }
+# Messages with the frames of a transform.
+PLACED = ("gz.msgs.Pose_V", "gz.msgs.Odometry")
 SLOT = re.compile(r"\{([\w/]+)\}")
 AUTOPILOT = "ArduPilotPlugin"
 # What is of ROS 1 alone, with what a robot does not do: its folder is empty in gazebo_ros_pkgs' branch
@@ -47,7 +49,7 @@ SENSORS = {
 
 
 class GzEnd(NamedTuple):
-    """A gz topic that a model hears or sends; ``frames`` are parent and child of a transform,
+    """A gz topic that a model hears or sends; ``frames`` are parent and child of what it places,
     ``frame`` is that of a sensor's messages."""
 
     model: str
@@ -112,7 +114,7 @@ def of_sensor(sensor: etree._Element, model: str, world: str, link: str) -> Iter
 def of_rows(element: etree._Element, key: str, words: Mapping[str, str]) -> Iterator[GzEnd]:
     for row in rows("gz_systems.tsv"):
         if row["plugin"] == key and row["role"] != "-":
-            frames = frames_of(element, key, words) if row["type"] == "gz.msgs.Pose_V" else ("", "")
+            frames = frames_of(element, key, words) if row["type"] in PLACED else ("", "")
             end = GzEnd(words["model"], row["role"], "", row["type"], key, frames)
             if key == AUTOPILOT:
                 yield from (end._replace(topic=valid(it)) for it in commanded(element))

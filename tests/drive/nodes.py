@@ -31,7 +31,8 @@ class Reader(NamedTuple):
 
 
 class Node(NamedTuple):
-    """A node of a robot ("" for all of them) before its names are resolved."""
+    """A node of a robot ("" for all of them) before its names are resolved; ``process`` are the
+    namespace and the rules of its process, if they are not its own."""
 
     robot: str
     what: str
@@ -41,6 +42,7 @@ class Node(NamedTuple):
     values: Mapping[str, Any]
     ends: tuple[programs.Opened, ...]
     inside: str = ""
+    process: tuple[str, tuple[tuple[str, str], ...]] | None = None
 
     @property
     def fqn(self) -> str:
@@ -49,7 +51,11 @@ class Node(NamedTuple):
 
 def nodes_of(given: Reader) -> Iterator[Node]:
     """The nodes of programs and components, and those that they have inside."""
-    containers = {who: it["rules"] for who, it in given.starts if is_container(it)}
+    containers = {
+        who: ("/" + it["namespace"].strip("/"), tuple(tuple(rule) for rule in it["rules"]))
+        for who, it in given.starts
+        if is_container(it)
+    }
     for who, it in given.starts:
         if "executable" not in it or it["executable"] in ("spawner", *SPAWNERS):
             continue
@@ -64,13 +70,15 @@ def nodes_of(given: Reader) -> Iterator[Node]:
         values |= {"": it["arguments"]} if it["arguments"] else {}
         ends = tuple(programs.opened(what, values, given.release))
         ends += tuple(programs.muxed(values)) if what == "twist_mux" else ()
-        yield Node(who, what, name, space, plain, values, ends)
+        ends += tuple(programs.executed(values)) if what == "move_group" else ()
+        process = containers.get(who) if it.get("component") else None
+        yield Node(who, what, name, space, plain, values, ends, process=process)
         costmap = programs.COSTMAPS.get(what)
         if costmap:
-            inner = plain
-            if it.get("component") and given.release in BEFORE_HANDED_ON:
-                inner = tuple(tuple(rule) for rule in containers.get(who, ()))
-            yield costmap_of(who, it, costmap, space, inner, given.release)
+            process = process or (space, plain)
+            inner = process[1] if given.release in BEFORE_HANDED_ON else plain
+            made = costmap_of(who, it, costmap, space, inner, given.release)
+            yield made._replace(process=process)
 
 
 def is_container(start: Start) -> bool:

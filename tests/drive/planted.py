@@ -87,6 +87,27 @@ CONTROLLED = [
     Spoiled("two_arms_moveit", "left/controllers.yaml", "joints: [left_finger_joint]",
             "joints: [right_finger_joint]", "left", "starts", "claims right_finger_joint/position"),
 ]  # fmt: skip
+MOVEIT = "right/moveit_parameters.yaml"
+MOVED = [
+    Spoiled("two_arms_moveit", MOVEIT, "action_ns: follow_joint_trajectory", "action_ns: follow",
+            "right", "drives", "on /right/arm_controller/follow: that moves nothing"),
+    Spoiled("two_arms_moveit", MOVEIT, "arm_controller", "/left/arm_controller",
+            "right", "drives", "/left/arm_controller/follow_joint_trajectory: that moves ['left']"),
+    Spoiled("two_arms_moveit", MOVEIT, "- right_shoulder_joint", "- left_shoulder_joint",
+            "right", "drives", "moves left_shoulder_joint by /right/arm_controller/"),
+    Spoiled("two_arms_moveit", MOVEIT, "/**:\n  ros__parameters:\n", "/**:\n  ros__parameters:\n"
+            "    planning_scene_monitor_options: {joint_state_topic: /left/joint_states}\n",
+            "right", "sees", "reads /left/joint_states, which left sends"),
+    Spoiled("two_arms_moveit", "left/controllers.yaml", "frame_id: left_base_link",
+            "use_local_topics: true", "left", "sees", "reads /left/joint_states, which no node sends"),
+    Spoiled("two_arms_moveit", LAUNCH, "arguments=['joint_state_broadcaster'],",
+            "arguments=['joint_state_broadcaster', '--controller-ros-args',"
+            " '-r joint_states:=/joint_states'],", "right", "sees", "sends on /joint_states, as left"),
+    Spoiled("two_arms_moveit", LAUNCH, "arguments=['arm_controller'],",
+            "arguments=['arm_controller', '--controller-ros-args',"
+            " '-r ~/joint_trajectory:=/joint_trajectory'],", "left", "drives",
+            "/joint_trajectory moves right, too"),
+]  # fmt: skip
 NAMED = [
     Spoiled("two_robots_nav2", "robot1/bridge.yaml", 'ros_topic_name: "/robot1/cmd_vel"',
             'ros_topic_name: "/cmd_vel"', "robot1", "drives", "/robot1/cmd_vel: that moves []"),
@@ -130,4 +151,4 @@ NAMED = [
     Spoiled("two_robots_postfix", "robot2/scout.urdf", "cmd_vel/robot2", "cmd_vel/robot1",
             "robot1", "drives", "/cmd_vel/robot1 moves robot2, too"),
 ]  # fmt: skip
-FAULTS = [*NAMED, *SIMULATED, *NAVIGATED, *CONTROLLED]
+FAULTS = [*NAMED, *SIMULATED, *NAVIGATED, *CONTROLLED, *MOVED]

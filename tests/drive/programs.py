@@ -78,16 +78,43 @@ PARAMETERS = {
 GIVEN = {
     ("slam_toolbox", "<get>"): ("scan_topic", "/scan"),
     ("slam_toolbox", "<map_name>"): ("map_name", "/map"),
+    # moveit_cpp.hpp, PlanningSceneMonitorOptions
+    ("move_group", "<topic>"): ("planning_scene_monitor_options.joint_state_topic", "joint_states"),
 }
+# What a class asks itself before it makes an end for the first time (planning_scene_monitor.cpp).
+ONCE = ("!current_state_monitor_",)
+# Goals by the word of MoveIt for them (moveit_simple_controller_manager.cpp).
+GOALS = {
+    it: f"control_msgs/action/{it}"
+    for it in ("FollowJointTrajectory", "GripperCommand", "ParallelGripperCommand")
+}
+SIMPLE = "moveit_simple_controller_manager"
+
+
+# What rtabmap synchronises of a camera, by the parameter that is asked for it; the first one that is on
+# counts (rtabmap_sync/src/CommonDataSubscriber.cpp, setupCallbacks, and the files of its impl/).
+CAMERAS = {
+    "sensor_data": ("sensor_data",),
+    "rgbd": ("rgbd_image",),
+    "stereo": (*("left/image_rect", "right/image_rect", "left/camera_info", "right/camera_info"),),
+    "depth": ("rgb/image", "depth/image", "rgb/camera_info"),
+    "rgb": ("rgb/image", "rgb/camera_info"),
+}
+# What it synchronises of a scanner, and with what else; none beside sensor_data and stereo.
+SCANS = ("scan_descriptor", "scan", "scan_cloud")
+BESIDE = ("odom", "odom_info", "user_data")
+SYNCHRONISED = {*(it for own in CAMERAS.values() for it in own), *SCANS, *BESIDE, "rgbd_images"}
 
 
 class Opened(NamedTuple):
-    """One end: what the code calls it, and whether something else decides that it is opened."""
+    """One end: what the code calls it, whether something else decides that it is opened, and whether a
+    node of its own in the process opens it, which has neither its name nor its namespace."""
 
     role: str
     name: str
     type: str
     sure: bool = True
+    helper: bool = False
 
 
 @cache
@@ -114,9 +141,43 @@ def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opene
     """The ends of a node with these parameters."""
     for row in table(release).get(SAME.get(node, node), ()):
         name = led_by(node, row, values)
+        if node == "rtabmap" and name in SYNCHRONISED and name not in synchronised(values):
+            continue
         met = [is_met(it, values, release) for it in row["condition"].split("; ") if it]
         if False not in met:
-            yield Opened(row["role"], name, row["type"], "<" not in name and None not in met)
+            sure = "<" not in name and None not in met
+            yield Opened(row["role"], name, row["type"], sure, row["way"] == "helper")
+
+
+def synchronised(values: Mapping[str, Any]) -> set[str]:
+    """The topics that rtabmap waits for before it does anything, as its parameters say: by default a
+    colour and a depth image with odometry."""
+    on = subscribed(values)
+    camera = next((it for it in CAMERAS if it in on), "")
+    of_camera = CAMERAS.get(camera, ())
+    if camera == "rgbd" and values.get("rgbd_cameras") == 0:
+        of_camera = ("rgbd_images",)
+    scans = () if camera in ("sensor_data", "stereo") else [it for it in SCANS if it in on][:1]
+    # It knows the odometry from tf where it has the name of its frame.
+    without = {"odom"} if values.get("odom_frame_id") else set()
+    return {*of_camera, *scans, *({*BESIDE} & (on - without))}
+
+
+def subscribed(values: Mapping[str, Any]) -> set[str]:
+    """What its parameters ask rtabmap to subscribe to, whether or not that counts."""
+    on = {"depth", "rgb", "odom"}
+    for it in (*CAMERAS, *SCANS, *BESIDE):
+        given = values.get(f"subscribe_{it}")
+        on = on | {it} if given is True else on - {it} if given is False else on
+    return on
+
+
+def is_exact(values: Mapping[str, Any]) -> bool:
+    """Whether rtabmap takes messages of one and the same stamp alone: by default of scans without a
+    camera, and of stereo cameras."""
+    given, on = values.get("approx_sync"), subscribed(values)
+    by_default = "stereo" in on or (on.isdisjoint(CAMERAS) and not on.isdisjoint(SCANS))
+    return by_default if given is None else given is False
 
 
 def muxed(values: Mapping[str, Any]) -> Iterator[Opened]:
@@ -131,11 +192,29 @@ def muxed(values: Mapping[str, Any]) -> Iterator[Opened]:
         yield Opened("publishes", "cmd_vel_out", kind)
 
 
+def executed(values: Mapping[str, Any]) -> Iterator[Opened]:
+    """The actions of controllers that move_group sends goals to."""
+    yield from (goal for goal, _ in handles(values))
+
+
+def handles(values: Mapping[str, Any]) -> Iterator[tuple[Opened, list[str]]]:
+    """Each action that move_group is a client of, with the joints that it moves by it
+    (moveit_simple_controller_manager.cpp; action_based_controller_handle.hpp, getActionName)."""
+    for name in values.get(f"{SIMPLE}.controller_names") or ():
+        at = f"{SIMPLE}.{name}"
+        kind, space = values.get(f"{at}.type"), values.get(f"{at}.action_ns")
+        if kind in GOALS:
+            goal = Opened("calls", f"{name}/{space}" if space else str(name), GOALS[kind])
+            yield goal, values.get(f"{at}.joints") or []
+
+
 def led_by(node: str, row: Mapping[str, str], values: Mapping[str, Any]) -> str:
     """The name that a parameter gives, or that of the code."""
     if row["name"] == "<either>joint_states":  # joint_state_broadcaster.cpp
         return f"{'~/' if values.get('use_local_topics') is True else ''}joint_states"
-    parameter, default = GIVEN.get((node, row["name"]), (row["parameter"], row["name"]))
+    # Below the name of the node itself: get_name() + "/..."
+    own = re.sub("^<get_name>/", "~/", row["name"])
+    parameter, default = GIVEN.get((node, own), (row["parameter"], own))
     parameter = PARAMETERS.get((node, row["name"]), parameter)
     return str(values.get(parameter) or default) if parameter else default
 
@@ -143,6 +222,8 @@ def led_by(node: str, row: Mapping[str, str], values: Mapping[str, Any]) -> str:
 def is_met(condition: str, values: Mapping[str, Any], release: str) -> bool | None:
     """Whether a condition of the code holds, where it is a parameter's member (``use_stamped_vel_``,
     ``not (params_.enable)``); nav2_util/twist_publisher.hpp calls its one ``is_stamped_``."""
+    if condition in ONCE:
+        return True
     found = re.fullmatch(r"(not \()?(?:params_\.)?(\w+?)_?\)?", condition)
     if not found:
         return None

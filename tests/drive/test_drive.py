@@ -31,9 +31,9 @@ pytestmark = [
 ALL = "starts, drives, sees, plans"
 EXAMPLES = {
     "launch_tutorial": {"robot1": "starts, drives, sees", "robot2": "starts, drives, sees"},
-    "mixed_fleet": {"base1": ALL, "base2": ALL, "arm": "starts, sees"},
+    "mixed_fleet": {"base1": ALL, "base2": ALL, "arm": "starts, drives, sees"},
     "namespace_and_prefix": {"robot1": "starts, drives, sees", "robot2": "starts, drives, sees"},
-    "two_arms_moveit": {"left": "starts, sees", "right": "starts, sees"},
+    "two_arms_moveit": {"left": "starts, drives, sees", "right": "starts, drives, sees"},
     "two_robots_nav2": {"robot1": ALL, "robot2": ALL},
     "two_robots_postfix": {"robot1": "starts, drives, sees", "robot2": "starts, drives, sees"},
 }

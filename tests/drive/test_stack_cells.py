@@ -23,7 +23,7 @@ pytestmark = [
         reason=f"names are resolved by the real rcl; install rclpy: {rcl_names.INSTALL}",
     ),
 ]
-# Whose description has all that moves them; an arm does not drive.
+# Whose description has all that moves them; arms have a test of their own.
 DRIVEN = ("gz", "classic", "sdf", "controlled")
 CONTROLLED = ("ros2_control", *stack_cells.OF_MANAGERS)
 CONTROLLERS = """\
@@ -54,7 +54,9 @@ def with_controllers(cell: Cell, folder: Path) -> str:
 @pytest.mark.sample(53)
 @pytest.mark.parametrize("row", ROWS, ids=["-".join(name) for name, _ in ROWS])
 def test_a_stack_alone_drives(
-    row: tuple[tuple[str, ...], tuple[Cell, ...]], tmp_path: Path
+    row: tuple[tuple[str, ...], tuple[Cell, ...]],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     wrong = {}
     for cell in row[1]:
@@ -62,12 +64,20 @@ def test_a_stack_alone_drives(
             continue
         file, out = tmp_path / "fleet.yaml", tmp_path / cell.layout
         file.write_text(with_controllers(cell, tmp_path))
+        controlled = cell.robot == "controlled" and cell.stack in CONTROLLED
+        if controlled and stack_cells.shares_rules(cell.release, cell.layout):
+            assert multibot.main(["build", str(file), "-o", str(out), "-q"]) == 1
+            assert "robot1 and robot2 publish on /joint_states/" in capsys.readouterr().err
+            continue
         assert multibot.main(["build", str(file), "-o", str(out), "-q"]) == 0
         found = fleet.read(out, cell.release)
         faults = verdict.judged(found)
         done = verdict.done(found)
         # What a program does of which no source was read is not known.
         drives = {it.get("drives", "no").partition(":")[0] for it in done.values()}
+        if cell[:2] in stack_cells.LACKING:
+            assert {it.what for it in faults} == {"sees"}
+            faults = ()
         if faults or not drives <= {"yes", "unknown"}:
             wrong[cell.layout] = faults or done
     assert not wrong

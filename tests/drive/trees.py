@@ -7,15 +7,20 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 TF = "tf2_msgs/msg/TFMessage"
+ODOMETRY = "nav_msgs/msg/Odometry"
+# The frame of the odometry that a node hears, beside its parameters.
+HEARD = "frame of odometry"
 # Parent and child by parameter, and the parameter that switches it off (amcl_node.cpp,
-# slam_toolbox_common.cpp).
+# slam_toolbox_common.cpp, rtabmap_slam/src/CoreWrapper.cpp).
 SENT = {
     "amcl": ("global_frame_id", "odom_frame_id", "tf_broadcast"),
     "slam_toolbox": ("map_frame", "odom_frame", ""),
+    "rtabmap": ("map_frame_id", HEARD, "publish_tf"),
 }
 DEFAULTS = {
     "slam_toolbox": {"map_frame": "map", "odom_frame": "odom", "base_frame": "base_footprint"},
     "amcl": {"global_frame_id": "map", "odom_frame_id": "odom", "base_frame_id": "base_footprint"},
+    "rtabmap": {"map_frame_id": "map", "frame_id": "base_link"},
 }
 DRIVES = {"diff_drive_controller": "base_link", "mecanum_drive_controller": "base_footprint"}
 # Frames that a program looks up, by parameter (the files of nav2, slam_toolbox and robot_localization).
@@ -28,6 +33,7 @@ LOOKED_UP = {
     "local_costmap": ("global_frame", "robot_base_frame"),
     "global_costmap": ("global_frame", "robot_base_frame"),
     "ekf_filter_node": ("base_link_frame", "odom_frame"),
+    "rtabmap": ("frame_id", HEARD),
 }
 
 
@@ -52,6 +58,33 @@ def static_of(topic: str) -> str:
 
 def moving_of(topic: str) -> str:
     return "/".join("tf" if it == "tf_static" else it for it in topic.split("/"))
+
+
+def with_odometry(node: Any, nodes: Iterable[Any], ends: Any, gz: Any, bridges: Any) -> Any:
+    """The node with the frame of the odometry that it hears: what places the map against it and has no
+    name for it takes that (rtabmap_slam/src/CoreWrapper.cpp, odomFrameId_)."""
+    if node.what != "rtabmap":
+        return node
+    heard = [it.name for it in ends if it[1:3] == (node.fqn, "subscribes") and it.type == ODOMETRY]
+    found = [it for topic in heard for it in begun(topic, nodes, ends, gz, bridges)]
+    given = node.values.get("odom_frame_id")
+    return node._replace(values={**node.values, HEARD: given or next(iter(found), "")})
+
+
+def begun(topic: str, nodes: Iterable[Any], ends: Any, gz: Any, bridges: Any) -> Iterator[str]:
+    """The frames in which the odometry on a topic begins."""
+    rows = [it.gz for it in bridges if it.to_ros and (it.ros, it.type) == (topic, ODOMETRY)]
+    for end in gz:
+        if end.role == "sends" and end.topic in rows and end.type == "gz.msgs.Odometry":
+            yield end.frames[0]
+    senders = {it.node for it in ends if it.role == "publishes" and it[3:5] == (topic, ODOMETRY)}
+    for it in (it for it in nodes if it.fqn in senders):
+        if it.what in DRIVES:
+            yield of_drive(it)[0]
+        elif it.what == "ekf_filter_node":
+            yield str(it.values.get("world_frame") or it.values.get("odom_frame", "odom"))
+        elif isinstance(it.values.get(""), tuple):
+            yield it.values[""][0]
 
 
 def edges_of(
@@ -86,19 +119,25 @@ def sent_by(node: Any, root: Any) -> Iterator[tuple[str, str, bool]]:
         yield from of_arguments(node.values.get("", []))
     elif node.what in SENT:
         parent, child, switch = SENT[node.what]
-        if not switch or values.get(switch, True):
+        if (not switch or values.get(switch, True)) and values.get(child):
             yield str(values[parent]), str(values[child]), False
     elif node.what in DRIVES and values.get("enable_odom_tf", True):
-        before = prefix(values, node.namespace)
-        odom, base = (
-            values.get("odom_frame_id", "odom"),
-            values.get("base_frame_id", DRIVES[node.what]),
-        )
-        yield f"{before}{odom}".lstrip("/"), f"{before}{base}".lstrip("/"), False
+        yield *of_drive(node), False
     elif node.what == "ekf_filter_node" and values.get("publish_tf", True):
         yield of_filter(values)
     elif isinstance(values.get(""), tuple) and any(it.type == TF for it in node.ends):
         yield *values[""], False
+
+
+def of_drive(node: Any) -> tuple[str, str]:
+    """Parent and child of a wheeled controller's odometry."""
+    values = {key: it for key, it in node.values.items() if it not in ("", None)}
+    before = prefix(values, node.namespace)
+    odom, base = (
+        values.get("odom_frame_id", "odom"),
+        values.get("base_frame_id", DRIVES[node.what]),
+    )
+    return f"{before}{odom}".lstrip("/"), f"{before}{base}".lstrip("/")
 
 
 def of_description(root: Any, before: str) -> Iterator[tuple[str, str, bool]]:

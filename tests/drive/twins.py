@@ -45,3 +45,19 @@ def topics_twice(fleet: Fleet) -> Iterator[Fault]:
         if other != it.model and it.type != "gz.msgs.Pose_V":
             word = "drives" if it.role == "hears" else "sees"
             yield Fault(robots[it.model], word, f"{robots[other]} {it.role} {it.topic}, too")
+
+
+# What all robots may send on one topic: each message says whose it is, or of which frames.
+TOGETHER = (
+    *("tf2_msgs/msg/TFMessage", "diagnostic_msgs/msg/DiagnosticArray", "rcl_interfaces/msg/Log"),
+)
+
+
+def sent_twice(fleet: Fleet) -> Iterator[Fault]:
+    """A topic of ROS on which nodes of two robots send: who reads it cannot tell them apart."""
+    first: dict[tuple[str, str], str] = {}
+    for it in fleet.ends:
+        if it.role == "publishes" and it.robot and it.sure and it.type not in TOGETHER:
+            other = first.setdefault((it.name, it.type), it.robot)
+            if other != it.robot:
+                yield Fault(it.robot, "sees", f"{it.node} sends on {it.name}, as {other} does")

@@ -2,25 +2,39 @@
 """What a fleet would do: starts, drives, sees, plans, and one tree of transforms, for each robot.
 
 A robot drives where each topic that its reader or its Nav2 sends commands on reaches its own drive and
-no other's; it sees where what its nodes read is sent by its own sensors; it plans where each frame that
-its nodes look up is in one tree with its own links.
+no other's, and each goal of its MoveIt its own controllers; it sees where what its nodes read is sent
+by its own sensors; it plans where each frame that its nodes look up is in one tree with its own links.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+import programs
 from fleet import End, Fleet
 from nodes import Node
 from programs import MAP
-from trees import LOOKED_UP, TF, Edge, connected, is_static, moving_of, static_of, whole
-from twins import Fault, models_twice, topics_twice, twins
+from trees import (
+    LOOKED_UP,
+    ODOMETRY,
+    SENT,
+    TF,
+    Edge,
+    connected,
+    is_static,
+    moving_of,
+    static_of,
+    whole,
+)
+from twins import Fault, models_twice, sent_twice, topics_twice, twins
 
 COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 # They pass a command on: what they read is sent again.
 PASSING = ("velocity_smoother", "collision_monitor", "twist_mux", "twist_stamper", "twist_marker")
 # They write commands of their own.
-SENDING = ("controller_server", "behavior_server", "docking_server", "following_server")
+SENDING = (
+    *("controller_server", "behavior_server", "docking_server", "following_server", "move_group"),
+)
 SEEN = tuple(
     f"{it}"
     for it in (
@@ -28,6 +42,18 @@ SEEN = tuple(
         *("sensor_msgs/msg/Imu", "sensor_msgs/msg/JointState", "nav_msgs/msg/Odometry"),
     )
 )
+JOINT_STATE = "sensor_msgs/msg/JointState"
+SYNCHRONISED = SEEN[:3]
+# What moves joints to where a client says, and by which messages.
+MOVING = (
+    *("joint_trajectory_controller", "forward_command_controller", "gripper_action_controller"),
+    *("parallel_gripper_action_controller", "admittance_controller"),
+)
+TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
+POSED = (TRAJECTORY, "std_msgs/msg/Float64MultiArray")
+GOALS = tuple(programs.GOALS.values())
+# What systems of the simulator are moved by.
+SIMULATED = ("gz.msgs.Twist", "gz.msgs.JointTrajectory")
 DRIVING = (
     "diff_drive_controller",
     "mecanum_drive_controller",
@@ -41,7 +67,7 @@ DRIVING = (
 def judged(fleet: Fleet) -> tuple[Fault, ...]:
     """Every fault of a fleet."""
     found = [Fault(*it) for it in fleet.faults]
-    found += [*twins(fleet), *models_twice(fleet), *topics_twice(fleet)]
+    found += [*twins(fleet), *models_twice(fleet), *topics_twice(fleet), *sent_twice(fleet)]
     for robot in fleet.robots:
         found += drives(fleet, robot)
         found += sees(fleet, robot)
@@ -82,18 +108,21 @@ def said(found: dict[str, str]) -> str:
 
 
 def heard(fleet: Fleet) -> Iterator[tuple[str, str, str]]:
-    """Whose drive hears a topic, and as which type."""
+    """Whose drive or arm hears a topic or has an action, and of which type."""
     plain = {it.fqn: it.what for it in fleet.nodes}
     robots = {model: robot for robot, model in fleet.models.items()}
     for it in fleet.ends:
-        driving = plain.get(it.node, "") in DRIVING or it.node in classic(fleet)
-        if it.role == "subscribes" and it.type in COMMANDS and it.sure and driving:
+        what = plain.get(it.node, "")
+        driving = what in DRIVING or it.node in classic(fleet)
+        heard = it.role == "subscribes" and it.type in COMMANDS and it.sure and driving
+        posed = it.role == "subscribes" and it.type in POSED and (what in MOVING or driving)
+        if heard or posed or (it.role == "serves" and it.type in GOALS and what in MOVING):
             yield it.robot, it.name, it.type
     for end in fleet.gz:
         for row in fleet.bridges:
             if (
                 end.role == "hears"
-                and end.type == "gz.msgs.Twist"
+                and end.type in SIMULATED
                 and row.to_gz
                 and (row.gz, row.gz_type) == (end.topic, end.type)
             ):
@@ -134,7 +163,8 @@ def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
     """Commands for a robot that move another, or nothing."""
     own = [it for it in heard(fleet) if it[0] == robot]
     has_drive = own or any(
-        end.type == "gz.msgs.Twist" and end.model == fleet.models.get(robot) for end in fleet.gz
+        end.role == "hears" and end.type in SIMULATED and end.model == fleet.models.get(robot)
+        for end in fleet.gz
     )
     if not has_drive:
         return
@@ -152,6 +182,7 @@ def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
             heard_on = ", ".join(sorted({topic for _, topic, _ in own}))
             why += f"; its drive hears {heard_on}" if heard_on else ""
             yield Fault(robot, "drives", why)
+    yield from misplaced(fleet, robot)
     for it in senders(fleet, robot):
         whom = reached(fleet, it.name, it.type)
         if whom != {robot}:
@@ -162,12 +193,28 @@ def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
 
 
 def senders(fleet: Fleet, robot: str) -> list[End]:
+    """The ends on which nodes of a robot send commands of their own, and goals."""
     nodes = {it.fqn for it in fleet.nodes if it.robot == robot and it.what in SENDING}
-    return [
-        it
+    kinds = {"publishes": COMMANDS, "calls": GOALS}
+    return [it for it in fleet.ends if it.node in nodes and it.type in kinds.get(it.role, ())]
+
+
+def misplaced(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    """Joints that move_group moves by a controller which has others: it refuses the trajectory
+    (joint_trajectory_controller.cpp, validate_trajectory_msg)."""
+    joints = {it.fqn: set(it.values.get("joints") or ()) for it in fleet.nodes}
+    has = {
+        (it.name, it.type): joints[it.node]
         for it in fleet.ends
-        if it.node in nodes and it.role == "publishes" and it.type in COMMANDS
-    ]
+        if it.role == "serves" and it.type in GOALS
+    }
+    for node in (it for it in fleet.nodes if it.robot == robot and it.what == "move_group"):
+        goals = [it for it in senders(fleet, robot) if it.node == node.fqn]
+        for (_, wanted), goal in zip(programs.handles(node.values), goals, strict=True):
+            strange = sorted(set(wanted) - has.get((goal.name, goal.type), set(wanted)))
+            if strange:
+                why = f"{node.fqn} moves {', '.join(strange)} by {goal.name}, which has others"
+                yield Fault(robot, "drives", why)
 
 
 def wrong(robot: str, topic: str, whom: set[str]) -> Iterator[Fault]:
@@ -182,6 +229,7 @@ def readers(fleet: Fleet) -> list[End]:
 
 def sees(fleet: Fleet, robot: str) -> Iterator[Fault]:
     """Readers of a robot without a sender, or with another's."""
+    yield from waits(fleet, robot)
     for it in (it for it in readers(fleet) if it.robot == robot):
         whose = set(senders_of(fleet, it.name, it.type))
         if whose - {robot, ""}:
@@ -196,6 +244,34 @@ def sees(fleet: Fleet, robot: str) -> Iterator[Fault]:
             yield Fault(
                 robot, "sees", f"{it.node} reads {it.name}, which no node sends; it has {had}"
             )
+        elif not whose and it.type == JOINT_STATE and is_posed(fleet, robot):
+            yield Fault(robot, "sees", f"{it.node} reads {it.name}, which no node sends")
+
+
+def is_posed(fleet: Fleet, robot: str) -> bool:
+    """Whether a robot has controllers that move joints."""
+    return any(it.robot == robot and it.what in MOVING for it in fleet.nodes)
+
+
+def waits(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    """What rtabmap synchronises, and of which a part never comes: it drops the rest, too. Where its
+    robot has nothing of the kind, no other setting would do."""
+    for it in (it for it in fleet.nodes if it.robot == robot and it.what == "rtabmap"):
+        node, ends = it.fqn, [end for end in fleet.ends if end.node == it.fqn]
+        if programs.is_exact(it.values) and len(programs.synchronised(it.values)) > 1:
+            why = f"{node} takes a scan and odometry of one stamp alone: approx_sync is not true"
+            yield Fault(robot, "sees", why)
+        had = {name for kind in SYNCHRONISED for name in offered(fleet, robot, kind)}
+        had -= {it.name for it in ends if it.role == "publishes"}
+        parts = {it for it in ends if it.role == "subscribes" and it.sure}
+        lost = sorted(
+            it.name
+            for it in parts
+            if it.type in (*SYNCHRONISED, ODOMETRY) and not [*senders_of(fleet, it.name, it.type)]
+        )
+        if lost and had:
+            why = f"{node} waits for {', '.join(lost)}, which no node sends; it has"
+            yield Fault(robot, "sees", f"{why} {', '.join(sorted(had))}")
 
 
 def frames_sent(fleet: Fleet) -> dict[str, str]:
@@ -268,6 +344,7 @@ def plans(fleet: Fleet, robot: str) -> Iterator[Fault]:
         near = [e for e in fleet.edges if e.topic in (topic, static_of(topic))]
         yield from unknown_frames(fleet, robot, it, topic, near)
     yield from two_parents(fleet, robot)
+    yield from two_senders(fleet, robot)
     yield from one_start(fleet, robot)
 
 
@@ -302,11 +379,24 @@ def unknown_frames(
     fleet: Fleet, robot: str, node: Node, topic: str, near: list[Edge]
 ) -> Iterator[Fault]:
     names = [node.values.get(key) for key in LOOKED_UP.get(node.what, ())]
+    # What places the map against odometry looks that up where others send it.
+    near = [it for it in near if node.what not in SENT or it.node != node.fqn]
     own = {it.child for it in near if it.robot == robot or it.robot == fleet.models.get(robot)}
     for name in dict.fromkeys(str(it) for it in names if it):
         if not any(connected(near, name, link) for link in own):
             why = f"{node.fqn} looks for {name} on {topic}, where it is not with the robot's links"
             yield Fault(robot, "plans", why)
+
+
+def two_senders(fleet: Fleet, robot: str) -> Iterator[Fault]:
+    """Transforms that two nodes of a robot send: the frame jumps from one place to the other."""
+    first: dict[tuple[str, str], str] = {}
+    for it in one_tree(fleet.edges):
+        if it.robot in (robot, fleet.models.get(robot)):
+            other = first.setdefault((it.topic, it.child), it.node)
+            if other != it.node:
+                why = f"{it.child} on {it.topic} is placed by {other} and by {it.node}"
+                yield Fault(robot, "plans", why)
 
 
 def two_parents(fleet: Fleet, robot: str) -> Iterator[Fault]:

@@ -343,7 +343,7 @@ def test_a_listener_in_a_controllers_code_has_the_rules_of_its_process(tmp_path:
     lines = [it for it in files["commands.md"].splitlines() if "spawner force_mode" in it]
     assert len(lines) == 1
     table = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})).fleet.table
-    (node,) = (it for it in running_nodes(table) if it.node.node == "force_mode_controller")
+    (node,) = (it for _, it in running_nodes(table) if it.node == "force_mode_controller")
     assert set(node.process_rules) >= {("/tf", "tf"), ("/tf_static", "tf_static")}
 
 

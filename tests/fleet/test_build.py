@@ -24,7 +24,7 @@ from fleet_folder import SMALL, fleet_folder, mixed
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
-from plans import PlannedRobot, from_plugin, planned
+from plans import PlannedRobot, from_plugin, planned, planned_end
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import folders
@@ -32,8 +32,8 @@ from multibot_rewrite.cli.files import write_new
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.manifest import NOTE, read_manifest
-from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
+from multibot_rewrite.spelling.plan_file import to_yaml
+from multibot_rewrite.system.json import from_yaml
 
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "build"]
 Files = dict[str, bytes]
@@ -98,7 +98,7 @@ def renamed(folder: Path, old: str = "robot2", new: str = "robot3") -> None:
 
 @pytest.mark.slow
 def test_the_smallest_fleet_gives_everything(out: Path) -> None:
-    common = {"plan.yaml", ".plan.schema.json", "remappings.yaml", "commands.md", MANIFEST}
+    common = {"plan.yaml", ".system.schema.json", "remappings.yaml", "commands.md", MANIFEST}
     common |= {"fleet.launch.py", "bridge.yaml", "foxglove.json"}
     own = {"robot1/rover.urdf", "robot1/params.yaml", "robot1/start_pose.yaml"}
     assert set(held(out)) == common | own | {

@@ -13,12 +13,14 @@ from typing import Any
 import pytest
 import yaml
 from lxml import etree
+from plans import ends_of, own
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.spelling.plan_file import read_plan
 
 URDF = """\
 <robot name="arm">
@@ -228,16 +230,14 @@ def test_move_group_gets_all_files_joined(tmp_path: Path) -> None:
 @pytest.mark.more
 def test_one_move_group_is_planned_and_started(tmp_path: Path) -> None:
     files, _ = built(tmp_path)
-    plan = yaml.safe_load(files["plan.yaml"])
-    assert list(plan["shared_nodes"]) == ["/move_group"]
-    assert plan["ignored_nodes"] == ["/move_group_private_*"]
+    plan = read_plan(files["plan.yaml"], "plan.yaml")
+    assert own(plan) == ("/move_group",)
+    assert plan.ignored_nodes == ("/move_group_private_*",)
     # Both arms send what it hears.
-    assert {"/joint_states", "/clock", "/diagnostics"} <= set(plan["shared_topics"])
-    heard = [it for it in plan["shared_nodes"]["/move_group"] if it[:2] == ["subscribes", "topic"]]
-    assert "/joint_states" in [it[2] for it in heard]
-    assert not [
-        it for robot in plan["robots"].values() for it in robot["nodes"] if "move_group" in it
-    ]
+    assert {"/joint_states", "/clock", "/diagnostics"} <= {*plan.shared_topics}
+    heard = [it for it in ends_of(plan, "/move_group") if it.role == "subscribes"]
+    assert "/joint_states" in [it.name for it in heard]
+    assert not [it for it in plan.nodes if it.robot and "move_group" in it.name]
     run = "move_group move_group --ros-args --params-file cell/moveit_parameters.yaml"
     assert files["commands.md"].decode().count("move_group move_group") == 1
     assert run in files["commands.md"].decode()

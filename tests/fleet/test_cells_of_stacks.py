@@ -104,19 +104,14 @@ def test_a_fault_between_two_ends_of_the_build_is_seen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Without the settings that fit, the cells say so."""
-    for wrong, said in (
-        ("_typed", "MG306"),
-        ("_without_second_senders", "MG408"),
-        ("fitting_frames", "MG413"),
-    ):
+    wrongs = {
+        "fitting.commands._typed": (lambda node, choice, wanted: node, "MG306"),
+        "fitting.fitted.without_second_senders": (lambda nodes, free, sent: nodes, "MG408"),
+        "robot_nodes.fitting_frames": (lambda member, nodes, sent: {}, "MG413"),
+    }
+    for wrong, (nothing, said) in wrongs.items():
         with monkeypatch.context() as patch:
-            nothing = {
-                "_typed": lambda node, choice, wanted: node,
-                "_without_second_senders": lambda nodes, free, sent: nodes,
-                "fitting_frames": lambda member, nodes, sent: {},
-            }
-            where = "robots.robot_nodes" if wrong == "fitting_frames" else "robots.fitting"
-            patch.setattr(f"multibot_rewrite.fleet.{where}.{wrong}", nothing[wrong])
+            patch.setattr(f"multibot_rewrite.fleet.robots.{wrong}", nothing)
             stack = "robot_localization" if said == "MG408" else "nav2"
             cell = Cell("gz", stack, "lyrical", "tf-per-robot", "gazebo")
             assert said in " ".join(stack_cells.faults(cell, tmp_path))

@@ -11,6 +11,7 @@ import yaml
 from paths import ROBOTS
 
 from multibot_rewrite import load_fleet
+from multibot_rewrite.spelling.plan_file import read_plan
 
 FLEET = """\
 distro: {release}
@@ -164,10 +165,11 @@ def test_all_nodes_have_the_clock_of_the_fleet_file(told: str, wanted: str, tmp_
     clocks = [it.rpartition(" -p use_sim_time:=")[2] if " -p use" in it else "" for it in lines]
     assert clocks == [wanted] * len(lines)
     assert second.count("-p use_sim_time:=true") == 1
-    planned = yaml.safe_load(fleet.text("plan.yaml"))["states"]
-    own = planned.get("/robot1/robot_state_publisher", {}).get("parameters", {})
-    assert own == ({"use_sim_time": wanted == "true"} if wanted else {})
-    assert planned["/robot2/robot_state_publisher"] == {"parameters": {"use_sim_time": True}}
+    plan = read_plan(fleet.text("plan.yaml").encode(), "plan.yaml")
+    planned = {it.node: (it.name, it.value) for it in plan.parameters}
+    own = planned.get("/robot1/robot_state_publisher", ())
+    assert own == (("use_sim_time", wanted) if wanted else ())
+    assert planned["/robot2/robot_state_publisher"] == ("use_sim_time", "true")
     # The plugins have the simulator's.
     assert not [it for it in planned if it.endswith("controller_manager")]
     node = fleet.robot("robot1").node("robot_state_publisher")

@@ -78,3 +78,41 @@ def test_one_address_of_two_robots_is_said_once_with_the_argument(
     told = [it for it in capsys.readouterr().err.splitlines() if "MB412" in it]
     assert len(told) == 1 and "error" in told[0]
     assert "arguments: {robot_ip: ...}" in told[0]
+
+
+MASS = """<inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"""
+MOCK = "mock_components/GenericSystem"
+VELOCITY = '<command_interface name="velocity"/>'
+POSED = """layout: {}
+distro: {}
+description: arm.urdf.xacro
+simulator: gazebo
+stack: ros2_control
+robots: [{{name: robot1, pose: {{y: 0.0}}}}, {{name: robot2, pose: {{y: 3.0}}}}]
+"""
+
+
+@pytest.mark.parametrize("commanded", ["", VELOCITY], ids=["position", "velocity"])
+@pytest.mark.parametrize(
+    ("layout", "distro"), [("both", "jazzy"), ("postfix", "lyrical"), ("tf-per-robot", "humble")]
+)
+def test_an_arm_without_a_file_has_no_drive(
+    layout: str, distro: str, commanded: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its pose is that of its root link: a joint that ends after one turn is no wheel."""
+    hardware, state = "kortex_driver/KortexMultiInterfaceHardware", "<state_interface"
+    arm = ARM.replace(hardware, MOCK).replace(state, f"{commanded}{state}")
+    for link in ("base_link", "l1"):
+        arm = arm.replace(f'<link name="{link}"/>', f'<link name="{link}">{MASS}</link>')
+    (tmp_path / "arm.urdf.xacro").write_text(arm)
+    (tmp_path / "fleet.yaml").write_text(POSED.format(layout, distro))
+    out = tmp_path / "out"
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    plan = (out / "plan.yaml").read_text()
+    assert "joint_trajectory_controller" in plan
+    assert "diff_drive_controller" not in plan
+    capsys.readouterr()
+    launched = ["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]
+    assert main(launched) == 0
+    assert "MG4" not in capsys.readouterr().out

@@ -10,17 +10,20 @@ from typing import NamedTuple
 
 import pytest
 import yaml
+from drawn_fleets import KINDS
 from nav2_graphs import ROVER
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.spelling.plan_file import read_plan, to_json, to_yaml
+from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
 from multibot_rewrite.system.domains import by_domain, domain_of
+from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,
@@ -225,8 +228,8 @@ def test_the_launch_file_starts_each_robot_in_its_domain(made: Outputs) -> None:
 def test_the_plan_has_the_bridge_on_both_sides_and_comes_back_from_a_file(made: Outputs) -> None:
     plan = made.planned
     assert domain_of(plan) == {"": 10, "robot1": 11, "robot2": 12}
-    for text_ in (to_yaml(plan), to_json(plan)):
-        again = read_plan(text_.encode(), "plan")
+    for data in (to_yaml(plan).encode(), to_json(plan)):
+        again = read_plan(data, "plan")
         assert again.domains == plan.domains
         assert by_domain(again).keys() == {10, 11, 12}
     parts = by_domain(plan)
@@ -359,3 +362,42 @@ def test_one_name_in_two_domains_is_no_clash(tmp_path: Path) -> None:
         assert expected(made).robots
     assert "MR101" in told["one"]
     assert "MR101" not in told["two"]
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
+def test_check_launch_reads_the_files_of_domain_bridge(
+    layout: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Each side of a bridge is a node in its domain, with the topics of the file. Robots may be called
+    as topics and parts of nodes are, one may be in the domain of all robots."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rover.urdf").write_text(KINDS["gz rover"].text.replace("ROBOT", "rover"))
+    (tmp_path / "fleet.yaml").write_text(
+        f"layout: {layout}\ndistro: jazzy\ndescription: rover.urdf\n"
+        "domains: {scan: 11, a: 5, bridge: 0}\ncrossing: [robot_description]\n"
+        "robots: [{name: scan}, {name: a, pose: {x: 3}}, {name: bridge, pose: {x: 6}}]\n"
+    )
+    assert main(["build", "fleet.yaml", "-o", "out", "-q"]) == 0
+    check = ["check-launch", "out/fleet.launch.py", "--plan", "out/plan.yaml"]
+    capsys.readouterr()
+    assert main(check) == 0
+    said = capsys.readouterr().out
+    assert " error: " not in said and " warning: " not in said
+    # In one view of all domains the copies are left out.
+    assert main(check[:2]) == 0
+    assert "_bridge_0" not in capsys.readouterr().out
+    file = tmp_path / "out/domain_bridge/a_bridge.yaml"
+    config = yaml.safe_load(file.read_text())
+    del config["topics"]["/clock"]
+    file.write_text(yaml.safe_dump(config))
+    assert main(check) == 1
+    said = capsys.readouterr().out
+    for node, does, domain in (("/a_bridge_0", "subscribe to", 0), ("/a_bridge_5", "publish", 5)):
+        wrong = f"{node}: error: MG102 should {does} topic /clock, but does not, in domain {domain}"
+        assert f"{wrong} (the file of domain_bridge has no such topic" in said
+    file.write_text("topics: [")
+    assert main(check) == 3
+    assert "domain_bridge does not read" in capsys.readouterr().err

@@ -8,13 +8,14 @@ from pathlib import Path
 
 import pytest
 from drawn_builds import judge, run
-from drawn_fleets import KINDS, NAV_PARAMS, RVIZ, Data, DrawnFleet
+from drawn_fleets import KINDS, NAV_PARAMS, RVIZ, SRDF, Data, DrawnFleet
 from paths import ROBOTS
 
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.spelling.plan_file import read_plan
 
-GZ, CART, XACRO = "gz rover", "plain cart", "xacro rover"
+GZ, CART, XACRO, ARM = "gz rover", "plain cart", "xacro rover", "arm"
 
 
 def fleet(kinds: str, *robots: Data, **keys: object) -> DrawnFleet:
@@ -28,6 +29,7 @@ def fleet(kinds: str, *robots: Data, **keys: object) -> DrawnFleet:
         for at, (row, kind) in enumerate(zip(robots, each, strict=True))
     ]
     more = {"nav.yaml": NAV_PARAMS, "one.rviz": RVIZ, "arm/one.rviz": RVIZ}
+    more["arm.srdf"] = SRDF.replace("ROBOT", "arm")
     data = {"distro": "jazzy", "affix": "prefix", **keys, "robots": rows}
     return DrawnFleet(data, {**files, **more}, each)
 
@@ -73,6 +75,17 @@ CASES = {
     "costmaps without namespaces, behind a prefix": fleet(
         f"{CART}, {CART}", {"name": "r1"}, {"name": "r2"}, layout="postfix", stack="navigation"
     ),
+    "a robot called as a node begins": fleet(
+        f"{CART}, {CART}", {"name": "robot"}, {"name": "r2"}, layout="postfix", affix="postfix",
+        stack="localization",
+    ),
+    "a robot called as frames of all end": fleet(
+        f"{GZ}, {GZ}", {"name": "link"}, {"name": "r1"}, layout="tf-per-robot", stack="localization",
+    ),
+    "arms of a cell send one topic of joint states": fleet(
+        f"{ARM}, {ARM}", {"name": "left"}, {"name": "right"}, layout="frames-per-robot", cell={},
+        stack=["ros2_control", "moveit"], srdf="arm.srdf", separators={"link": "_"},
+    ),
     "an argument that is the robot's name": fleet(
         f"{XACRO}, {XACRO}", {"name": "low", "arguments": {"mast": "low"}}, {"name": "r2"},
         layout="both", separators={"link": "_"},
@@ -115,6 +128,23 @@ def test_the_words_of_a_robot_are_those_of_no_other(tmp_path: Path) -> None:
     judge(NAMESPACES, tmp_path / "more")
     plan = plan_fleet(read_fleet(str(tmp_path / "more" / "fleet.yaml"), "", {}))
     assert plan.words == {"r1": "r1", "r2": "r2", "alpha": "r1", "beta": "r2"}
+
+
+def test_a_node_of_a_file_that_is_called_like_a_stack_is_the_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was refused: no SRDF for a node that a stack starts."""
+    monkeypatch.chdir(tmp_path)
+    Path("rover.urdf").write_bytes((ROBOTS / "rover_gz.urdf").read_bytes())
+    Path("stack of mine.yaml").write_text("move_group:\n  ros__parameters: {a: b}\n")
+    Path("fleet.yaml").write_text(
+        "layout: both\ndistro: jazzy\ndescription: rover.urdf\nstack: moveit\n"
+        "companions: {params: stack of mine.yaml}\nrobots: [{name: r1}, {name: r2, pose: {x: 2}}]\n"
+    )
+    assert run("build", "fleet.yaml", "-o", "out")[0] == 0
+    plan = read_plan(Path("out/plan.yaml").read_bytes(), "plan.yaml")
+    (found,) = (it for it in plan.nodes if it.name == "/r1/move_group")
+    assert (found.stack, found.place.line) == ("", 1)
 
 
 def test_configs_of_one_name_have_a_name_each(tmp_path: Path) -> None:

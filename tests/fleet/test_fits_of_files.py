@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 import yaml
 from paths import ROOT
+from plans import ends_of
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.spelling.plan_file import read_plan
 
 ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
 RVIZ = ROOT / "examples" / "launch_tutorial" / "rover.rviz"
@@ -75,8 +77,8 @@ def build(folder: Path, text: str, **files: str) -> int:
 
 def ends(folder: Path, node: str) -> set[tuple[str, str]]:
     """What the plan says that a node does with topics."""
-    plan = yaml.safe_load((folder / "out" / "plan.yaml").read_text())
-    return {(it[0], it[2]) for it in plan["robots"]["robot1"]["nodes"][node]}
+    plan = read_plan((folder / "out" / "plan.yaml").read_bytes(), "plan.yaml")
+    return {(it.role, it.name) for it in ends_of(plan, node)}
 
 
 def is_as_planned(folder: Path) -> bool:
@@ -167,4 +169,101 @@ def test_rviz_shows_what_its_file_has(tmp_path: Path) -> None:
     """The panels of Nav2 are in nav2_default_view.rviz; this file has none."""
     text = f"layout: both\ndistro: kilted\nstack: [nav2, rviz_nav2]\ndescription: {ROVER}\n"
     assert build(tmp_path, f"{text}companions: {{rviz: {RVIZ}}}\n") == 0
+    assert is_as_planned(tmp_path)
+
+
+def test_an_input_that_is_called_as_the_commands_of_nav2_has_them(tmp_path: Path) -> None:
+    """The controller obeys a topic of its own, so that cmd_vel is free for an input of the mux."""
+    mux = (
+        "twist_mux: {ros__parameters: {use_stamped: true, topics: {"
+        "navigation: {topic: cmd_vel, timeout: 0.5, priority: 1},"
+        " joystick: {topic: joy_vel, timeout: 0.5, priority: 2}}}}\n"
+    )
+    text = "layout: tf-per-robot\ndistro: jazzy\nstack: [navigation, teleop]\n"
+    more = "description: driven.urdf\ncompanions: {params: [controllers.yaml, mux.yaml]}\n"
+    files = {"driven_urdf": DRIVEN, "controllers_yaml": CONTROLLERS, "mux_yaml": mux}
+    assert build(tmp_path, text + more, **files) == 0
+    nodes = yaml.safe_load((tmp_path / "out/plan.yaml").read_text())["robots"]["robot1"]["nodes"]
+    sent = {(name, it[2]) for name, ends in nodes.items() for it in ends if it[0] == "publishes"}
+    heard = {it[2] for it in nodes["/robot1/twist_mux"] if it[0] == "subscribes"}
+    assert ("/robot1/twist_mux", "/robot1/drive/cmd_vel") in sent
+    assert ("/robot1/collision_monitor", "/robot1/cmd_vel") in sent and "/robot1/cmd_vel" in heard
+
+
+REAL = DRIVEN.replace("gz_ros2_control/GazeboSimSystem", "acme/Driver")
+BARE = f"{REAL[: REAL.index('<gazebo>')]}</robot>"
+
+
+@pytest.mark.parametrize("layout", ["postfix", "both"])
+@pytest.mark.parametrize("stack", ["controllers", "gz_ros2_control"])
+@pytest.mark.parametrize(
+    ("robot", "codes"), [(DRIVEN, {"MF843"}), (REAL, set()), (BARE, {"MG723"})]
+)
+def test_a_manager_that_no_stack_starts_is_one_finding(
+    robot: str, codes: set[str], stack: str, layout: str,
+    tmp_path: Path, capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """In layouts without namespaces the manager is the robot's by its name, whoever starts it."""
+    text = f"layout: {layout}\ndistro: jazzy\nsimulator: none\nstack: {stack}\n"
+    more = "description: driven.urdf\n"
+    assert build(tmp_path, text + more, driven_urdf=robot) == bool(codes)
+    errors = [it for it in capsys.readouterr().err.splitlines() if " error: " in it]
+    assert {it.split(" error: ")[1].split()[0] for it in errors} == codes
+    assert len(errors) == len(codes)
+    assert all("add ros2_control to `stack:`" in it for it in errors if "MG723" in it)
+    if codes:
+        return
+    manager = "/controller_manager_robot1" if layout == "postfix" else "/robot1/controller_manager"
+    plan = (tmp_path / "out" / "plan.yaml").read_text()
+    assert f"[calls, service, {manager}/load_controller," in plan
+    launch = (tmp_path / "out" / "fleet.launch.py").read_text()
+    assert ("'-c', f'controller_manager_{name}'" in launch.replace('"', "'")) == (
+        layout == "postfix"
+    )
+
+
+ASSISTED = """behavior_server:
+  ros__parameters:
+    behavior_plugins: [assisted_teleop]
+    assisted_teleop: {{plugin: "nav2_behaviors::AssistedTeleop"}}
+{}"""
+MUX = """twist_mux:
+  ros__parameters:
+{}    topics:
+      navigation: {{topic: nav_vel, timeout: 0.5, priority: 10}}
+      teleop: {{topic: joy_vel, timeout: 0.5, priority: 100}}
+"""
+
+
+@pytest.mark.parametrize("stack", ["nav2", "[nav2, teleop]", "[navigation, twist_mux]"])
+@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
+@pytest.mark.parametrize(
+    ("behaviors", "mux"),
+    [("", "use_stamped: true"), ("", ""), ("enable_stamped_cmd_vel: true", "")],
+)
+def test_assisted_teleop_takes_the_type_of_its_server(
+    behaviors: str, mux: str, release: str, stack: str, tmp_path: Path
+) -> None:
+    """nav2_behaviors assisted_teleop.cpp: a TwistSubscriber, which asks for the server's
+    enable_stamped_cmd_vel; the build sets that where the files leave it open."""
+    nav2, own = (f"    {it}\n" if it else "" for it in (behaviors, mux))
+    text = f"layout: both\ndistro: {release}\nstack: {stack}\ndescription: {ROVER}\n"
+    files = {"nav2_yaml": ASSISTED.format(nav2), "mux_yaml": MUX.format(own)}
+    assert build(tmp_path, f"{text}companions: {{params: [nav2.yaml, mux.yaml]}}\n", **files) == 0
+    plan = yaml.safe_load((tmp_path / "out" / "plan.yaml").read_text())
+    of_server = plan["robots"]["robot1"]["nodes"]["/robot1/behavior_server"]
+    assert "/robot1/cmd_vel_teleop" in {it[2] for it in of_server}
+    assert len({it[3] for it in of_server if "/Twist" in it[3]}) == 1
+
+
+@pytest.mark.parametrize("layout", ["both", "postfix"])
+def test_a_mux_that_the_build_starts_sends_to_the_drive(layout: str, tmp_path: Path) -> None:
+    """Its output has a name that is there to be remapped (twist_mux.cpp: cmd_vel_out)."""
+    text = f"layout: {layout}\ndistro: jazzy\nstack: [twist_mux]\ndescription: {ROVER}\n"
+    more = "companions: {params: mux.yaml}\n"
+    assert build(tmp_path, text + more, mux_yaml=MUX.format("")) == 0
+    node, topic = ("/twist_mux_robot1", "/cmd_vel/robot1")
+    if layout == "both":
+        node, topic = "/robot1/twist_mux", "/robot1/cmd_vel"
+    assert ("publishes", topic) in ends(tmp_path, node)
     assert is_as_planned(tmp_path)

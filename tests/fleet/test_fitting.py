@@ -8,8 +8,11 @@ from pathlib import Path
 import pytest
 import yaml
 from paths import FIXTURES, ROOT
+from plans import ends_of, own
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.robots.fitting.node_topics import CommandEnd, entry_of
+from multibot_rewrite.spelling.plan_file import read_plan
 
 ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
 PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
@@ -61,8 +64,9 @@ def given(out: Path, parameter: str) -> dict[str, str]:
 
 def planned(out: Path, node: str, role: str, topic: str) -> list[str]:
     """The types of an end in the plan."""
-    plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot1"]["nodes"]
-    return [it[3] for it in plan[node] if it[0] == role and it[2] == topic]
+    plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
+    found = [it for it in ends_of(plan, node) if (it.role, it.name) == (role, topic)]
+    return [type_ for it in found for type_ in (it.type, *it.also)]
 
 
 @pytest.mark.parametrize(
@@ -198,12 +202,9 @@ def test_cartographer_gets_its_options(tmp_path: Path) -> None:
 
 def sent_on(out: Path, topic: str) -> list[str]:
     """Who sends on a topic as the written plan has it, by the last word of its name."""
-    plan = yaml.safe_load((out / "plan.yaml").read_text())
-    sent = ["publishes", "topic", topic]
-    nodes = plan["robots"]["robot1"]["nodes"].items()
-    return sorted(
-        name.rpartition("/")[2] for name, ends in nodes if sent in [it[:3] for it in ends]
-    )
+    plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
+    sent = [it for it in plan.ends if (it.role, it.kind, it.name) == ("publishes", "topic", topic)]
+    return sorted(it.node.rpartition("/")[2] for it in sent if it.node in own(plan, "robot1"))
 
 
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
@@ -224,14 +225,201 @@ def test_nav2_sends_to_an_input_of_twist_mux(
     assert last in sent_on(out, "/robot1/nav_vel")
 
 
-def test_a_mux_without_a_free_input_moves_nobody(tmp_path: Path) -> None:
-    """Its inputs are those of the user's file, and each has its sender."""
-    (tmp_path / "p.yaml").write_text(
-        "twist_mux: {ros__parameters: {topics: {joy: {topic: joy_vel, timeout: 0.5, priority: 1}}}}\n"
-    )
-    text = "distro: jazzy\nsimulator: gazebo\nstack: [nav2, teleop]\ncompanions: {params: p.yaml}"
+def muxed(folder: Path, *inputs: str) -> str:
+    """The key of a fleet file for a user's twist_mux with these inputs, each ``id: topic``."""
+    lines = [
+        f"      {it.replace(': ', ': {topic: ')}, timeout: 0.5, priority: 1}}" for it in inputs
+    ]
+    head = "twist_mux:\n  ros__parameters:\n    use_stamped: false\n"
+    head += "    locks: {stop: {topic: stop, timeout: 0.0, priority: 255}}\n"
+    head += "    topics:\n" if inputs else ""
+    (folder / "mux.yaml").write_text(head + "\n".join(lines) + "\n")
+    return "simulator: gazebo\ncompanions: {params: mux.yaml}"
+
+
+def test_a_mux_without_an_input_for_a_planner_gets_the_stacks(tmp_path: Path) -> None:
+    """Nav2 and the mux are both added: beside each other the drive would obey two. twist_mux.cpp lists
+    the parameters below ``topics``, whichever file or argument has them."""
+    text = f"distro: jazzy\nstack: [nav2, teleop]\n{muxed(tmp_path, 'joy: joy_vel')}"
     out = built(tmp_path, text)
-    assert {"collision_monitor", "twist_mux"} <= {*sent_on(out, "/robot1/cmd_vel")}
+    assert sent_on(out, "/robot1/cmd_vel") == ["twist_mux"]
+    assert "collision_monitor" in sent_on(out, "/robot1/nav_vel")
+    assert planned(out, "/robot1/twist_mux", "subscribes", "/robot1/nav_vel")
+    launch = (out / "fleet.launch.py").read_text()
+    assert "'topics.navigation.topic': 'nav_vel'" in launch.replace('"', "'")
+    assert "'topics.joystick.topic'" not in launch.replace('"', "'")
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
+@pytest.mark.parametrize(
+    ("inputs", "stick", "keys"),
+    [
+        (("navigation: cmd_vel", "joystick: cmd_vel_joy"), "cmd_vel_joy", "key_vel"),
+        (("nav: cmd_vel_nav", "pad: joy_cmd"), "joy_cmd", "key_vel"),
+        (("joystick: manual", "keyboard: typed"), "manual", "typed"),
+        (("keys: a", "tracker: b"), "joy_vel", "a"),
+        ((), "joy_vel", "key_vel"),
+    ],
+)
+def test_a_joystick_sends_to_an_input_of_the_users_mux(
+    inputs: tuple[str, ...], stick: str, keys: str, layout: str, tmp_path: Path
+) -> None:
+    """An input that is called as what the drive obeys would be heard by the mux that sends it."""
+    own = f"distro: jazzy\nstack: teleop\n{muxed(tmp_path, *inputs)}"
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    fleet.write_text(f"layout: {layout}\ndescription: {ROVER}\n{own}\n{ROBOTS}\n")
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot1"]["nodes"]
+    ends = {
+        (name.strip("/").replace("robot1", "").strip("/_"), role): topics
+        for name, its in plan.items()
+        for role in ("publishes", "subscribes")
+        if (topics := [it[2].replace("robot1", "").strip("/") for it in its if it[0] == role])
+    }
+    assert stick in ends["teleop_twist_joy_node", "publishes"]
+    assert keys in ends["teleop_twist_keyboard", "publishes"]
+    assert {stick, keys} <= {*ends["twist_mux", "subscribes"]}
+    assert "cmd_vel" in ends["twist_mux", "publishes"]
+    assert "cmd_vel" not in ends["twist_mux", "subscribes"]
+
+
+@pytest.mark.parametrize("topic", ["cmd_vel", "cmd_vel_nav", "cmd_vel_smoothed"])
+def test_nav2_reaches_a_mux_whose_input_is_called_as_a_topic_of_nav2(
+    topic: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The mux is to hear the last of Nav2's nodes, and not what its smoother or monitor reads."""
+    inputs = f"navigation: {topic}", "joystick: cmd_vel_joy"
+    out = built(tmp_path, f"distro: jazzy\nstack: [nav2, teleop]\n{muxed(tmp_path, *inputs)}")
+    assert not {"MG312", "MG315", "MG329"} & {*capfd.readouterr().err.split()}
+    assert sent_on(out, "/robot1/cmd_vel") == ["twist_mux"]
+    assert "collision_monitor" in sent_on(out, f"/robot1/{topic}_in")
+
+
+def keyboard(out: Path) -> tuple[str, bool]:
+    """Return the topic to which the keyboard of the first robot sends, and whether with a stamp."""
+    lines = (out / "commands.md").read_text().splitlines()
+    words = next(it for it in lines if "teleop_twist_keyboard" in it).split()
+    (topic,) = (it.partition(":=")[2] for it in words if it.startswith("cmd_vel:="))
+    return topic, "stamped:=true" in words
+
+
+@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
+@pytest.mark.parametrize(
+    ("stacks", "topic"),
+    [
+        ("teleop", "key_vel"),
+        ("nav2, teleop", "key_vel"),
+        ("nav2", "cmd_vel_nav"),
+        ("navigation, teleop_twist_keyboard", "cmd_vel_nav"),
+        ("teleop_direct", "cmd_vel"),
+    ],
+)
+def test_a_keyboard_does_not_go_past_what_limits_or_chooses(
+    stacks: str, topic: str, release: str, tmp_path: Path
+) -> None:
+    """In all releases velocity_smoother reads cmd_vel_nav (nav2_bringup navigation_launch.py); what the
+    plan has for a keyboard is what its command does."""
+    out = built(tmp_path, f"distro: {release}\nsimulator: gazebo\nstack: [{stacks}]")
+    found, stamped = keyboard(out)
+    assert found == f"/robot1/{topic}"
+    plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot1"]["nodes"]
+    heard = {
+        it[3] for node in plan.values() for it in node if (it[0], it[2]) == ("subscribes", found)
+    }
+    assert heard <= {STAMPED if stamped else PLAIN}
+    if "/robot1/teleop_twist_keyboard" in plan:
+        assert planned(out, "/robot1/teleop_twist_keyboard", "publishes", found)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "topic"),
+    [
+        (("navigation: nav_vel", "keyboard: typed"), "typed"),
+        (("navigation: nav_vel", "joystick: stick"), "key_vel"),
+    ],
+)
+def test_a_keyboard_sends_to_an_input_of_the_users_mux(
+    inputs: tuple[str, ...], topic: str, tmp_path: Path
+) -> None:
+    out = built(tmp_path, f"distro: jazzy\nstack: [nav2, teleop]\n{muxed(tmp_path, *inputs)}")
+    assert keyboard(out) == (f"/robot1/{topic}", False)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "topic"),
+    [
+        ({"stick": "joy", "other": "keys"}, "other"),
+        ({"nav": "a", "joy_vel": "b"}, "joy_vel"),
+        ({"plans": "a", "free": "b"}, "free"),
+        ({"smoothed": "a"}, "raw"),
+    ],
+)
+def test_the_input_for_a_person(inputs: dict[str, str], topic: str) -> None:
+    """By its topic or id, else the one to which nobody sends, else the way of who does."""
+    sent = [
+        CommandEnd("planner", "publishes", "plans", PLAIN),
+        CommandEnd("nav", "publishes", "nav", PLAIN),
+    ]
+    smoother = [
+        CommandEnd("smoother", "publishes", "smoothed", PLAIN),
+        CommandEnd("smoother", "subscribes", "raw", PLAIN),
+    ]
+    obeyed = [
+        CommandEnd("choice", "subscribes", it, PLAIN, f"topics.{id_}.topic")
+        for it, id_ in inputs.items()
+    ]
+    mux = [CommandEnd("choice", "publishes", "cmd_vel", PLAIN), *obeyed]
+    assert entry_of("cmd_vel", [*sent, *smoother, *mux]) == topic
+
+
+def test_what_behaviors_pass_on_when_asked_is_no_way_to_the_drive() -> None:
+    """nav2_behaviors assisted_teleop.cpp obeys cmd_vel_teleop while its action runs."""
+    ends = [
+        CommandEnd("drive", "subscribes", "cmd_vel", PLAIN),
+        CommandEnd("behavior_server", "publishes", "cmd_vel", PLAIN),
+        CommandEnd("behavior_server", "subscribes", "x", PLAIN, "cmd_vel_teleop"),
+    ]
+    assert entry_of("cmd_vel", ends) == "cmd_vel"
+    ring = [CommandEnd("a", role, it, PLAIN) for role in ("publishes", "subscribes") for it in "xy"]
+    assert entry_of("x", ring) in "xy"
+
+
+TRANSFORMS = (
+    "- {{ros_topic_name: {}, gz_topic_name: {}, direction: {},\n"
+    "   ros_type_name: tf2_msgs/msg/TFMessage, gz_type_name: gz.msgs.Pose_V}}\n"
+)
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "postfix"])
+@pytest.mark.parametrize(
+    ("rows_", "places"),
+    [
+        ([("odom_tf", "tf", "GZ_TO_ROS")], True),
+        ([("/truth", "/tf", "GZ_TO_ROS")], True),
+        ([("tf", "tf", "GZ_TO_ROS")], False),
+        ([("odom_tf", "tf", "GZ_TO_ROS"), ("tf", "tf", "GZ_TO_ROS")], False),
+        # The transform of the drive has a row that the build adds.
+        ([("truth", "/world/w/pose", "GZ_TO_ROS")], False),
+    ],
+)
+def test_a_filter_places_the_robot_where_the_bridge_has_no_tf(
+    rows_: list[tuple[str, str, str]],
+    places: bool,
+    layout: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """One of the two sends odom to base_link on tf: never both, never none."""
+    (tmp_path / "bridge.yaml").write_text("".join(TRANSFORMS.format(*it) for it in rows_))
+    text = "distro: jazzy\nsimulator: gazebo\nstack: robot_localization\n"
+    text += "companions: {bridge: bridge.yaml}"
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    fleet.write_text(f"layout: {layout}\ndescription: {ROVER}\n{text}\n{ROBOTS}\n")
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    told = capsys.readouterr().err
+    assert "MG408" not in told
+    assert "MG406" not in told
+    assert [*given(out, "publish_tf").values()] == ([] if places else ["False"])
 
 
 def test_a_static_transform_without_frames_is_left_out(tmp_path: Path) -> None:

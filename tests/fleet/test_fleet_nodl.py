@@ -6,10 +6,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-import yaml
 from paths import FIXTURES
+from plans import ends_of
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.spelling.plan_file import read_plan
 
 QOS = "qos: {history: KEEP_ALL, reliability: RELIABLE}"
 DOCUMENT = (
@@ -29,8 +30,8 @@ def fleet(folder: Path, nodl: str = "interfaces", document: str = DOCUMENT, more
 
 
 def planned(folder: Path) -> dict[str, str]:
-    plan = yaml.safe_load((folder / "out" / "plan.yaml").read_text())
-    return {row[2]: row[3] for row in plan["robots"]["robot1"]["nodes"]["/robot1/amcl"]}
+    plan = read_plan((folder / "out" / "plan.yaml").read_bytes(), "plan.yaml")
+    return {it.name: it.type for it in ends_of(plan, "/robot1/amcl")}
 
 
 @pytest.mark.more

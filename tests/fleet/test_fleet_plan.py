@@ -13,6 +13,7 @@ import pytest
 import yaml
 from fleet_folder import SMALL, fleet_folder, mixed
 from lxml import etree
+from named_ends import named_ends
 from paths import ROBOTS
 from plans import own
 
@@ -22,7 +23,7 @@ from multibot_rewrite.fleet.fleet import expected, planned
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
-from multibot_rewrite.spelling.plan_file import from_yaml
+from multibot_rewrite.system.json import from_yaml
 
 LAYOUTS = [("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfix")]
 
@@ -86,7 +87,7 @@ def scalars(value: Any) -> Iterator[str]:
 @pytest.mark.slow
 def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
-    common = {"plan.yaml", ".plan.schema.json", "remappings.yaml", "commands.md", "bridge.yaml"}
+    common = {"plan.yaml", ".system.schema.json", "remappings.yaml", "commands.md", "bridge.yaml"}
     common |= {"fleet.launch.py"}
     # One set of frames for each robot: a layout of Foxglove shows all.
     common |= {"foxglove.json"} if layout != "L1" else set()
@@ -238,7 +239,7 @@ def test_two_stacks_whose_names_meet_are_reported(tmp_path: Path) -> None:
         "  - {name: b, description: rover.urdf, stack: moveit}\n"
     )
     plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text)), "", {}))
-    assert {it.robot for it in plan.fleet.table.nodes} >= {"a", "b"}
+    assert {it.robot for it in plan.fleet.table.runs} >= {"a", "b"}
     assert not [it for it in plan.fleet.table.problems if it.code == "MG320"]
 
 
@@ -291,7 +292,7 @@ def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
     )
     plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text)), "", {}))
     found = with_start_pose_nodes(plan)
-    assert [it.name for it in found.table.nodes] == ["start_pose"]
+    assert [it.name for it in found.table.runs] == ["start_pose"]
     sent = found.edges["robot1", "start_pose"][0]
     assert (sent.parent, sent.child) == ("map", "robot1/base_link")
     assert with_start_pose_nodes(plan._replace(robots=())) == plan.fleet
@@ -301,9 +302,9 @@ def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:
     plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, mixed())), "", {}))
     parts = list(split_per_robot(plan))
     assert [it.robots for it in parts] == [(it,) for it in plan.robots]
-    own = [name for it in parts for name in it.fleet.table.names]
+    own = [name for it in parts for name in named_ends(it.fleet.table)]
     assert sorted(own, key=str) == sorted(
-        (it for it in plan.fleet.table.names if it.robot), key=str
+        (it for it in named_ends(plan.fleet.table) if it.robot), key=str
     )
     assert {key for it in parts for key in it.fleet.edges} == set(plan.fleet.edges)
 

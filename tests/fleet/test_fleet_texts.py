@@ -484,8 +484,10 @@ def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:
 
 
 def test_driving(fleet: Any) -> None:
-    assert [teleop.command(it) for it in teleop.teleops(fleet("L2", "nav2"))] == [
-        f"ros2 run teleop_twist_keyboard teleop_twist_keyboard --ros-args -r cmd_vel:=/{it}/cmd_vel"
+    plan = fleet("L2", "nav2", more="distro: jazzy\n")
+    assert [teleop.command(it) for it in teleop.teleops(plan)] == [
+        "ros2 run teleop_twist_keyboard teleop_twist_keyboard --ros-args "
+        f"-r cmd_vel:=/{it}/cmd_vel_nav"
         for it in ("r1", "two")
     ]
     plan = fleet("L4")

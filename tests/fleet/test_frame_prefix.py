@@ -13,12 +13,15 @@ from pathlib import Path
 
 import pytest
 import yaml
+from plans import robot_named
 
 from multibot_rewrite import load_fleet, rewrite, strip
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.system.records import Parameter
 
 ROVER = """\
 <robot name="rover">
@@ -123,14 +126,15 @@ def test_rviz_puts_the_name_before_links_itself(tmp_path: Path) -> None:
 
 @pytest.mark.more
 def test_the_plan_has_the_frames_as_they_are_sent(tmp_path: Path) -> None:
-    plan = yaml.safe_load(text(made(tmp_path), "plan.yaml"))
-    own = plan["robots"]["graph2"]
-    assert {"frames2/base_link", "frames2/lidar_link", "frames2/odom"} <= set(own["frames"])
-    assert not {"base_link", "lidar_link"} & {*own["frames"], *own["other_frames"]}
-    publisher = plan["states"]["/graph2/robot_state_publisher"]
-    assert publisher["parameters"] == {"frame_prefix": "frames2/"}
+    plan = read_plan(text(made(tmp_path), "plan.yaml").encode(), "plan.yaml")
+    own = robot_named(plan, "graph2")
+    assert {"frames2/base_link", "frames2/lidar_link", "frames2/odom"} <= {*own.frames}
+    assert not {"base_link", "lidar_link"} & {*own.frames, *own.other_frames}
+    publisher = "/graph2/robot_state_publisher"
+    prefixes = [it for it in plan.parameters if it.node == publisher]
+    assert prefixes == [Parameter(publisher, "frame_prefix", '"frames2/"')]
     # What the filter sends has its prefix.
-    assert "frames2/odom -> frames2/base_link" in text(made(tmp_path), "plan.yaml")
+    assert ("frames2/odom", "frames2/base_link") in {(it.parent, it.child) for it in plan.edges}
 
 
 @pytest.mark.more

@@ -7,6 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from named_ends import named_ends
 
 from multibot_rewrite import load_fleet, rewrite
 from multibot_rewrite.base.findings.finding import ERROR
@@ -59,7 +60,9 @@ def test_the_services_of_hardware_get_a_rule_at_the_manager(tmp_path: Path) -> N
     made = load_fleet(fleet(tmp_path))
     launch = made.text("fleet.launch.py")
     assert "sts_hardware_interface_node:/emergency_stop', 'emergency_stop'" in launch
-    names = {it.name for it in made.plan.fleet.table.names if it.endpoint.name == "/emergency_stop"}
+    names = {
+        it.name for it in named_ends(made.plan.fleet.table) if it.endpoint.name == "/emergency_stop"
+    }
     assert names == {"/r1/emergency_stop", "/r2/emergency_stop"}
     assert not {it.code for it in made.made.findings} & {"MG305", "MG101", "MG102"}
     (moved,) = [it for it in made.made.findings if it.code == "MF851"]
@@ -73,7 +76,7 @@ def test_the_services_of_hardware_get_a_rule_at_the_manager(tmp_path: Path) -> N
 )
 def test_a_node_of_hardware_is_none_that_the_launch_file_misses(node: str, tmp_path: Path) -> None:
     made = load_fleet(fleet(tmp_path, STS if node.startswith("sts") else XARM))
-    assert f"/r1/{node}" in {it.full_name for it in made.plan.fleet.table.nodes}
+    assert f"/r1/{node}" in {it.full_name for it in made.plan.fleet.table.runs}
     assert [it for it in made.made.findings if it.level == ERROR] == []
 
 

@@ -148,7 +148,7 @@ def test_robots_that_launch_files_of_their_own_have_them(
     assert {"robot1/robot1.yaml", "robot2/robot2.yaml"} <= paths
     assert not {"robot2/robot1.yaml", "robot1/robot2.yaml"} & paths
     controllers = {
-        (it.robot, it.name) for it in plan.fleet.table.nodes if it.node in ("drive", "steer")
+        (it.robot, it.name) for it in plan.fleet.table.runs if it.node in ("drive", "steer")
     }
     assert controllers == {("robot1", "drive"), ("robot2", "steer")}
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from named_ends import named_ends
 from plans import sends
 from rule_examples import DESCRIPTION
 
@@ -17,7 +18,7 @@ from multibot_rewrite.fleet.file.fleet_file import (
 )
 from multibot_rewrite.fleet.fleet import Fleet, expected
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.spelling.plan_file import to_yaml
+from multibot_rewrite.system.records import Place
 
 MODEL = """\
 structure:
@@ -52,22 +53,22 @@ def written(folder: Path, text: str = FLEET) -> str:
 
 def test_the_plan_of_every_robot_has_what_is_launched(tmp_path: Path) -> None:
     fleet = fleet_of(tmp_path)
-    names = {it.name for it in fleet.table.names if it.node == "/robot2/amcl"}
+    names = {it.name for it in named_ends(fleet.table) if it.node == "/robot2/amcl"}
     assert "/robot2/front/scan" in names and "/robot2/scan" not in names
-    plan = to_yaml(expected(fleet))
-    assert "  /robot1/amcl: system_model.yaml:3\n  /robot2" in plan.replace("_publisher", "")
+    origins = {it.name: it.place for it in expected(fleet).nodes}
+    assert origins["/robot1/amcl"] == origins["/robot2/amcl"] == Place("system_model.yaml", 3)
     assert fleet.table.problems == ()
 
 
 def test_a_rule_of_the_launch_file_leads_where_it_led(tmp_path: Path) -> None:
     table = fleet_of(tmp_path).table
-    (amcl,) = (it for it in table.nodes if it.full_name == "/robot1/amcl")
-    assert {(it.source, it.target) for it in amcl.rules} >= {("/tf", "tf")}
+    (amcl,) = (it for it in table.runs if it.full_name == "/robot1/amcl")
+    assert {*amcl.rules} >= {("/tf", "tf")}
 
 
 def test_a_robot_may_have_its_own_launch_files(tmp_path: Path) -> None:
     text = FLEET.replace("robot2, ", "robot2, launch: [], ")
-    robots = {it.node for it in fleet_of(tmp_path, text).table.names}
+    robots = {it.node for it in named_ends(fleet_of(tmp_path, text).table)}
     assert "/robot1/amcl" in robots and "/robot2/amcl" not in robots
 
 
@@ -105,7 +106,7 @@ def test_the_command_takes_a_launch_file_beside_robots(
     words = ["plan", description, "robot1", "--layout", "L1", "--stack", "robot_localization"]
     assert main([*words, "--launch", f"{model} namespace:=x"]) == 0
     out, err = capsys.readouterr()
-    assert "  /robot1/amcl: system_model.yaml:3" in out
+    assert "  - name: /robot1/amcl\n    place: system_model.yaml:3\n" in out
     assert "ekf_filter_node" not in out
     assert "MF821 ekf_filter_node" in err
     assert main(["plan", str(tmp_path / "fleet.yaml"), "--launch", model]) == 2

@@ -13,7 +13,8 @@ from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
+from multibot_rewrite.spelling.plan_file import to_yaml
+from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.records import System
 
 NAMESPACED = ("tf-per-robot", "frames-per-robot", "both")

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -18,8 +19,8 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, expected, facts_of, make_fleet
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
-from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
+from multibot_rewrite.system.json import from_json, from_yaml, to_json
 
 COLLISION = FIXTURES / "graphs" / "MG402.json"
 PUBLISHER = "robot_state_publisher"
@@ -45,13 +46,12 @@ def test_a_plan_holds_what_robot_state_publisher_does(
     rover: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     code, out, _ = run(capsys, "plan", rover, "robot1", "robot2", "--layout", "both")
-    robots = yaml.safe_load(out)["robots"]
+    plan = read_plan(out.encode(), "plan.yaml")
     assert code == 0
-    assert list(robots) == ["robot1", "robot2"]
-    assert robots["robot2"]["frames"] == ["base_link/robot2", "lidar_link/robot2"]
-    (node, ends), = robots["robot2"]["nodes"].items()  # fmt: skip
-    assert node == "/robot2/robot_state_publisher"
-    assert {(role, name) for role, _, name, *_ in ends} == {
+    assert [it.name for it in plan.robots] == ["robot1", "robot2"]
+    assert plan.robots[1].frames == ("base_link/robot2", "lidar_link/robot2")
+    assert own(plan, "robot2") == ("/robot2/robot_state_publisher",)
+    assert {(it.role, it.name) for it in plan.ends if it.node.startswith("/robot2/")} == {
         ("publishes", "/robot2/robot_description"),
         ("subscribes", "/robot2/joint_states"),
         ("publishes", "/robot2/tf"),
@@ -101,7 +101,7 @@ def test_all_commands_have_the_same_robots(
     _, table, _ = run(capsys, "plan", "--form=table", file, "--form", "json")
     assert main(["build", file, "-o", str(tmp_path / "out")]) == 0
     schema, _, built = (tmp_path / "out" / "plan.yaml").read_text().partition("\n")
-    assert (schema, built) == ("# yaml-language-server: $schema=.plan.schema.json", planned)
+    assert (schema, built) == ("# yaml-language-server: $schema=.system.schema.json", planned)
     wanted = {f"/{robot}/{PUBLISHER}" for robot in "ab"}
     assert wanted <= nodes_of(planned)
     assert all(f'"{node}"' in table or PUBLISHER in table for node in wanted)
@@ -187,10 +187,10 @@ def test_a_table_of_nothing_says_so(rover: str, capsys: pytest.CaptureFixture[st
 
 
 @pytest.fixture
-def plan(rover: str) -> dict[str, object]:
+def plan(rover: str) -> dict[str, Any]:
     """A plan of two robots as plain values."""
     made = expected(make_fleet(rover, ["robot1", "robot2"], [], {}, release=NEWEST_LTS))
-    value: dict[str, object] = yaml.safe_load(to_yaml(made))
+    value: dict[str, Any] = yaml.safe_load(to_yaml(made))
     return value
 
 
@@ -199,7 +199,7 @@ def checked(plan: object, folder: Path, capture: pytest.CaptureFixture[str]) -> 
     path = folder / "edited.yaml"
     path.write_text(yaml.safe_dump(plan))
     with pytest.raises(InputError):
-        from_yaml(path.read_bytes(), "edited.yaml")
+        read_plan(path.read_bytes(), "edited.yaml")
     code, out, err = run(capture, "check", str(path), "--from", str(COLLISION))
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert NOTHING in err and str(path) in err
@@ -207,27 +207,28 @@ def checked(plan: object, folder: Path, capture: pytest.CaptureFixture[str]) -> 
 
 
 def test_a_plan_of_no_robot(
-    plan: dict[str, object], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert "no robot is planned" in checked({**plan, "robots": {}}, tmp_path, capsys)
+    assert "no robot is planned" in checked({**plan, "robots": []}, tmp_path, capsys)
 
 
 def test_a_plan_of_robots_without_nodes(
-    plan: dict[str, dict[str, dict[str, object]]],
+    plan: dict[str, Any],
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    plan["robots"]["robot2"]["nodes"] = {}
+    del plan["robots"][1]["nodes"]
     assert "robot2 has no node that must run" in checked(plan, tmp_path, capsys)
 
 
 def test_a_plan_of_nodes_that_may_all_be_missing(
-    plan: dict[str, dict[str, dict[str, object]]],
+    plan: dict[str, Any],
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    for robot in plan["robots"].values():
-        robot["optional"] = list(robot["nodes"])  # type: ignore[call-overload]
+    for robot in plan["robots"]:
+        for node in robot["nodes"]:
+            node["sure"] = "may"
     assert "robot1, robot2 have no node" in checked(plan, tmp_path, capsys)
 
 

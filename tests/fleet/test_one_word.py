@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
+from named_ends import named_ends
 from random_parameters import LAYOUTS, RELEASE, STACKS, is_plain, planned, random_file
 
 from multibot_rewrite.base.rosnames import bind, parse_remap, resolve_bound
@@ -20,12 +21,11 @@ from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import GivenNode
-from multibot_rewrite.spelling.records import NodeTable
+from multibot_rewrite.spelling.records import GivenNode, Run
 from multibot_rewrite.system.records import Robot
 
 
-def written(files: dict[str, str], node: NodeTable) -> GivenNode | None:
+def written(files: dict[str, str], node: Run) -> GivenNode | None:
     """What the robot's file sets for a node under its full name."""
     file = f"{node.robot}/p.yaml"
     known = built_in_nodes(RELEASE)
@@ -38,11 +38,11 @@ def written(files: dict[str, str], node: NodeTable) -> GivenNode | None:
 def differences(plan: FleetPlan, files: dict[str, str]) -> Iterator[str]:
     """Names that a node has by its written file and rules, and not in the plan."""
     table, robots = plan.fleet.table, expected(plan.fleet).robots
-    for node in (it for it in table.nodes if it.robot and not it.home.written):
+    for node in (it for it in table.runs if it.robot and not it.written):
         given = written(files, node)
-        rules = (parse_remap(f"{it.source}:={it.target}") for it in node.rules)
+        rules = (parse_remap(f"{old}:={new}") for old, new in node.rules)
         bound = bind(node.name, node.namespace, filter(None, rules))
-        for it in table.names:
+        for it in named_ends(table):
             parameter = it.endpoint.parameter
             if it.node != node.full_name or not is_plain(it.endpoint) or not given:
                 continue
@@ -54,7 +54,7 @@ def differences(plan: FleetPlan, files: dict[str, str]) -> Iterator[str]:
         yield from _frames(node, given, robots)
 
 
-def _frames(node: NodeTable, given: GivenNode | None, robots: Sequence[Robot]) -> Iterator[str]:
+def _frames(node: Run, given: GivenNode | None, robots: Sequence[Robot]) -> Iterator[str]:
     """Frames that a node sends by its written file, and the plan does not know of."""
     facts = built_in(RELEASE).nodes.get(given.known) if given else None
     if facts is None or given is None:

@@ -88,7 +88,7 @@ def test_the_argument_is_filled_so_one_manager_is_there(tmp_path: Path) -> None:
     own = INSIDE.format("/$(arg namespace)")
     plan = planned(xacro(tmp_path, ARGUMENT.format("namespace", "diffbot"), own))
     assert said(plan) == []
-    nodes = {it.full_name for it in plan.fleet.table.nodes if "controller_manager" in it.name}
+    nodes = {it.full_name for it in plan.fleet.table.runs if "controller_manager" in it.name}
     assert nodes == {"/robot1/controller_manager", "/robot2/controller_manager"}
     (launch,) = (it.text for it in make_outputs(plan).files if it.path == "fleet.launch.py")
     assert "ros2_control_node" not in launch

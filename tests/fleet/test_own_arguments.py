@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 import yaml
 from lxml import etree
+from named_ends import named_ends
 from paths import FIXTURES
 
 from multibot_rewrite import InputError, load_fleet
@@ -370,7 +371,7 @@ def test_a_topic_that_an_argument_has_made_the_robots(
     rows = yaml.safe_load(made.text("r1/bridge.yaml"))
     assert wanted in {it["ros_topic_name"] for it in rows}
     table = made.plan.fleet.table
-    heard = {it.name for it in table.names if it.node == "/r1/amcl" and it.endpoint.parameter}
+    heard = {it.name for it in named_ends(table) if it.node == "/r1/amcl" and it.endpoint.parameter}
     assert wanted in heard
     read = yaml.safe_load(made.node_text("r1/nav2.yaml"))["/r1/amcl"]["ros__parameters"][
         "scan_topic"

@@ -113,12 +113,12 @@ def test_the_bridge_reads_tf_in_its_namespace_only(tmp_path: Path) -> None:
 def test_bare_frames_are_bridged(tmp_path: Path) -> None:
     robot = fleet(tmp_path, "tf-per-robot").robot("robot2")
     bridge, world = robot.relays.values()
-    assert (bridge.table.full_name, world.table.full_name) == (
+    assert (bridge.run.full_name, world.run.full_name) == (
         "/robot2/tf_namespace_bridge",
         "/robot2/bridged_world",
     )
     plan = expected(robot._fleet.plan.fleet)
-    ends = {(it.role, it.name) for it in plan.ends if it.node == bridge.table.full_name}
+    ends = {(it.role, it.name) for it in plan.ends if it.node == bridge.run.full_name}
     assert ends == {
         *((SUBSCRIBES, f"/robot2/{it}") for it in ("tf", "tf_static")),
         *((PUBLISHES, f"/{it}") for it in ("tf", "tf_static")),

@@ -107,9 +107,9 @@ def test_names_of_a_robot(
 def test_rules_are_those_of_the_table(layout: str, tmp_path: Path) -> None:
     loaded = fleet(tmp_path, layout)
     for one in loaded.robots:
-        for table in loaded.plan.fleet.table.nodes:
+        for table in loaded.plan.fleet.table.runs:
             if table.robot == one.name:
-                own = [(rule.source, rule.target) for rule in table.rules]
+                own = list(table.rules)
                 found = one.table.for_node(table.node)
                 assert found[len(found) - len(own) :] == own
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from plans import robot_named
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.fleet.build import Outputs, make_outputs
@@ -94,7 +95,7 @@ def test_both_are_rewritten_and_the_model_is_spawned(
     assert ("'frame_prefix': f'{name}/'" in text["fleet.launch.py"]) == (layout == "frame-prefix")
     rows = yaml.safe_load(text["robot2/bridge.yaml"])
     assert "/robot2/cmd_vel" in {it["ros_topic_name"] for it in rows}
-    frames = yaml.safe_load(text["plan.yaml"])["robots"]["robot2"]["frames"]
+    frames = robot_named(outputs.planned, "robot2").frames
     # lidar_link is in the URDF alone.
     assert frame in frames
     codes = {it.code for it in outputs.findings if it.level != "note"}

@@ -20,6 +20,7 @@ from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.checks.two_of_each import two_of_each
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.system.records import PUBLISHES, Topic
 
 pytestmark = pytest.mark.more
 
@@ -56,6 +57,18 @@ def test_what_is_read_has_no_word_of_the_others() -> None:
     launch = next(it.text for it in few.files if it.path == LAUNCH)
     assert {*re.findall(r"(?m)^    '(robot\d)': ", launch)} == {"robot3", "robot4"}
     assert {it.path.partition("/")[0] for it in few.files} & {*NAMES} == {"robot3", "robot4"}
+    topics = {it.name.split("/")[1] for it in few.planned.topics}
+    assert topics & {*NAMES} == {"robot3", "robot4"}
+
+
+def test_a_topic_that_only_a_bridge_brings_leaves_with_its_robot() -> None:
+    """No node of the plan has an end of it, so that all robots were read for its sake."""
+    plan, made = five(*NAMES)
+    brought = tuple(Topic(f"/{name}/scan/points", bridge=(PUBLISHES,)) for name in NAMES)
+    planned = made.planned._replace(topics=(*made.planned.topics, *brought))
+    few = two_of_each(made._replace(planned=planned), [it.spec for it in plan.robots]).made
+    kept = {it.name for it in few.planned.topics} & {it.name for it in brought}
+    assert kept == {"/robot3/scan/points", "/robot4/scan/points"}
 
 
 @pytest.mark.parametrize(

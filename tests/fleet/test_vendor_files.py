@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from named_ends import named_ends
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import make_outputs
@@ -112,7 +113,7 @@ def test_parameters_decide_whether_commands_are_stamped(
     values = f"{{use_stamped: {stamped}, topics.joy.topic: joy/cmd_vel}}"
     params = f"twist_mux:\n  ros__parameters: {values}\n"
     made = plan(tmp_path, SENSOR, "stack: twist_mux\n", params)
-    types = {it.endpoint.name: it.endpoint.type for it in made.fleet.table.names}
+    types = {it.endpoint.name: it.endpoint.type for it in named_ends(made.fleet.table)}
     assert types["cmd_vel_out"] == f"geometry_msgs/msg/{type_}"
     assert types["joy/cmd_vel"] == f"geometry_msgs/msg/{type_}"
 
@@ -160,7 +161,9 @@ def test_rules_of_a_plugin_reach_its_controllers(
     more = "launch: system_model.yaml\n" if started else ""
     plan(tmp_path, DRIVE, f"distro: {release}\nstack: gz_ros2_control\n{more}", LOADED)
     made = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
-    names = {it.endpoint.name: it.name for it in made.fleet.table.names if it.robot == "robot1"}
+    names = {
+        it.endpoint.name: it.name for it in named_ends(made.fleet.table) if it.robot == "robot1"
+    }
     assert names["~/odom"] == topic
     # No controller is called broad; another release's manager has /diagnostics.
     said = {it.message.partition(":=")[0] for it in made.fleet.table.problems if it.code == "MR103"}

@@ -13,8 +13,10 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 CLASSES, QUESTIONS, UNSEEN = faults("classes"), faults("questions"), faults("unseen")
 EVERY = (*CLASSES, *QUESTIONS, *UNSEEN)
 ODD = faults("oddities")
-# What only a note tells: a value that is the default, parameters of another release.
+# What only a note tells: a value that is the default, parameters of another release, a class of a
+# package that is not known, whatever its name is like.
 QUIET = {
+    "q_static_layer_unknown",
     *("initial_pose_not_used", "u_mux_output_stamped", "q_jtc_integer", "q_stamped_in_jazzy"),
     *(
         "q_topic_for_frame",

@@ -32,9 +32,8 @@ from multibot_rewrite.live.diagnose import diagnose, survey
 from multibot_rewrite.producers.bags.recording import RECORDER
 from multibot_rewrite.producers.ros.voices import Voices
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import from_yaml
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots
-from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.json import from_json, from_yaml, to_json
 from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.questions import questions
 from multibot_rewrite.system.records import (

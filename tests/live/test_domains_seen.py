@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli import live
@@ -14,7 +14,6 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.live.diagnose import diagnose, diagnose_domains
 from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.domains import by_domain, named, side_by_side, unnamed
 from multibot_rewrite.system.json import to_json

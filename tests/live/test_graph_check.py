@@ -24,7 +24,7 @@ from graph_cases import (
     with_type,
     without_node,
 )
-from plans import from_plugin, more, own, told, without
+from plans import from_plugin, more, own, planned_end, told, without
 from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE
@@ -32,7 +32,7 @@ from multibot_rewrite.base.naming import make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.rules.check import ABSENCE, RULES, check, side_by_side
 from multibot_rewrite.rules.system.enclaves import without_enclave
-from multibot_rewrite.spelling.plan import expect, planned_end
+from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.ownership import name_ownership
 from multibot_rewrite.system.records import (

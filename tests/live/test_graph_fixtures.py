@@ -17,8 +17,7 @@ from pytest import CaptureFixture, MonkeyPatch
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.spelling.plan_file import from_yaml
-from multibot_rewrite.system.json import from_json, to_json
+from multibot_rewrite.system.json import from_json, from_yaml, to_json
 from multibot_rewrite.system.records import System
 
 ids = [f"{case.layout}-{case.code}" for case in CASES]

@@ -9,16 +9,15 @@ import pytest
 from graph_cases import as_planned, environment, qos, sent
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 from plans import own as nodes_of
 
 from multibot_rewrite.base.naming import Naming, affix, make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import expect, planned_end
+from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
-from multibot_rewrite.spelling.plan_file import to_json as plan_to_json
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
@@ -183,8 +182,8 @@ def test_a_frame_with_another_parent_is_found(fleet: Fleet, data: st.DataObject)
 @settings(max_examples=25, deadline=None)
 @given(fleets())
 def test_plan_and_graph_go_through_files_unchanged(fleet: Fleet) -> None:
-    for text in (to_yaml(fleet.plan), plan_to_json(fleet.plan)):
-        assert read_plan(text.encode(), "plan") == fleet.plan
+    for data in (to_yaml(fleet.plan).encode(), to_json(fleet.plan)):
+        assert read_plan(data, "plan") == fleet.plan
     assert from_json(to_json(fleet.graph), "graph") == fleet.graph
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from named_ends import named_ends
 from paths import FIXTURES
 
 from multibot_rewrite.base.model import ProofError, UsageError
@@ -32,8 +33,9 @@ from multibot_rewrite.live.learning.choosing import (
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
+from multibot_rewrite.spelling.of_runs import parsed
 from multibot_rewrite.spelling.records import Table
-from multibot_rewrite.spelling.table import build_table, parsed
+from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.targets import expanded
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
@@ -161,14 +163,14 @@ def bare(node: NodeFacts) -> NodeFacts:
 
 def said(table: Table) -> set[Led]:
     """Where the table says that names lead."""
-    return {(n.node, n.endpoint.kind, n.endpoint.role, n.name) for n in table.names}
+    return {(n.node, n.endpoint.kind, n.endpoint.role, n.name) for n in named_ends(table)}
 
 
 def led(nodes: Iterable[NodeFacts], table: Table) -> set[Led]:
     """Where the graph names of the code lead under the table's rules."""
     found = set()
     facts = {node.name: node for node in nodes}
-    for one in (one for one in table.nodes if one.robot):
+    for one in (one for one in table.runs if one.robot):
         bound = bind(one.name, one.namespace, parsed(one.rules))
         for end in facts[one.node].endpoints:
             for kind, name in expanded(end):

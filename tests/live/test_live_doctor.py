@@ -47,14 +47,15 @@ HEALTHY = (
 )
 CODE = re.compile(r"MG\d{3}")
 PLANNED = """\
+schema: 3
 layout: frames-per-robot
-shared_nodes: {}
-shared_topics: []
-shared_frames: []
 robots:
-  robot1: {tf: /tf, frames: [robot1/base_link], nodes: {/robot1/amcl: []}}
-  robot2: {tf: /tf, frames: [robot2/base_link], nodes: {/robot2/amcl: [], /robot2/silent: []}}
-states: {/robot1/amcl: {lifecycle: active}}
+- name: robot1
+  frames: [robot1/base_link]
+  nodes: [{name: /robot1/amcl, lifecycle: active}]
+- name: robot2
+  frames: [robot2/base_link]
+  nodes: [{name: /robot2/amcl}, {name: /robot2/silent}]
 """
 PATIENTLY = ("--timeout", "40", "-v")
 

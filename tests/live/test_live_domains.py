@@ -11,10 +11,9 @@ import live_fleet
 import pytest
 from live_commands import TEXT
 from paths import ROBOTS
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Domain
 

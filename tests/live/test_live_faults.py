@@ -26,8 +26,8 @@ from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.spelling.plan_file import from_yaml
 from multibot_rewrite.spelling.transforms import edges_in
+from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES, System
 
 pytestmark = pytest.mark.live

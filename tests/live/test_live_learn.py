@@ -18,7 +18,7 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.stacks import user_stack
-from multibot_rewrite.spelling.records import NodeTable, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.ways import arguments, started
 from multibot_rewrite.system.json import from_json
@@ -165,18 +165,18 @@ def test_started_with_the_rules_nothing_leaks(
 
 def said(rules: Table) -> set[tuple[str, str, str, str]]:
     """Where the table says that names lead; what is under a condition may not be there."""
-    ends = (name for name in rules.names if not name.endpoint.when)
-    return {(n.node, n.endpoint.kind, n.endpoint.role, n.name) for n in ends}
+    ends = ((run, end, name) for run, end, name in rules.ends if not end.when)
+    return {(run.full_name, end.kind, end.role, name) for run, end, name in ends}
 
 
 def names(graph: System, rules: Table, robot: str) -> set[str]:
     """All names of a robot's nodes."""
-    nodes = {full(node) for node in rules.nodes if node.robot == robot}
+    nodes = {full(node) for node in rules.runs if node.robot == robot}
     assert nodes <= {node.name for node in graph.nodes}
     return {end.name for end in graph.ends if end.node in nodes}
 
 
-def full(node: NodeTable) -> str:
+def full(node: Run) -> str:
     return f"{node.namespace.rstrip('/')}/{node.name}"
 
 

@@ -88,8 +88,8 @@ def rated(robot: str, rate: int) -> list[dict[str, object]]:
 
 def with_rates(plan: Path) -> Path:
     """The plan, in which each node has the rate 2."""
-    states = ", ".join(f"/robot{at}/drive: {{parameters: {{rate: 2}}}}" for at in (1, 2))
-    plan.write_text(f"{plan.read_text()}states: {{{states}}}\n")
+    rates = "".join(f"- {{node: /robot{at}/drive, name: rate, value: '2'}}\n" for at in (1, 2))
+    plan.write_text(f"{plan.read_text()}parameters:\n{rates}")
     return plan
 
 
@@ -185,7 +185,8 @@ def _read(leader: int) -> Iterator[bytes]:
 
 def test_robots_of_two_domains_are_watched_until_one_leaves(plan: Path) -> None:
     own, other = domain(90), domain(91)
-    plan.write_text(f"{plan.read_text()}domains: {{robot1: {own}, robot2: {other}}}\n")
+    rows = f"- {{robot: robot1, number: {own}}}\n- {{robot: robot2, number: {other}}}\n"
+    plan.write_text(f"{plan.read_text()}domains:\n{rows}")
     with (
         watching(plan, own) as watch,
         live_fleet.running(own, [node("robot1")]),

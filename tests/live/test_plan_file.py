@@ -5,40 +5,43 @@ from __future__ import annotations
 
 import pytest
 from graph_cases import environment, qos
-from plans import own
+from plans import own, planned_end
 
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.spelling.plan_file import read_plan, to_json, to_yaml
+from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
+from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import End, Node, System, Topic, alternatives
 
 PLAN = """\
+schema: 3
 layout: both
-shared_nodes:
-  /map_server:
-  - [publishes, topic, /map, nav_msgs/msg/OccupancyGrid, map]
-  /fleet_manager:
-  - [calls, service, /robot1/dock, std_srvs/srv/Trigger, /robot1/dock]
-  /rviz2: []
 shared_topics: [/map]
 shared_frames: [map]
+nodes:
+- name: /map_server
+  ends:
+  - [publishes, topic, /map, nav_msgs/msg/OccupancyGrid, map]
+- name: /fleet_manager
+  ends:
+  - [calls, service, /robot1/dock, std_srvs/srv/Trigger, /robot1/dock]
+- name: /rviz2
 robots:
-  robot1:
-    tf: /robot1/tf
-    frames: []
-    nodes:
-      /robot1/driver:
-      - [subscribes, topic, /robot1/cmd_vel, geometry_msgs/msg/Twist, cmd_vel]
-      - [serves, service, /robot1/dock, std_srvs/srv/Trigger, dock]
-      /robot1/amcl: []
-      /robot1/slam_toolbox: []
+- name: robot1
+  tf_topic: /robot1/tf
+  nodes:
+  - name: /robot1/driver
+    ends:
+    - [subscribes, topic, /robot1/cmd_vel, geometry_msgs/msg/Twist, cmd_vel]
+    - [serves, service, /robot1/dock, std_srvs/srv/Trigger, dock]
+  - name: /robot1/amcl
+    sure: {word: runs, instead: [/robot1/amcl, /robot1/slam_toolbox]}
+  - name: /robot1/slam_toolbox
+    sure: {word: runs, instead: [/robot1/amcl, /robot1/slam_toolbox]}
 topics:
-  /robot1/cmd_vel: {senders: [/robot1/mux, "/robot1/teleop_*"], one_sender: true}
-  /map: {qos: {durability: transient_local, reliability: reliable}}
-one_of:
-- [/robot1/amcl, /robot1/slam_toolbox]
+- {name: /robot1/cmd_vel, senders: [/robot1/mux, "/robot1/teleop_*"], one_sender: true}
+- {name: /map, qos: {durability: transient_local, reliability: reliable}}
 """
 
 
@@ -49,8 +52,11 @@ def plan(text: str = PLAN) -> bytes:
 def test_what_is_written_is_read() -> None:
     found = read_plan(plan(), "plan.yaml")
     assert own(found) == ("/map_server", "/fleet_manager", "/rviz2")
-    assert found.ends[0] == planned_end(
-        "/map_server", "topic", "publishes", "/map", "nav_msgs/msg/OccupancyGrid", "map"
+    assert (
+        planned_end(
+            "/map_server", "topic", "publishes", "/map", "nav_msgs/msg/OccupancyGrid", "map"
+        )
+        in found.ends
     )
     assert found.topics == (
         Topic("/robot1/cmd_vel", ("/robot1/mux", "/robot1/teleop_*"), True),
@@ -58,14 +64,7 @@ def test_what_is_written_is_read() -> None:
     )
     assert alternatives(found) == (("/robot1/amcl", "/robot1/slam_toolbox"),)
     assert read_plan(to_yaml(found).encode(), "again.yaml") == found
-    assert read_plan(to_json(found).encode(), "again.json") == found
-
-
-def test_shared_nodes_may_be_names_alone() -> None:
-    text = PLAN.replace("  /rviz2: []\n", "")
-    start, end = text.index("shared_nodes"), text.index("shared_topics")
-    short = text[:start] + "shared_nodes: [/map_server, /rviz2]\n" + text[end:]
-    assert own(read_plan(plan(short), "plan.yaml")) == ("/map_server", "/rviz2")
+    assert read_plan(to_json(found), "again.json") == found
 
 
 @pytest.mark.parametrize(
@@ -82,42 +81,6 @@ def test_what_cannot_be_read_is_told_where(data: bytes, said: str) -> None:
     with pytest.raises(InputError) as refused:
         read_plan(data, "p.yaml")
     assert str(refused.value).startswith(said)
-    assert "\n" not in str(refused.value)
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ("one_sender: true", "one_sender: 1", "topics./robot1/cmd_vel.one_sender: write true or"),
-        (
-            "senders: [",
-            "sender: [",
-            "topics./robot1/cmd_vel: key 'sender' is not known; did",
-        ),
-        (
-            "durability: tra",
-            "durabilty: tra",
-            "topics./map.qos: key 'durabilty' is not known; did you",
-        ),
-        ("reliability: reliable", "reliability: 1", "topics./map.qos: write words, as {durab"),
-        ("  /map: {qos", "  map: {qos", "topics: 'map' is not a full name; write it with a / in"),
-        ("- [/robot1/amcl, ", "- [amcl, ", "one_of[0]: 'amcl' is not a full name"),
-        ("one_of:\n- [/robot1/amcl, /robot1/slam_toolbox]", "one_of: /a", "one_of is not a list"),
-        ("  /rviz2: []", "  rviz2: []", "shared_nodes: 'rviz2' is not a full name"),
-        (
-            "- [calls, service, ",
-            "- [call, service, ",
-            "shared_nodes./fleet_manager[0]: 'call', 'se",
-        ),
-        ("one_of:", "oneof:", "the plan: unknown key 'oneof'"),
-    ],
-)
-def test_what_is_wrong_is_told_with_its_place(old: str, new: str, said: str) -> None:
-    assert old in PLAN
-    with pytest.raises(InputError) as refused:
-        read_plan(plan(PLAN.replace(old, new)), "plan.yaml")
-    assert str(refused.value).startswith("plan.yaml: ")
-    assert said in str(refused.value)
     assert "\n" not in str(refused.value)
 
 
@@ -215,10 +178,10 @@ def test_a_map_that_is_not_latched() -> None:
 
 
 PATTERN = PLAN.replace(
-    "      /robot1/amcl: []\n",
-    "      /robot1/amcl:\n"
-    "      - [publishes, topic, /robot1/camera_*/image_raw, sensor_msgs/msg/Image, image_raw]\n",
-).replace("  /rviz2: []", "  /rviz_*: []")
+    "  - name: /robot1/amcl\n",
+    "  - name: /robot1/amcl\n    ends:\n"
+    "    - [publishes, topic, /robot1/camera_*/image_raw, sensor_msgs/msg/Image, image_raw]\n",
+).replace("- name: /rviz2", "- name: /rviz_*")
 IMAGE = "sensor_msgs/msg/Image"
 
 
@@ -250,8 +213,8 @@ def test_a_pattern_is_compared_by_its_type() -> None:
 BRIDGED = PLAN.replace(
     "topics:\n",
     "topics:\n"
-    "  /robot1/scan: {bridge: [publishes], type: sensor_msgs/msg/LaserScan}\n"
-    "  /robot1/imu: {bridge: [publishes], type: sensor_msgs/msg/Imu}\n",
+    "- {name: /robot1/scan, bridge: [publishes], type: sensor_msgs/msg/LaserScan}\n"
+    "- {name: /robot1/imu, bridge: [publishes], type: sensor_msgs/msg/Imu}\n",
 )
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,15 +15,14 @@ from node_answers import told
 from paths import ROBOTS
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.fleet.outputs.built_states import with_built
 from multibot_rewrite.producers.ros import ask
 from multibot_rewrite.producers.ros.answers import AGAIN_SECONDS, Answers
 from multibot_rewrite.producers.ros.request import Request, from_text, to_text
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import read_plan, to_json, to_yaml
-from multibot_rewrite.system.json import to_json as graph_json
+from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
+from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.parameters import Answer, with_answers
 from multibot_rewrite.system.questions import Question, questions
 from multibot_rewrite.system.records import (
@@ -39,29 +39,26 @@ from multibot_rewrite.system.records import (
 )
 
 PLAN = """\
+schema: 3
 layout: frames-per-robot
-shared_nodes: {}
 shared_topics: [/tf]
 shared_frames: [map]
 robots:
-  robot1:
-    tf: /tf
-    frames: [robot1/base_link]
-    nodes: {/robot1/amcl: [], /robot1/costmap/costmap: [], /robot1/driver: []}
-  robot2:
-    tf: /tf
-    frames: [robot2/base_link]
-    nodes: {/robot2/amcl: []}
+- name: robot1
+  frames: [robot1/base_link]
+  nodes: [{name: /robot1/amcl}, {name: /robot1/costmap/costmap}, {name: /robot1/driver}]
+- name: robot2
+  frames: [robot2/base_link]
+  nodes: [{name: /robot2/amcl}]
 """
-STATES = """\
-states:
-  /robot1/amcl:
-    lifecycle: active
-    host: robot1_pc
-    parameters: {use_sim_time: false, base_frame_id: robot1/base_link, "a.rate": 2.5, word: "true",
-      list: [1, 2], names: [a, "1"]}
-  /robot1/driver: {host: robot1_pc}
-"""
+# Node -> what is planned of it besides.
+STATES = {
+    "/robot1/amcl": "lifecycle: active, host: robot1_pc, parameters: {use_sim_time: false, "
+    'base_frame_id: robot1/base_link, "a.rate": 2.5, word: "true", list: [1, 2], names: [a, "1"]}',
+    "/robot1/driver": "host: robot1_pc",
+}
+ALPHA = {"/robot1/amcl": "parameters: {alpha1: 0.3}"}
+NO_STATES: Mapping[str, str] = {}
 FILE = """\
 # Comes with its comment.
 /robot1/amcl:
@@ -79,8 +76,11 @@ robot1:
 """
 
 
-def plan(more: str = "") -> System:
-    return read_plan((PLAN + more).encode(), "plan.yaml")
+def plan(states: Mapping[str, str] = NO_STATES) -> System:
+    text = PLAN
+    for node, more in states.items():
+        text = text.replace(f"{{name: {node}}}", f"{{name: {node}, {more}}}")
+    return read_plan(text.encode(), "plan.yaml")
 
 
 def graph(*states: Answer) -> System:
@@ -115,12 +115,11 @@ def built(tmp_path: Path) -> Path:
     return tmp_path
 
 
-CLOCKS = """\
-states:
-  /robot1/amcl: {parameters: {use_sim_time: true}}
-  /robot1/driver: {parameters: {use_sim_time: true}}
-  /robot2/amcl: {parameters: {use_sim_time: false}}
-"""
+CLOCKS = {
+    "/robot1/amcl": "parameters: {use_sim_time: true}",
+    "/robot1/driver": "parameters: {use_sim_time: true}",
+    "/robot2/amcl": "parameters: {use_sim_time: false}",
+}
 
 
 @pytest.mark.parametrize(
@@ -175,35 +174,13 @@ def test_states_are_written_and_read() -> None:
         "names": '["a", "1"]',
     }
     assert read_plan(to_yaml(planned).encode(), "y") == planned
-    assert read_plan(to_json(planned).encode(), "j") == planned
-    assert "\nstates:" not in to_yaml(plan())
-
-
-@pytest.mark.parametrize(
-    ("states", "said"),
-    [
-        ("states: 3", "states is not a mapping"),
-        ("states: {amcl: {}}", "states.amcl: 'amcl' is not a full name"),
-        ("states: {/a: active}", "states./a is not a mapping"),
-        ("states: {/a: {lifecycle: activ}}", "lifecycle: state 'activ' is not known"),
-        ("states: {/a: {lifecycle: [1]}}", "lifecycle: state '[1]' is not known"),
-        ("states: {/a: {state: active}}", "states./a: key 'state' is not known"),
-        ("states: {/a: {host: 3}}", "host: write a word"),
-        ("states: {/a: {parameters: [x]}}", "states./a.parameters is not a mapping"),
-        ("states: {/a: {parameters: {x: {y: 1}}}}", "parameters.x: write a text"),
-        ("states: {/a: {parameters: {1: 2}}}", "is not a mapping with names"),
-        ("states: {/a: {parameters: {x: null}}}", "parameters.x: write a text"),
-    ],
-)
-def test_wrong_states_are_refused(states: str, said: str) -> None:
-    with pytest.raises(InputError, match=r"plan\.yaml: states") as raised:
-        plan(states)
-    assert said in str(raised.value)
+    assert read_plan(to_json(planned), "j") == planned
+    assert "parameters" not in to_yaml(plan())
 
 
 def test_what_the_plan_says_of_states_is_meant() -> None:
     """A node that is planned to wait is no danger, and one that answers nothing is not known."""
-    waiting = plan("states: {/robot1/amcl: {lifecycle: inactive}}")
+    waiting = plan({"/robot1/amcl": "lifecycle: inactive"})
     assert found(waiting, Answer("/robot1/amcl", "inactive")) == []
     assert found(plan(STATES), Answer("/robot1/amcl"), Answer("/robot1/driver", "active")) == []
     (it,) = found(plan(), Answer("/robot1/amcl", "inactive"))
@@ -256,7 +233,7 @@ def test_two_planned_hosts_on_one_machine() -> None:
 
 
 def test_the_files_of_a_build_say_what_each_node_has(built: Path) -> None:
-    planned = with_built(plan("states: {/robot1/amcl: {parameters: {alpha1: 0.3}}}"), str(built))
+    planned = with_built(plan(ALPHA), str(built))
     states = parameters(planned)
     assert states.keys() == {"/robot1/amcl", "/robot1/costmap/costmap", "/robot2/amcl"}
     file = built / "robot1" / "nav2.yaml"
@@ -272,11 +249,9 @@ def test_the_files_of_a_build_say_what_each_node_has(built: Path) -> None:
         "plugins": '["a", "b"]',
         "layer.enabled": "true",
     }
-    # What is from a file is not written into the plan.
-    assert (
-        read_plan(to_yaml(planned).encode(), "y").parameters
-        == plan("states: {/robot1/amcl: {parameters: {alpha1: 0.3}}}").parameters
-    )
+    # What is from a file stays that.
+    again = read_plan(to_yaml(planned).encode(), "y").parameters
+    assert {*again} == {*planned.parameters}
 
 
 @pytest.mark.slow
@@ -336,8 +311,8 @@ def test_check_finds_the_files_beside_the_plan(
 ) -> None:
     (built / "plan.yaml").write_text(PLAN)
     state = having("/robot1/amcl", base_frame_id='"base_link"')
-    (built / "g.json").write_bytes(graph_json(graph(state)))
-    (built / "silent.json").write_bytes(graph_json(graph()))
+    (built / "g.json").write_bytes(to_json(graph(state)))
+    (built / "silent.json").write_bytes(to_json(graph()))
     monkeypatch.chdir(built)
     assert multibot.main(["check", "plan.yaml", "--from", "g.json"]) == 1
     assert "MG132" in capsys.readouterr().out

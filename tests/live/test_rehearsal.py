@@ -25,7 +25,6 @@ from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live import staged
 from multibot_rewrite.live.rehearsal import (
     PROCESSES,
-    StubEndpoint,
     StubNode,
     action_parts,
     bridge_stub,
@@ -38,7 +37,7 @@ from multibot_rewrite.live.rehearsal import (
     with_substitutes,
 )
 from multibot_rewrite.spelling.plan import expect
-from multibot_rewrite.spelling.records import Home, NodeRule, NodeTable, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table, plugin_nodes
 from multibot_rewrite.spelling.transforms import edges_of, frames_of, with_odometry
 from multibot_rewrite.spelling.ways import WAYS
@@ -85,7 +84,7 @@ def drive(layout: str = "L2", left_out: tuple[str, ...] = ()) -> StubNode:
 
 def test_a_stub_has_the_names_of_the_code_and_rcl_gets_the_rules() -> None:
     stub = drive()
-    assert stub.endpoints[0] == StubEndpoint(
+    assert stub.endpoints[0] == Endpoint(
         TOPIC, SUBSCRIBES, "/cmd_vel", "geometry_msgs/msg/Twist", False
     )
     assert stub.arguments == ("--ros-args", "-r", "__ns:=/robot2", "-r", "/cmd_vel:=cmd_vel")
@@ -101,7 +100,7 @@ def test_an_endpoint_with_a_condition_is_left_out() -> None:
 
 
 def test_an_unknown_type_is_that_of_the_other_endpoint() -> None:
-    assert StubEndpoint(TOPIC, PUBLISHES, "scan", LASER, False) in drive().endpoints
+    assert Endpoint(TOPIC, PUBLISHES, "scan", LASER) in drive().endpoints
 
 
 def test_endpoints_of_a_helper_are_marked() -> None:
@@ -109,10 +108,12 @@ def test_endpoints_of_a_helper_are_marked() -> None:
 
 
 def test_a_node_of_the_plugins_and_of_the_stack_is_one_with_the_rules_of_its_tag() -> None:
-    one = NodeTable("r", "manager", "/r", "manager", (NodeRule("r", "manager", "a", "b", "", ""),))
-    rules = (NodeRule("r", "manager", "c", "d", "", ""),)
-    two = one._replace(rules=rules, home=Home(plugin="acme", written=True))
-    ((_, stub),) = stub_nodes(Table("both", (one, two), (), (), NEWEST_LTS), {})
+    one = Run("r", "manager", "/r", "manager", (("a", "b"),))
+    rules = (("c", "d"),)
+    two = one._replace(
+        rules=rules, fact=NodeFacts("manager", "acme", (), plugin="acme"), written=True
+    )
+    ((_, stub),) = stub_nodes(Table("both", (one, two), (), NEWEST_LTS), {})
     assert stub.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "c:=d")
 
 
@@ -132,7 +133,7 @@ def test_a_manager_that_stands_in_for_controllers_has_their_rules(
 def test_who_has_a_topic_with_a_second_type_is_in_another_process() -> None:
     """A participant of Fast DDS refuses the second type."""
     text, flag = (
-        StubNode(name, (), (), (StubEndpoint(TOPIC, PUBLISHES, "chat", type_, False),), ())
+        StubNode(name, (), (), (Endpoint(TOPIC, PUBLISHES, "chat", type_),), ())
         for name, type_ in (("talker", "std_msgs/msg/String"), ("listener", "std_msgs/msg/Bool"))
     )
     assert split_over_processes([("robot1", text), ("robot1", flag)]) == [[text], [flag]]
@@ -158,7 +159,7 @@ def test_an_order_survives_the_pipe() -> None:
 
 @pytest.mark.parametrize(("role", "parts"), [(SERVES, PUBLISHES), (CALLS, SUBSCRIBES)])
 def test_an_action_without_its_type_is_three_services_and_two_topics(role: str, parts: str) -> None:
-    made = list(action_parts(StubEndpoint(ACTION, role, "go", "x/action/Go", False)))
+    made = list(action_parts(Endpoint(ACTION, role, "go", "x/action/Go")))
     assert [(part.kind, part.role, part.name) for part in made] == [
         (SERVICE, role, "go/_action/send_goal"),
         (SERVICE, role, "go/_action/cancel_goal"),
@@ -225,7 +226,7 @@ def sent(layout: str, *stacks: str) -> dict[str, list[Edge]]:
     inventory, naming = rewritten(layout)
     nodes = [node for stack in stacks for node in stack_of(built_in(NEWEST_LTS), stack)]
     reading = read(inventory.document.source, "rover.urdf", builtin_tree((), NEWEST_LTS).vocabulary)
-    plugins = [facts for facts, _ in plugin_nodes(reading, "robot1")]
+    plugins = [it.fact for it in plugin_nodes(reading, "robot1")]
     found = edges_of("robot1", inventory, nodes, plugins, naming)
     return {node.removesuffix("_robot1"): edges for (_, node), edges in found.items() if edges}
 

@@ -8,13 +8,12 @@ from collections.abc import Sequence
 import pytest
 from graph_cases import CASES, Case, as_planned, environment, read_plan, sent, with_node
 from graph_cases import healthy as planned
-from plans import PlannedRobot
+from plans import PlannedRobot, planned_end
 from plans import planned as as_plan
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING
 from multibot_rewrite.live.watching import Verdict, WatchState, with_found
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, Edge, System
 
 TEXT, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"
@@ -210,7 +209,7 @@ def test_a_robots_name_that_is_a_word_of_its_frames_is_not_there_twice(
     own = {name: (f"base/{name}", f"arm_upper/{name}") for name in (robot, "other")}
     plan = fleet("/ROBOT/tf", **own)
     frame = f"{robot}_base_{robot}"
-    seen = graph(plan, *below(f"arm_upper/{robot}", frame, topic=f"/{robot}/tf_static"))
+    seen = graph(plan, *below(f"base/{robot}", frame, topic=f"/{robot}/tf_static"))
     assert found(plan, seen) == [(code, robot, (frame,))]
 
 

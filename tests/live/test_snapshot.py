@@ -129,7 +129,7 @@ def test_any_snapshot_survives_the_file(node: Node, qos: Qos, frame: Edge, cavea
 
 def test_the_file_is_plain_json_with_null_for_no_limit() -> None:
     value = json.loads(to_json(SNAPSHOT))
-    assert value["schema"] == 2
+    assert value["schema"] == 3
     assert value["ends"][0]["qos"]["deadline"] is None
     assert value["ends"][0]["qos"]["lifespan"] == 10.0
     # A record a line, so that two snapshots can be compared line by line.
@@ -166,10 +166,10 @@ NODE_OBJECT = {"name": "/a", "process": ""}
         (b"{", "g.json:1:2: not valid JSON"),
         (b"\xff", "g.json: not valid JSON: it is not UTF-8; use"),
         (b"[" * 100_000, "g.json:1:1: not valid JSON: it is nested deeper than 100 levels"),
-        (b"[]", "g.json: not a snapshot, but []"),
-        (changed("schema"), "g.json: schema: expected 2, not null; take the snapshot again"),
-        (changed("schema", to=3), "g.json: schema: expected 2, not 3"),
-        (changed("schema", to=True), "g.json: schema: expected 2, not true"),
+        (b"[]", "g.json: no plan or snapshot, but []; use the file that"),
+        (changed("schema"), "g.json: schema: expected 3, not null; write it again with"),
+        (changed("schema", to=4), "g.json: schema: expected 3, not 4"),
+        (changed("schema", to=True), "g.json: schema: expected 3, not true"),
         (changed("nodes", to={}), "g.json: nodes: expected a list, not {}"),
         (changed("nodes", 1, to="x"), 'g.json: nodes[1]: expected an object, not "x"'),
         (changed("nodes", 1, "name"), "g.json: nodes[1].name: missing"),
@@ -199,7 +199,10 @@ NODE_OBJECT = {"name": "/a", "process": ""}
         (changed("edges", 1, "transform", 0, to=1e200), "edges[1].transform: expected 7 numbers"),
         (changed("edges", 1, "transform", 3, to="x"), "transform[3]: expected a number"),
         (changed("ends", 0, to=NODE_OBJECT), "g.json: ends[0].kind: missing"),
-        (changed("edges", 0, to=NODE_OBJECT), "g.json: edges[0].child: missing"),
+        (
+            changed("edges", 0, to=NODE_OBJECT),
+            "g.json: edges[0].name: unknown key; the keys are child",
+        ),
         (changed("environment", to=NODE_OBJECT), "g.json: environment.name: unknown key"),
         (changed("environment", to=None), "g.json: environment: expected an object"),
         (changed("environment", "settled", to="yes"), "expected one of expected, quiet, timeout"),

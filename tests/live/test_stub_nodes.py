@@ -12,8 +12,9 @@ from typing import Any
 
 import pytest
 
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.live import stub_nodes
-from multibot_rewrite.live.rehearsal import StubEndpoint, StubNode, to_order
+from multibot_rewrite.live.rehearsal import StubNode, to_order
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -116,7 +117,7 @@ def rows(monkeypatch: pytest.MonkeyPatch, ros: Ros, *stubs: StubNode, turns: int
     return [("replaced", replaced), *ros.rows]
 
 
-def stub(*endpoints: StubEndpoint, edges: Any = ()) -> StubNode:
+def stub(*endpoints: Endpoint, edges: Any = ()) -> StubNode:
     return StubNode("a", ("-r", "x:=y"), ("-p",), endpoints, edges)
 
 
@@ -134,7 +135,7 @@ def stub(*endpoints: StubEndpoint, edges: Any = ()) -> StubNode:
 def test_an_endpoint_is_opened_as_it_is(
     kind: str, role: str, type_: str, made: Row, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    node = stub(StubEndpoint(kind, role, "t", type_, False))
+    node = stub(Endpoint(kind, role, "t", type_))
     found = rows(monkeypatch, Ros(), node)
     assert found == [("replaced", {}), ("node", "a", "-r", "x:=y"), made]
 
@@ -152,16 +153,14 @@ def test_a_type_that_is_not_installed_is_replaced_and_told(
     kind: str, type_: str, used: str, replaced: object, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     role = SUBSCRIBES if kind == TOPIC else CALLS
-    found = rows(monkeypatch, Ros(type_), stub(StubEndpoint(kind, role, "t", type_, False)))
+    found = rows(monkeypatch, Ros(type_), stub(Endpoint(kind, role, "t", type_)))
     assert found[0] == ("replaced", replaced) and found[-1] == ("a", role, "t", used)
 
 
 def test_an_action_without_its_type_is_its_services_and_topics(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    found = rows(
-        monkeypatch, Ros(NAVIGATE), stub(StubEndpoint(ACTION, SERVES, "go", NAVIGATE, False))
-    )
+    found = rows(monkeypatch, Ros(NAVIGATE), stub(Endpoint(ACTION, SERVES, "go", NAVIGATE)))
     assert found[0] == ("replaced", {NAVIGATE: EMPTY})
     assert {(it[1], it[2]) for it in found[2:]} == {
         ("serves", "go/_action/send_goal"),
@@ -175,9 +174,9 @@ def test_an_action_without_its_type_is_its_services_and_topics(
 def test_what_a_helper_node_has_is_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     """One helper of each name: its words are those of the process, its names below its maker's."""
     node = stub(
-        StubEndpoint(TOPIC, SUBSCRIBES, "tf", EMPTY, True),
-        StubEndpoint(TOPIC, SUBSCRIBES, "tf_static", EMPTY, True),
-        StubEndpoint(TOPIC, SUBSCRIBES, "~/scene", EMPTY, True, "_private_*"),
+        Endpoint(TOPIC, SUBSCRIBES, "tf", EMPTY, helper=True),
+        Endpoint(TOPIC, SUBSCRIBES, "tf_static", EMPTY, helper=True),
+        Endpoint(TOPIC, SUBSCRIBES, "~/scene", EMPTY, helper=True, by="_private_*"),
     )
     _, first, listener, *found = rows(monkeypatch, Ros(), node)
     assert first[:2] == ("node", "a") and listener[2:] == ("-p",)
@@ -191,8 +190,8 @@ def test_what_a_helper_node_has_is_its_own(monkeypatch: pytest.MonkeyPatch) -> N
 def test_clients_of_a_helper_node_are_not_on_a_listener(monkeypatch: pytest.MonkeyPatch) -> None:
     """As bt_navigator calls them from bt_navigator_navigate_to_pose_rclcpp_node."""
     node = stub(
-        StubEndpoint(SERVICE, CALLS, "spin", EMPTY_SERVICE, True),
-        StubEndpoint(TOPIC, SUBSCRIBES, "/tf", EMPTY, True),
+        Endpoint(SERVICE, CALLS, "spin", EMPTY_SERVICE, helper=True),
+        Endpoint(TOPIC, SUBSCRIBES, "/tf", EMPTY, helper=True),
     )
     found = rows(monkeypatch, Ros(), node)
     made = [str(it[1]) for it in found if it[0] == "node"]
@@ -221,7 +220,7 @@ def test_transforms_are_sent_once_or_again_and_again(
         edge_of("base_link", "wheel", False),
         edge_of("base_link", "scan", True),
     )
-    node = stub(StubEndpoint(TOPIC, PUBLISHES, topic, TF, False), edges=edges)
+    node = stub(Endpoint(TOPIC, PUBLISHES, topic, TF), edges=edges)
     static = topic.endswith("tf_static")
     ros = Ros(absent)
     found = rows(monkeypatch, ros, node, turns=2)

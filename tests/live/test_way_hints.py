@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import pytest
 from paths import ROBOTS
+from plans import planned_end
 
 from multibot_rewrite.fleet.fleet import expected, make_fleet
 from multibot_rewrite.rules.system.causes import how_to_remap, why_other_name
-from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
+from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.index import index
+from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import System
 

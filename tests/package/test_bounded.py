@@ -29,9 +29,8 @@ from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines
 from multibot_rewrite.lint.config.baseline import read_baseline
-from multibot_rewrite.spelling.plan_file import from_json as from_json_plan
-from multibot_rewrite.spelling.plan_file import from_yaml
-from multibot_rewrite.system.json import from_json
+from multibot_rewrite.system.json import from_json, from_yaml
+from multibot_rewrite.system.json import from_json as from_json_plan
 
 NODES = Path(knowledge.__file__).parent / "nodes"
 

@@ -10,9 +10,11 @@ from pathlib import Path
 import live_commands
 import page_commands
 import pytest
-import yaml
 from page_commands import Shown
 from paths import ROOT
+from plans import own, robot_named
+
+from multibot_rewrite.spelling.plan_file import read_plan
 
 pytestmark = pytest.mark.slow
 
@@ -132,10 +134,10 @@ def test_two_robots_differ_by_their_names_alone(built: dict[str, Path]) -> None:
 def test_the_frames_of_parameters_are_links_or_sent(built: dict[str, Path]) -> None:
     """A frame in a built parameter file is one that the plan has."""
     folder = built["nav2-namespace_and_prefix"]
-    plan = yaml.safe_load((folder / "plan.yaml").read_text())
-    for robot, wanted in plan["robots"].items():
-        known = {*wanted["frames"], *plan["shared_frames"], *wanted.get("other_frames", ())}
-        text = (folder / robot / "nav2_params.yaml").read_text()
+    plan = read_plan((folder / "plan.yaml").read_bytes(), "plan.yaml")
+    for robot in plan.robots:
+        known = {*robot.frames, *plan.shared_frames, *robot.other_frames}
+        text = (folder / robot.name / "nav2_params.yaml").read_text()
         frames = re.findall(r"^ *\w*(?:frame|frame_id): *(\S+)", text, re.MULTILINE)
         assert len(frames) > 15
         assert set(frames) <= known
@@ -145,26 +147,27 @@ def test_three_names_go_to_three_places(built: dict[str, Path]) -> None:
     folder = built["fleet-namespace_and_prefix"]
     commands = (folder / "commands.md").read_text()
     assert "-name Robot1 " in commands and "-name Robot2 " in commands
-    plan = yaml.safe_load((folder / "plan.yaml").read_text())
+    plan = read_plan((folder / "plan.yaml").read_bytes(), "plan.yaml")
     for robot in ("robot1", "robot2"):
-        own = plan["robots"][robot]
-        assert {it.split("/")[0] for it in own["frames"]} == {f"{robot}_tf"}
-        assert {it.split("/")[1] for it in own["nodes"]} == {robot}
+        frames = robot_named(plan, robot).frames
+        assert {it.split("/")[0] for it in frames} == {f"{robot}_tf"}
+        assert {it.split("/")[1] for it in own(plan, robot)} == {robot}
         assert f"{robot}_tf_wheel_left_joint" in (folder / robot / "hexbase.urdf").read_text()
 
 
 def test_everything_has_the_postfix(built: dict[str, Path]) -> None:
     folder = built["fleet-two_robots_postfix"]
-    plan = yaml.safe_load((folder / "plan.yaml").read_text())
-    for robot, own in plan["robots"].items():
-        assert own["tf"] == f"/tf/{robot}"
-        assert all(it.endswith(f"/{robot}") for it in own["frames"])
-        assert all(it.endswith(f"_{robot}") and it.count("/") == 1 for it in own["nodes"])
-        names = [end[2] for ends in own["nodes"].values() for end in ends]
+    plan = read_plan((folder / "plan.yaml").read_bytes(), "plan.yaml")
+    for robot, frames, tf, *_ in plan.robots:
+        assert tf == f"/tf/{robot}"
+        assert all(it.endswith(f"/{robot}") for it in frames)
+        nodes = own(plan, robot)
+        assert all(it.endswith(f"_{robot}") and it.count("/") == 1 for it in nodes)
+        names = [it.name for it in plan.ends if it.node in nodes]
         assert f"/cmd_vel/{robot}" in names
         # Below a camera's name its own topics follow.
         ends = (f"/{robot}", f"_{robot}/image_raw", f"_{robot}/camera_info")
-        assert all(it.endswith(ends) for it in names if it not in plan["shared_topics"])
+        assert all(it.endswith(ends) for it in names if it not in plan.shared_topics)
 
 
 def test_the_tree_hangs_below_the_world(built: dict[str, Path]) -> None:

@@ -3,13 +3,31 @@
 
 from __future__ import annotations
 
+import fnmatch
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from counted_steps import growth
+from counted_steps import growth, steps
 from fleet_folder import fleet_folder
+from graph_cases import GRAPHS as SAVED
+from graph_examples import read_example, read_system
 from growing import GROWING, description
+from growing_files import (
+    FLEETS,
+    GRAPHS,
+    LAUNCHED,
+    copies,
+    graph_of,
+    launch_file,
+    message,
+    written,
+)
+from launched_here import read_here
+from made_bags import TEXT, Made, write
+from paths import ROOT
+from rosbags.rosbag2 import Reader
 
 from multibot_rewrite import MultibotError, load_fleet, rewrite, rewrite_file
 from multibot_rewrite.base import nearest
@@ -20,12 +38,33 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.checks import audit, references
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.producers.bags.read import _recording
+from multibot_rewrite.producers.evidence import parameter_files
+from multibot_rewrite.producers.launch import bridges, of_robot
+from multibot_rewrite.producers.snapshot_file import read_snapshot
+from multibot_rewrite.rules.check import RULES, check, judge
 from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.system import slips
 
 SMALL, LARGE = 100, 400
-REMEMBERED = (nearest._nearest,)
+REMEMBERED = (
+    nearest._nearest,
+    slips._letters,
+    parameter_files._sections,
+    of_robot.document_of,
+    of_robot.has_sections,
+    bridges._of_text,
+    fnmatch._compile_pattern,  # type: ignore[attr-defined]
+)
 # As much may be made once, and found again by halving.
 SLACK = 1.15
+MANY = """
+layout: tf-per-robot
+distro: jazzy
+stack: nav2
+description: {}
+robots: [{}]
+"""
 ONE_LAYOUT = """
 layout: frames-per-robot
 distro: jazzy
@@ -33,6 +72,13 @@ simulator: none
 description: robot.urdf
 robots: [{name: robot1}, {name: robot2}]
 """
+
+
+def forget() -> None:
+    """What a look before has remembered would make the small one cheaper alone."""
+    re.purge()
+    for remembered in REMEMBERED:
+        remembered.cache_clear()
 
 
 def rewritten(data: bytes) -> None:
@@ -54,9 +100,7 @@ def linted(data: bytes) -> None:
 def test_cost_grows_with_the_number(what: str, work: Callable[[bytes], None]) -> None:
     def prepared(count: int) -> Callable[[], None]:
         data = description(what, count)
-        # What a look before has remembered would make the small one cheaper alone.
-        for remembered in REMEMBERED:
-            remembered.cache_clear()
+        forget()
         return lambda: work(data)
 
     assert growth(prepared, SMALL, LARGE) < SLACK
@@ -74,6 +118,28 @@ def test_cost_of_a_fleet_grows_with_the_links_in_a_chain(tmp_path: Path) -> None
 
     assert prepared(SMALL)() == 0
     assert growth(prepared, SMALL, LARGE) < SLACK
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "bound"), [("robot{}", 1.015), ("robot_{}", 1.06)])
+def test_each_further_robot_costs_the_same(name: str, bound: float, tmp_path: Path) -> None:
+    """The nodes, topics and bridges of all robots were looked through once for each of them. Of names
+    within each other (robot and robot_1) all robots are read back, and some names are compared."""
+    rover = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
+
+    def cost(count: int) -> int:
+        folder = tmp_path / str(count)
+        folder.mkdir()
+        names = [name.format(at) for at in range(1, count)]
+        rows = ", ".join(
+            f"{{name: {it}, pose: {{y: {at}}}}}" for at, it in enumerate(["robot", *names])
+        )
+        path = fleet_folder(folder, MANY.format(rover, rows))
+        return steps(lambda: main(["build", str(path), "-o", str(tmp_path / "out"), "--quiet"]))
+
+    cost(4)
+    few, more, most = map(cost, (10, 20, 30))
+    assert (most - more) / (more - few) < bound
 
 
 @pytest.mark.parametrize("turned", [False, True])
@@ -230,3 +296,107 @@ def test_a_place_is_found_from_the_block_it_is_in(
     for at in range(0, len(source), 1_000):
         locate(source, at)
     assert max(read) <= 4096
+
+
+def done(words: list[str]) -> None:
+    """A command that reads what it is given, whatever it finds."""
+    assert main(words) in (0, 1, 3)
+
+
+@pytest.mark.sample(8)
+@pytest.mark.slow
+@pytest.mark.parametrize("what", LAUNCHED)
+def test_checking_a_launch_file_costs_what_is_in_it(
+    what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read_here(monkeypatch, tmp_path)
+
+    def prepared(count: int) -> Callable[[], None]:
+        files = LAUNCHED[what](count)
+        path = written(tmp_path / f"of_{count}", files) / launch_file(files)
+        forget()
+        return lambda: done(["check-launch", str(path), "--distro", "jazzy"])
+
+    assert growth(prepared, SMALL // 2, LARGE // 2) < SLACK
+
+
+@pytest.mark.sample(4)
+@pytest.mark.slow
+@pytest.mark.parametrize("plan", [[], [str(ROOT / SAVED / "plan.yaml")]], ids=["alone", "planned"])
+@pytest.mark.parametrize("what", GRAPHS)
+def test_checking_a_graph_costs_what_is_in_it(what: str, plan: list[str], tmp_path: Path) -> None:
+    def prepared(count: int) -> Callable[[], None]:
+        path = graph_of(what, count, tmp_path)
+        forget()
+        return lambda: done(["check", *plan, "--from", str(path), "--distro", "jazzy"])
+
+    assert growth(prepared, SMALL, LARGE) < SLACK
+
+
+# Of many names without a robot each may be meant by each: they are held against one another.
+COMPARED = {"MG329", "MG401", "MG418"}
+OF_ROBOTS = sorted(
+    (code, kind)
+    for code, it in RULES.items()
+    for kind in ("bad", "good")
+    if code not in COMPARED and "robot" in getattr(it, kind)
+)
+
+
+@pytest.mark.sample(12)
+@pytest.mark.slow
+@pytest.mark.parametrize(("code", "kind"), OF_ROBOTS)
+def test_what_is_wrong_with_each_robot_costs_what_the_robots_do(code: str, kind: str) -> None:
+    """Each rule once looked at all robots for each of them."""
+    example = getattr(RULES[code], kind)
+
+    def prepared(count: int) -> Callable[[], object]:
+        forget()
+        text = copies(example, count)
+        if "planned: " in text:
+            pair = read_example(text)
+            return lambda: check(*pair)
+        seen = read_system(text)
+        return lambda: judge(seen)
+
+    assert growth(prepared, 15, 60) < SLACK
+
+
+@pytest.mark.sample(4)
+@pytest.mark.slow
+@pytest.mark.parametrize("what", FLEETS)
+def test_building_a_fleet_costs_what_is_in_its_files(what: str, tmp_path: Path) -> None:
+    def prepared(count: int) -> Callable[[], None]:
+        files = {**FLEETS[what](count)}
+        folder = tmp_path / str(count)
+        folder.mkdir(exist_ok=True)
+        path = fleet_folder(folder, files.pop("fleet"), **files)
+        return lambda: done(["build", str(path), "-o", f"{folder}/out", "--quiet"])
+
+    assert growth(prepared, 40, 160) < SLACK
+
+
+@pytest.mark.slow
+def test_reading_a_bag_costs_what_its_topics_do(tmp_path: Path) -> None:
+    def prepared(count: int) -> Callable[[], object]:
+        path = tmp_path / str(count)
+        if not path.exists():
+            write(path, [Made(f"/t{at}", TEXT, 1) for at in range(count)])
+
+        def read() -> None:
+            with Reader(path) as reader:
+                assert len(_recording(reader).topics) == count
+
+        return read
+
+    assert growth(prepared, 10, 40) < SLACK
+
+
+@pytest.mark.slow
+def test_reading_a_message_of_a_graph_costs_what_is_in_it(tmp_path: Path) -> None:
+    def prepared(count: int) -> Callable[[], object]:
+        path = tmp_path / f"{count}.yaml"
+        path.write_text(message(count))
+        return lambda: read_snapshot(str(path))
+
+    assert growth(prepared, SMALL, LARGE) < SLACK

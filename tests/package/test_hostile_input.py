@@ -256,6 +256,25 @@ def test_standard_input_without_an_end(program: str, tmp_path: Path) -> None:
     assert "it is over the limit of 16,777,216 bytes" in (run.stderr + run.stdout).decode()
 
 
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("tree.xml", (POSTFIX, "tree.xml", "robot1")),
+        ("in.urdf.xacro", (MULTIBOT, "init", "in.urdf.xacro", "--yes")),
+        ("in.urdf.xacro", (MULTIBOT, "init", ".", "--yes")),
+        ("in.launch.py", (MULTIBOT, "check-launch", "in.launch.py")),
+        ("plan.yaml", (MULTIBOT, "check", "plan.yaml", "--from", "plan.yaml")),
+    ],
+)
+def test_nobody_waits_for_a_pipe(name: str, words: tuple[str, ...], tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / name)
+    program, *rest = words
+    command = [sys.executable, "-m", f"multibot_rewrite.cli.{program}", *rest]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, timeout=PATIENCE, check=False)
+    assert run.returncode == 2
+    assert run.stderr.count(b"\n") == 1 and b"Traceback" not in run.stderr
+
+
 def test_links_in_a_circle_pipes_and_folders_are_told_or_left_out(tmp_path: Path) -> None:
     # Beside it are the folders of all other tests.
     here = tmp_path / "here"

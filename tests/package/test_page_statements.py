@@ -31,8 +31,9 @@ TOP = {
     *("action.yml", "benchmarks", "conftest.py", "docs", "examples", "fixtures"),
     *("multibot_rewrite", "tests", "tools"),
 }
-# Paths that are those of other repositories, or of a reader's own files.
+# Paths that are those of other repositories, of a reader's own files, or of any code.
 ELSEWHERE = {
+    "rules/pages/CODE.md",
     "description/urdf/arm.xacro",
     "docs/design.md",
     "share/NAME",

@@ -10,7 +10,6 @@ import yaml
 from launched_nodes import AT, launched, runs, started
 
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.producers.launch.bridges import (
     Row,
     bridge_rows,
@@ -19,7 +18,7 @@ from multibot_rewrite.producers.launch.bridges import (
     refused_rows,
     told_rows,
 )
-from multibot_rewrite.producers.launch.records import RunningNode
+from multibot_rewrite.spelling.records import Given, Run
 
 BRIDGE = ("ros_gz_bridge", "parameter_bridge", "bridge")
 
@@ -151,8 +150,8 @@ def rows_of_text(text: str) -> list[Row]:
     return list(bridged_by(running(texts=(text,))))
 
 
-def running(program: str = "ros_gz_bridge/parameter_bridge", **more: object) -> RunningNode:
-    node = RunningNode("b", "/", (), (), "/", None, {}, "b", (), program, AT)
+def running(program: str = "ros_gz_bridge/parameter_bridge", **more: object) -> Run:
+    node = Run("", "b", "/", "b", (), program=program, place=AT)
     return node._replace(**more)  # type: ignore[arg-type]
 
 
@@ -162,7 +161,7 @@ def test_a_bridge_is_known_by_its_program() -> None:
     assert all(is_bridge(running(it)) for it in (*programs, *images))
     assert not is_bridge(running("acme/bridge"))
     facts = NodeFacts("b", "acme", (), known="ros_gz_bridge")
-    assert is_bridge(running("acme/bridge", facts=facts))
+    assert is_bridge(running("acme/bridge", fact=facts))
     assert list(bridged_by(running("acme/bridge", texts=(CONFIG,)))) == []
     rows = bridged_by(running(arguments=("/x@a/srv/B", "/y@a/msg/C@gz.C", "-v")))
     assert [(it.inside, it.end.kind, it.end.role) for it in rows] == [

@@ -6,10 +6,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-import yaml
 from paths import FIXTURES, ROOT
+from plans import optional, own
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.spelling.plan_file import read_plan
 
 EXAMPLES = sorted((ROOT / "examples").rglob("fleet*.yaml"))
 
@@ -77,8 +78,8 @@ def test_controllers_in_gazebo_start_as_planned(
     release: str, stack: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     of_classic = CONTROLLED
-    for theirs, own in CLASSICS.items():
-        of_classic = of_classic.replace(theirs, own)
+    for theirs, classic in CLASSICS.items():
+        of_classic = of_classic.replace(theirs, classic)
     (tmp_path / "arm.urdf").write_text(CONTROLLED if stack.startswith("gz") else of_classic)
     (tmp_path / "control.yaml").write_text(CONTROL)
     fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
@@ -134,11 +135,11 @@ def test_what_a_robot_has_not_is_not_planned(robot: str, simulator: str, tmp_pat
     assert main(command) == (1 if asked else 0)
     assert main([*command, *asked]) == 0
     out = tmp_path / "out"
-    plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot2"]
+    plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
     runs = robot == "rover_gz.urdf" and simulator == "gazebo"
     names = {f"/robot2/{it}" for it in ("gz_ros_control", "ros_gz_bridge")}
-    assert names & plan["nodes"].keys() == (names if runs else set())
-    assert "/robot2/rviz2" in plan["optional"]
+    assert names & {*own(plan, "robot2")} == (names if runs else set())
+    assert "/robot2/rviz2" in optional(plan, "robot2")
     launched = ["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]
     assert main([*launched, *asked]) in (0, 3)
 

@@ -36,6 +36,9 @@ def caused(error: BaseException, cause: BaseException) -> BaseException:
         (RecursionError("x"), "it includes or calls itself without an end"),
         (FileNotFoundError(2, "x", "gazebo"),
          "it starts the program 'gazebo' itself, which is not installed here"),
+        (AttributeError("x", name="generate_launch_description"),
+         "it has no function generate_launch_description(): write one that returns a"
+         " LaunchDescription"),
         (SystemExit(3),
          "it ends itself (sys.exit(3)); give it the arguments that it reads from the command line"
          " (NAME:=VALUE)"),

@@ -35,7 +35,11 @@ PUBLISHER = "robot_state_publisher"
 
 def test_a_launched_node_runs_and_the_plan_says_its_line() -> None:
     found = runs(launched(AMCL))["amcl"]
-    assert (found.origin, found.when, found.package) == ("bringup.launch.py:12", "", "nav2_amcl")
+    assert (str(found.origin), found.when, found.package) == (
+        "bringup.launch.py:12",
+        "",
+        "nav2_amcl",
+    )
     assert "scan" in {it.name for it in found.endpoints}
 
 
@@ -139,7 +143,7 @@ def test_a_rule_leads_from_the_nodes_own_namespace(namespace: str, target: str, 
 def test_a_costmap_comes_with_the_server_that_has_it() -> None:
     found = runs(launched(started("nav2_controller", "controller_server", "controller_server")))
     assert set(found) == {PUBLISHER, "controller_server", "local_costmap/local_costmap"}
-    assert found["local_costmap/local_costmap"].origin == "bringup.launch.py:12"
+    assert found["local_costmap/local_costmap"].origin.place == Place("bringup.launch.py", 12)
 
 
 def test_a_component_is_in_its_container() -> None:

@@ -11,6 +11,7 @@ from lxml import etree
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import (
+    UNKNOWN,
     Claim,
     Endpoint,
     FrameParameter,
@@ -21,7 +22,6 @@ from multibot_rewrite.knowledge.records import (
 from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
 from multibot_rewrite.producers.ends import bridge_ends, node_ends
 from multibot_rewrite.producers.evidence.hardware import Exported
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
 from multibot_rewrite.producers.launch.launched import file_of
@@ -31,7 +31,6 @@ from multibot_rewrite.producers.launch.records import (
     LaunchGraph,
     LaunchNote,
     ParameterText,
-    RunningNode,
 )
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
 from multibot_rewrite.producers.launch.running import Knowledge
@@ -53,6 +52,7 @@ from multibot_rewrite.producers.transforms import (
     lookups_of,
     node_edges,
 )
+from multibot_rewrite.spelling.records import Given, GivenNode, Run
 from multibot_rewrite.system.records import (
     COMPUTER,
     DEVICE,
@@ -75,6 +75,7 @@ from multibot_rewrite.system.records import (
     Lookup,
     Parameter,
     Place,
+    Sure,
     edge_of,
 )
 
@@ -106,7 +107,7 @@ def test_the_ends_of_a_node_by_the_names_of_its_code() -> None:
         (SUBSCRIBES, "/cmd_vel", RUNS, AT),
         (PUBLISHES, "/a/driver/either", MAY, AT),
         (SUBSCRIBES, "/a/driver/either", MAY, AT),
-        (PUBLISHES, "/a/maybe", MAY, AT),
+        (PUBLISHES, "/a/maybe", Sure("may", "x"), AT),
     ]
     assert {it.node for it in found} == {"/a/driver"}
     assert (found[0].type, found[0].code_name, found[0].also) == (
@@ -217,7 +218,7 @@ def test_a_model_in_a_simulator_has_no_devices(
         if spawned is not None
     )
     values = {"robot_description": Given(text, THERE)}
-    node = RunningNode("n", "/r", (), (), "/r", None, values, "p", (), "acme/arm", AT)
+    node = Run("", "n", "/r", "n", (), values=values, program="acme/arm", place=AT)
     known = Knowledge({}, load_known_nodes("", "jazzy"), "jazzy")
     made = [*_addresses(node, known, Models(found, ()))]
     assert made == [Address("device", "robot_ip", "10.0.0.2", "/r/n", AT)] * there
@@ -240,11 +241,11 @@ def test_the_frame_of_a_plugin_is_that_of_the_measurements_it_sends(
 
 
 def test_what_a_launch_does_not_say_is_told_once() -> None:
-    node = RunningNode("n", "/r", (), (), "/r", None, {}, "p", (), "acme/arm", AT)
+    node = Run("", "n", "/r", "n", (), program="acme/arm", place=AT)
     viewer, bridge = (
         node._replace(name="rviz2"), node._replace(program="ros_gz_bridge/parameter_bridge"),
     )  # fmt: skip
-    tree = node._replace(name="rsp", facts=NodeFacts("rsp", "robot_state_publisher", ()))
+    tree = node._replace(name="rsp", fact=NodeFacts("rsp", "robot_state_publisher", ()))
     notes = [
         LaunchNote(AT, "x is lost"), LaunchNote(THERE, "x is lost"),
         LaunchNote(AT, "it fails", fails=True),
@@ -308,9 +309,9 @@ def test_what_a_node_puts_before_its_frames(
     """ros_filter.cpp: tf_prefix; diff_drive_controller.cpp: its namespace, unless it is told not to."""
     facts = NodeFacts("n", "a", (), prefix_switch=switch)
     given = {name: Given(it, THERE) for name, it in values.items()}  # type: ignore[arg-type]
-    node = RunningNode("n", "/r", (), (), "/r", facts, given, "p", (), "acme/arm", AT)
+    node = Run("", "n", "/r", "n", (), facts, values=given, program="acme/arm", place=AT)
     assert prefix_of(node) == prefix
-    assert prefix_of(node._replace(facts=None)) == (
+    assert prefix_of(node._replace(fact=UNKNOWN)) == (
         f"{values['tf_prefix']}".strip("/") + "/" if values.get("tf_prefix") else ""
     )
 
@@ -374,10 +375,10 @@ def test_which_time_a_node_runs_on(
     """The default is false (rclcpp time_source.cpp); what only a run tells is untold."""
     facts = NodeFacts("n", "a", (), known="n")
     values = {} if value is None else {"use_sim_time": Given(value, THERE)}
-    node = RunningNode("n", "/", (), (), "/", facts, values, "p", (), "acme/arm", AT)
+    node = Run("", "n", "/", "n", (), facts, values=values, program="acme/arm", place=AT)
     others = (
-        node._replace(facts=None), node._replace(facts=facts._replace(known="")),
-        node._replace(facts=facts._replace(known="static_transform_publisher")),
+        node._replace(fact=UNKNOWN), node._replace(fact=facts._replace(known="")),
+        node._replace(fact=facts._replace(known="static_transform_publisher")),
         node._replace(program="ros_gz_bridge/parameter_bridge"),
     )  # fmt: skip
     said = [LaunchNote(at, "lost", parameters, file) for at, parameters, file in notes]

@@ -12,7 +12,7 @@ import pytest
 from paths import FIXTURES
 
 from multibot_rewrite.producers.launch import includes, places, visit
-from multibot_rewrite.producers.launch.entities import Entity
+from multibot_rewrite.producers.launch.entities import Entity, root_of
 from multibot_rewrite.producers.launch.read_files import descriptions_in
 from multibot_rewrite.producers.launch.records import ParameterText
 from multibot_rewrite.producers.launch.stand_in import (
@@ -623,3 +623,8 @@ def test_what_is_repeated_in_xml(context: LaunchContext, tmp_path: Path) -> None
         # What is at hand in a loop is not known after it.
         with pytest.raises(RuntimeError, match="'name' does not exist"):
             values.ForEachVar("name").perform(context)
+
+
+def test_elements_that_have_no_end_are_told_in_our_words() -> None:
+    with pytest.raises(SyntaxError, match="nested deeper than in any launch file"):
+        root_of(b"<launch>" * 1_000 + b"</launch>" * 1_000)

@@ -25,9 +25,9 @@ from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.producers.bags.recording import RecordedTopic, as_snapshot
 from multibot_rewrite.rules.check import ABSENCE, check
-from multibot_rewrite.spelling.plan_file import from_yaml, to_yaml
+from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.guess import guess_robots
-from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.json import from_yaml, to_json
 
 NAMED = {it.name: it for it in FAULTS}
 

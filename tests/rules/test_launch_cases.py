@@ -8,7 +8,6 @@ spawner.py.
 from __future__ import annotations
 
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -21,6 +20,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.lint.launched import named_findings
+from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
@@ -38,9 +38,13 @@ from multibot_rewrite.rules.system.interfaces import (
 from multibot_rewrite.rules.system.planned_nodes import missing_node, unplanned_node
 from multibot_rewrite.system.guess import guess_robots, whose_by_guess
 from multibot_rewrite.system.index import index
-from multibot_rewrite.system.records import Node, Place, System
+from multibot_rewrite.system.ownership import whose_by_plan
+from multibot_rewrite.system.records import Node, Place, Robot, System
 
-START = "start ros2_control_node there, or load gz_ros2_control in the description"
+START = (
+    "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
+    "that starts it beside this one"
+)
 TF = ("tf2_ros", "static_transform_publisher", "s")
 STATE = ("robot_state_publisher", "robot_state_publisher", "rsp")
 MANAGER = ("controller_manager", "ros2_control_node", "controller_manager")
@@ -367,6 +371,21 @@ def test_a_stack_may_be_in_another_launch_file(
     assert [*as_one_of_several([other], plan, seen)] == [other]
 
 
+@pytest.mark.parametrize(("started", "level"), [("", "inconclusive"), ("/r2/arm", "error")])
+def test_what_a_node_makes_for_itself_is_left_with_it(started: str, level: str) -> None:
+    """The plan has no stack for it; of two makers the one with the longer name is meant."""
+    nodes = (
+        Node("/r1/arm", stack="moveit"),
+        Node("/r2/arm", stack="moveit"),
+        Node("/r1/arm_private_*"),
+        Node("/r1/a", stack="nav2"),
+    )
+    seen = System(tuple(map(Node, ("/r1/a", started))))
+    found = missing_node.finding("x", "y", node="/r1/arm_private_*")
+    (told,) = as_one_of_several([found], System(nodes), seen)
+    assert told.level == level
+
+
 def managed(*names: str, **values: object) -> LaunchedNode:
     given = {"autostart": True, "node_names": [*names], **values}
     return started(*LIFECYCLE, parameters=with_values(given))
@@ -550,33 +569,74 @@ SENT = "running: transform {} on /tf by /a\n"
 LOOSE, BODY = SENT.format("map -> odom"), SENT.format("base_link -> laser")
 MISSPELLED = SENT.format("odom -> base_lnk") + SENT.format("base_link -> front")
 WHOLE = SENT.format("odom -> base_link")
-PLUGIN = "<robot name='r'><gazebo><plugin name='p' filename='p'/></gazebo></robot>"
-NO_PLUGIN = "<robot name='r'><!-- <plugin/> --></robot>"
+MOVED = f"<robot name='r'>{LINK}{{}}</robot>"
+GZ_DRIVE = """<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+<left_joint>l</left_joint><right_joint>r</right_joint><topic>cmd_vel{}</topic></plugin></gazebo>"""
+CLASSIC_DRIVE = (
+    """<gazebo><plugin name="drive" filename="libgazebo_ros_planar_move.so"/></gazebo>"""
+)
+JOINTS = """<gazebo><plugin filename="gz-sim-joint-state-publisher-system"
+name="gz::sim::systems::JointStatePublisher"/></gazebo>"""
+ODD_PLUGIN = "<gazebo><plugin name='p' filename='p'/></gazebo>"
 
 
 @pytest.mark.parametrize(
     ("lines", "spawned", "becomes"),
     [
         (LOOSE + BODY, "", "warning"),
-        (LOOSE + BODY, NO_PLUGIN, "warning"),
+        (LOOSE + BODY, MOVED.format("<!-- <plugin/> -->"), "warning"),
         (LOOSE + BODY, "<robot", "warning"),
-        (LOOSE + BODY, PLUGIN, "error"),
+        (LOOSE + BODY, MOVED.format(GZ_DRIVE.format("")), "error"),
+        (LOOSE + BODY, MOVED.format(CLASSIC_DRIVE), "error"),
+        # A sensor or what tells the joints moves nothing, and what is not known may send the odometry.
+        (LOOSE + BODY, MOVED.format(JOINTS), "warning"),
+        (LOOSE + BODY, MOVED.format(ODD_PLUGIN), "warning"),
+        # Somebody may bring it to tf: a filter, a relay.
+        (
+            LOOSE + BODY + SENT.format("odom -> base_link").replace("/tf", "/sim/tf"),
+            MOVED.format(GZ_DRIVE.format("")),
+            "warning",
+        ),
         (MISSPELLED, "", "error"),
-        (WHOLE + BODY, PLUGIN, "warning"),
+        (WHOLE + BODY, MOVED.format(GZ_DRIVE.format("")), "warning"),
         (WHOLE + BODY + SENT.format("tool -> tip"), "", "warning"),
     ],
 )
 def test_how_sure_it_is_that_a_launch_file_leaves_a_tree_in_pieces(
-    lines: str, spawned: str, becomes: str
+    lines: str, spawned: str, becomes: str, known: Knowledge
 ) -> None:
     """Of a robot that nothing moves a driver may send the odometry; other pieces may be meant."""
     _, graph = read_example(lines)
     seen = index(graph, whose_by_guess(guess_robots(graph)))
-    models: Any = SimpleNamespace(found=[SimpleNamespace(spawned=bool(spawned), text=spawned)])
-    launched: Any = SimpleNamespace(models=models, nodes=())
     found = Finding("MG406", "error", "m", names=("odom", "base_link"))
-    assert as_sure(found, launched, seen).level == becomes
-    assert as_sure(found._replace(level="note"), launched, seen).level == "note"
+    made = _launch_of(spawned, known)
+    assert as_sure(found, made, seen).level == becomes
+    assert as_sure(found._replace(level="note"), made, seen).level == "note"
+
+
+def _launch_of(text: str, known: Knowledge) -> Launched:
+    spawn = started("ros_gz_sim", "create", "create", arguments=("-name", "r", "-string", text))
+    return launched(LaunchGraph((spawn,) if text else (), ()), known)
+
+
+def test_a_velocity_behind_the_name_of_its_robot_moves_it_as_well(known: Knowledge) -> None:
+    """In a fleet whose names all have the robot's behind them: cmd_vel/r1."""
+    lines = "".join(
+        f"running: transform {edge} on /tf/{robot} by /rsp_{robot}\n"
+        for robot in ("r1", "r2")
+        for edge in (f"map -> odom/{robot}", f"base_link/{robot} -> laser/{robot}")
+    )
+    _, graph = read_example(lines)
+    plan = System(
+        nodes=tuple(Node(f"/rsp_{it}", robot=it) for it in ("r1", "r2")),
+        robots=tuple(
+            Robot(it, (f"odom/{it}", f"base_link/{it}"), f"/tf/{it}") for it in ("r1", "r2")
+        ),
+    )
+    seen = index(graph, whose_by_plan(plan))
+    found = Finding("MG406", "error", "m", robot="r1", names=("odom/r1", "base_link/r1"))
+    made = _launch_of(MOVED.format(GZ_DRIVE.format("/r1")), known)
+    assert as_sure(found, made, seen).level == "error"
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.rules.system.slips import alike
+from multibot_rewrite.rules.system.slips import Spelled, alike
 
 
 @pytest.mark.parametrize(
@@ -24,4 +24,4 @@ from multibot_rewrite.rules.system.slips import alike
     ],
 )
 def test_a_slip_is_the_known_name(name: str, known: list[str], found: str) -> None:
-    assert alike(name, known, "acme/msg/A") == found
+    assert alike(name, Spelled(known), "acme/msg/A") == found

@@ -9,6 +9,7 @@ in getChildNodeOptions), and rcl takes a node's own arguments before those of it
 from __future__ import annotations
 
 import pytest
+from named_ends import named_ends
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import RELEASES
@@ -17,7 +18,7 @@ from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.live.rehearsal import stub_nodes
-from multibot_rewrite.spelling.records import NodeTable, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.way_checks import running_nodes
 from multibot_rewrite.spelling.ways import arguments, started
@@ -29,8 +30,8 @@ def made(release: str, stack: str = "nav2") -> Table:
     return build_table(ROBOTS, load_stack(stack, release), make_naming("L4"), release=release)
 
 
-def found(table: Table, node: str) -> NodeTable:
-    return next(it for it in table.nodes if it.node == node and it.robot == "robot1")
+def found(table: Table, node: str) -> Run:
+    return next(it for it in table.runs if it.node == node and it.robot == "robot1")
 
 
 @pytest.mark.more
@@ -38,7 +39,7 @@ def found(table: Table, node: str) -> NodeTable:
 @pytest.mark.parametrize("stack", ["nav2", "nav2_composed"])
 def test_a_costmap_keeps_its_name_and_its_server_has_a_namespace(release: str, stack: str) -> None:
     table = made(release, stack)
-    full = {it.node: it.full_name for it in table.nodes if it.robot == "robot1"}
+    full = {it.node: it.full_name for it in table.runs if it.robot == "robot1"}
     assert full["controller_server"] == "/robot1/controller_server"
     assert full["local_costmap/local_costmap"] == "/robot1/local_costmap/local_costmap"
     assert full["global_costmap/global_costmap"] == "/robot1/global_costmap/global_costmap"
@@ -52,12 +53,12 @@ def test_a_costmap_keeps_its_name_and_its_server_has_a_namespace(release: str, s
 def test_topics_of_a_costmap_are_those_that_others_use(release: str, stack: str) -> None:
     """With the rules that it has in its process, as rcl reads them."""
     table = made(release, stack)
-    running = {it.node.node: it for it in running_nodes(table) if it.node.robot == "robot1"}
+    running = {it.node: it for _, it in running_nodes(table) if it.robot == "robot1"}
 
     def name(node: str, topic: str, kind: str = "topic") -> str:
         it = running[node]
         rules = (parse_remap(f"{source}:={target}") for source, target in it.rules)
-        bound = bind(it.node.name, it.node.namespace, filter(None, rules))
+        bound = bind(it.name, it.namespace, filter(None, rules))
         return resolve_bound(topic, kind, bound)
 
     behaviors, costmap = "behavior_server", "local_costmap/local_costmap"
@@ -76,9 +77,7 @@ def test_topics_of_a_costmap_are_those_that_others_use(release: str, stack: str)
 @pytest.mark.more
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_lifecycle_manager_finds_a_server_in_its_namespace(release: str) -> None:
-    rules = {
-        it.source: it.target for it in found(made(release), "lifecycle_manager_navigation").rules
-    }
+    rules = dict(found(made(release), "lifecycle_manager_navigation").rules)
     assert rules["controller_server/change_state"] == "/robot1/controller_server/change_state"
     assert rules["smoother_server/change_state"] == "smoother_server_robot1/change_state"
 
@@ -95,7 +94,7 @@ def test_a_shared_name_stays_the_same_from_a_namespace() -> None:
     node = NodeFacts("driver", "acme", load_stack("amcl", "jazzy")[0].endpoints, apart=True)
     naming = make_naming("L4", shared_topics=["map"])
     table = build_table(ROBOTS, [node], naming, release="jazzy")
-    heard = {it.name for it in table.names if it.endpoint.name == "map"}
+    heard = {it.name for it in named_ends(table) if it.endpoint.name == "map"}
     assert heard == {"/map"}
 
 
@@ -119,9 +118,9 @@ def test_a_rehearsal_places_a_costmap_as_its_code_does() -> None:
     costmap = found(table, "local_costmap/local_costmap")
     nodes = [
         it._replace(namespace="/elsewhere", name="costmap_robot1") if it == costmap else it
-        for it in table.nodes
+        for it in table.runs
     ]
-    stubs = [stub for robot, stub in stub_nodes(table._replace(nodes=tuple(nodes)), {})]
+    stubs = [stub for robot, stub in stub_nodes(table._replace(runs=tuple(nodes)), {})]
     own = next(it for it in stubs if it.name == "local_costmap" and "robot1" in it.arguments[2])
     assert own.arguments[:3] == ("--ros-args", "-r", "__ns:=/robot1/local_costmap")
     assert not any("__node" in word for word in own.arguments)
@@ -135,10 +134,10 @@ def test_a_rehearsal_places_a_costmap_as_its_code_does() -> None:
 def test_a_name_that_is_joined_with_the_namespace_above(release: str, rule: str | None) -> None:
     """SpeedFilter: from Kilted on it publishes where the controller_server listens."""
     table = made(release)
-    rules = {it.source: it.target for it in found(table, "global_costmap/global_costmap").rules}
+    rules = dict(found(table, "global_costmap/global_costmap").rules)
     assert rules.get("/robot1/speed_limit") == rule
     assert rules["speed_limit"] == "/global_costmap/speed_limit/robot1"
-    server = {it.source: it.target for it in found(table, "controller_server").rules}
+    server = dict(found(table, "controller_server").rules)
     assert server["speed_limit"] == "/speed_limit/robot1"
 
 
@@ -147,8 +146,8 @@ def test_a_shared_map_reaches_a_costmap_in_its_namespace(release: str) -> None:
     """Its layer asks for /robot1/map (nav2_costmap_2d layer.cpp, joinWithParentNamespace)."""
     naming = make_naming("both", shared_topics=["map"])
     table = build_table(ROBOTS, load_stack("nav2", release), naming, release=release)
-    rules = {it.source: it.target for it in found(table, "global_costmap/global_costmap").rules}
+    rules = dict(found(table, "global_costmap/global_costmap").rules)
     assert rules["/robot1/map"] == "/map"
     alone = build_table(ROBOTS, load_stack("nav2", release), make_naming("both"), release=release)
-    own = {it.source: it.target for it in found(alone, "global_costmap/global_costmap").rules}
+    own = dict(found(alone, "global_costmap/global_costmap").rules)
     assert "/robot1/map" not in own

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pytest
+from plans import planned_end
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -16,14 +17,8 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     SentTransform,
 )
-from multibot_rewrite.spelling.plan import (
-    expect,
-    from_text,
-    named_frames,
-    planned_end,
-    tf_topic,
-)
-from multibot_rewrite.spelling.records import Home, NodeTable
+from multibot_rewrite.spelling.plan import expect, named_frames, tf_topic
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.targets import expanded, placed, target_of
 from multibot_rewrite.spelling.transforms import (
@@ -43,10 +38,11 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Node,
+    Origin,
     Place,
     System,
     edge_of,
+    origin_of,
 )
 
 SCAN = Endpoint(TOPIC, PUBLISHES, "scan", "a/msg/Scan", also=("a/msg/Old",))
@@ -64,7 +60,7 @@ MAPS = NodeFacts("map_server", "nav2", (OWN._replace(by="_made_*"),), shared=Tru
 def plan(layout: str = "L1", *facts: NodeFacts, **more: object) -> System:
     naming = make_naming(layout)
     table = build_table(["a"], facts, naming, release=NEWEST_LTS)
-    return expect(table, naming, {"a": ["base"]}, facts, **more)  # type: ignore[arg-type]
+    return expect(table, naming, {"a": ["base"]}, **more)  # type: ignore[arg-type]
 
 
 def test_ends_that_hang_on_nothing_are_planned() -> None:
@@ -107,29 +103,44 @@ def test_a_robot_may_have_another_name_in_its_frames() -> None:
 def test_a_node_says_where_its_rules_stand() -> None:
     naming = make_naming("L1")
     hosted = NodeFacts("hosted", "acme", (Endpoint(TOPIC, PUBLISHES, "/x"),), host="driver")
-    gz = NodeTable("a", "gz", "/a", "gz", (), Home(plugin="p", written=True))
+    gz = Run("a", "gz", "/a", "gz", (), NodeFacts("gz", "p", (), plugin="p"), written=True)
+    gz = gz._replace(place=Place("r.urdf", 7))
     facts = (
         DRIVER,
         hosted,
         NodeFacts("box", "acme", ()),
         NodeFacts("c", "acme", (), container="box"),
     )
-    plugins = {"a": [(NodeFacts("gz", "p", ()), gz)]}
+    plugins = {"a": [gz]}
     table = build_table(["a"], facts, naming, plugins, release=NEWEST_LTS)
-    found = expect(table, naming, {"a": []}, facts, sources={"/a/gz": "r.urdf:7"}, maybe_real=["a"])
+    found = expect(table, naming, {"a": []}, maybe_real=["a"])
     assert {it.name: (it.way, it.taker) for it in found.nodes if it.way} == {
         "/a/hosted": ("host", "/a/driver"),
         "/a/c": ("component", ""),
     }
     (made,) = (it for it in found.nodes if it.name == "/a/gz")
     assert (made.sure, made.plugin) == (MAY, Place("r.urdf", 7))
-    real = expect(table, naming, {"a": []}, facts)
+    real = expect(table, naming, {"a": []})
     assert [it.sure for it in real.nodes if it.name == "/a/gz"] == [RUNS]
 
 
-def test_where_a_node_is_named() -> None:
-    assert from_text(Node("/a"), "stack nav2") == Node("/a", stack="nav2")
-    assert from_text(Node("/a"), "a.yaml:3") == Node("/a", place=Place("a.yaml", 3))
+@pytest.mark.parametrize(
+    ("text", "origin"),
+    [
+        ("stack nav2", Origin("nav2")),
+        ("a.yaml:3", Origin(place=Place("a.yaml", 3))),
+        ("./stack of mine.yaml:3", Origin(place=Place("./stack of mine.yaml", 3))),
+        ("", Origin()),
+    ],
+)
+def test_what_names_a_node(text: str, origin: Origin) -> None:
+    assert origin_of(text) == origin
+    assert str(origin) == text
+
+
+def test_a_file_that_is_called_like_a_stack_is_a_place() -> None:
+    text = str(Origin(place=Place("stack of mine.yaml", 3)))
+    assert origin_of(text).place == Place("./stack of mine.yaml", 3)
 
 
 @pytest.mark.parametrize(

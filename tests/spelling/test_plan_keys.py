@@ -1,27 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plan as a file: every key is written, comes back, and is refused where it is wrong."""
+"""A plan as a file: every key is written, comes back, and is refused where it is wrong.
+
+The schema that editors read marks what the reader refuses.
+"""
 
 from __future__ import annotations
 
-from copy import deepcopy
+import json
+import re
+from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
+from paths import FIXTURES, ROOT
 
+from multibot_rewrite.base import editors
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.spelling.plan import robot_words, vacuous
-from multibot_rewrite.spelling.plan_file import (
-    HEAD,
-    is_fleet,
-    is_json,
-    is_plan,
-    read_plan,
-    to_json,
-    to_yaml,
-)
-from multibot_rewrite.spelling.plan_value import from_value, value_of
+from multibot_rewrite.spelling.plan_file import HEAD, is_fleet, read_plan, to_yaml
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     MAY,
     PUBLISHES,
@@ -30,6 +35,7 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Domain,
     Edge,
     End,
     Node,
@@ -42,32 +48,42 @@ from multibot_rewrite.system.records import (
 
 STRING = "std_msgs/msg/String"
 EITHER = ("/r1/drive", "/r1/spare")
+DRIVE = Node(
+    "/r1/drive",
+    robot="r1",
+    lifecycle="active",
+    host="pc",
+    way="plugin",
+    taker="/r1/gz",
+    sure=RUNS._replace(instead=EITHER),
+    place=Place("../a.yaml", 3),
+    plugin=Place("r.urdf", 7),
+)
+# What has more than its short form says stands where it is said whole.
 PLAN = System(
     nodes=(
-        Node(
-            "/r1/drive",
-            robot="r1",
-            lifecycle="active",
-            host="pc",
-            way="plugin",
-            taker="/r1/gz",
-            sure=RUNS._replace(instead=EITHER),
-            place=Place("a.yaml", 3),
-            plugin=Place("r.urdf", 7),
-        ),
+        DRIVE,
         Node("/r1/arm", robot="r1", sure=MAY, stack="nav2", way="spawner"),
         Node("/r1/spare", robot="r1", sure=MAY._replace(instead=EITHER)),
         Node("/map_server"),
     ),
     ends=(
-        End(SERVICE, SERVES, "/map", "", "", "/map_server", None, "", "/map"),
-        End(TOPIC, PUBLISHES, "/r1/x", STRING, "", "/r1/drive", None, "", "x", ("a/msg/B",)),
+        End(TOPIC, PUBLISHES, "/r1/x", STRING, node="/r1/drive", code_name="x", also=("a/msg/B",)),
+        End(TOPIC, SUBSCRIBES, "/r1/y", STRING, node="/r1/drive", sure=MAY),
+        End(SERVICE, SERVES, "/map", "", node="/map_server", code_name="/map"),
+        End(TOPIC, PUBLISHES, "/z", STRING, node="/gone", place=Place("odd:1")),
     ),
     edges=(
-        Edge("base", "odom", "", False, ("/r1/drive",)),
-        Edge("lidar", "base", "", False, ("/r1/drive",)),
+        Edge("base", "odom", publishers=("/r1/drive",)),
+        Edge("lidar", "base", "/tf_static", True, (), transform=(0.5, -1, 1e-7, 0, 0, 0, 1)),
     ),
-    parameters=(Parameter("/r1/drive", "use_sim_time", "false"),),
+    parameters=(
+        Parameter("/r1/drive", "use_sim_time", "false"),
+        Parameter("/r1/drive", "rates", '[1, 2.5, "no"]'),
+        Parameter("/r1/drive", "gain", "1.0"),
+        Parameter("/r1/drive", "is_on", "true"),
+        Parameter("/r1/arm", "rate", "5", Place("p.yaml", 2)),
+    ),
     robots=(Robot("r1", ("b1/base",), "/r1/tf", ("b1/gps",), "b1"),),
     topics=(
         Topic("/r1/x", ("/r1/d*",), True, (("durability", "VOLATILE"),), (PUBLISHES,), STRING),
@@ -77,272 +93,287 @@ PLAN = System(
     shared_topics=("/clock",),
     shared_frames=("map",),
     ignored_nodes=("helper*",),
-    gaps=(
-        Finding("MG102", "warning", "nothing sends", "start it", "a.yaml", 3, 5),
-        Finding("MG103", "error", "shared", ""),
-    ),
+    gaps=(Finding("MG102", "warning", "nothing sends", "start it", "a.yaml", 3, 5, node="/r1/x"),),
+    domains=(Domain("r1", 11), Domain("", 10)),
 )
-VALUE: dict[str, Any] = {
-    "distro": "jazzy",
-    "layout": "tf-per-robot",
-    "shared_nodes": {"/map_server": [["serves", "service", "/map", "", "/map"]]},
-    "shared_topics": ["/clock"],
-    "shared_frames": ["map"],
-    "ignored_nodes": ["helper*"],
-    "robots": {
-        "r1": {
-            "tf": "/r1/tf",
-            "frames": ["b1/base"],
-            "other_frames": ["b1/gps"],
-            "optional": ["/r1/arm", "/r1/spare"],
-            "spelled": "b1",
-            "nodes": {
-                "/r1/drive": [["publishes", "topic", "/r1/x", f"{STRING} | a/msg/B", "x"]],
-                "/r1/arm": [],
-                "/r1/spare": [],
-            },
-        }
-    },
-    "topics": {
-        "/r1/x": {
-            "senders": ["/r1/d*"],
-            "one_sender": True,
-            "qos": {"durability": "VOLATILE"},
-            "bridge": ["publishes"],
-            "type": STRING,
-        }
-    },
-    "one_of": [["/r1/drive", "/r1/spare"]],
-    "states": {
-        "/r1/drive": {"lifecycle": "active", "host": "pc", "parameters": {"use_sim_time": False}}
-    },
-    "sources": {"/r1/drive": "r.urdf:7"},
-    "from": {"/r1/drive": "a.yaml:3", "/r1/arm": "stack nav2"},
-    "ways": {"/r1/drive": "plugin /r1/gz", "/r1/arm": "spawner"},
-    "sends": {"/r1/drive": "odom -> base, base -> lidar"},
-    "open": [
-        {
-            "code": "MG102",
-            "level": "warning",
-            "at": "a.yaml:3:5",
-            "message": "nothing sends",
-            "hint": "start it",
-        },
-        {"code": "MG103", "level": "error", "at": "", "message": "shared", "hint": ""},
-    ],
-}
+TEXT = """\
+schema: 3
+layout: tf-per-robot
+release: jazzy
+shared_topics: [/clock]
+shared_frames: [map]
+ignored_nodes: ["helper*"]
+robots:
+- name: r1
+  frames: [b1/base]
+  tf_topic: /r1/tf
+  other_frames: [b1/gps]
+  tag: b1
+  nodes:
+  - name: /r1/drive
+    lifecycle: active
+    host: pc
+    way: plugin
+    taker: /r1/gz
+    sure: {word: runs, instead: [/r1/drive, /r1/spare]}
+    place: ../a.yaml:3
+    plugin: r.urdf:7
+    parameters: {use_sim_time: false, rates: [1, 2.5, "no"], gain: 1.0, is_on: true}
+    ends:
+    - [publishes, topic, /r1/x, std_msgs/msg/String | a/msg/B, x]
+    - {kind: topic, role: subscribes, name: /r1/y, type: std_msgs/msg/String, sure: may}
+  - {name: /r1/arm, way: spawner, stack: nav2, sure: may}
+  - {name: /r1/spare, sure: {word: may, instead: [/r1/drive, /r1/spare]}}
+nodes:
+- name: /map_server
+  ends:
+  - [serves, service, /map, "", /map]
+ends:
+- {kind: topic, role: publishes, name: /z, type: std_msgs/msg/String, node: /gone, place: {file: odd:1}}
+parameters:
+- {node: /r1/arm, name: rate, value: "5", place: p.yaml:2}
+edges:
+- {child: base, parent: odom, publishers: [/r1/drive]}
+- {child: lidar, parent: base, topic: /tf_static, static: true, transform: \
+[0.5, -1, 1.0e-07, 0, 0, 0, 1]}
+topics:
+- {name: /r1/x, senders: ["/r1/d*"], one_sender: true, qos: {durability: VOLATILE}, \
+bridge: [publishes], type: std_msgs/msg/String}
+gaps:
+- {code: MG102, level: warning, message: "nothing sends", hint: "start it", file: a.yaml, \
+line: 3, column: 5, node: /r1/x}
+domains:
+- {robot: r1, number: 11}
+- {robot: "", number: 10}
+"""
+SCHEMA = json.loads((files("multibot_rewrite") / editors.PLAN).read_text())
+
+
+def marked(text: str) -> list[Any]:
+    """What an editor marks in a plan."""
+    value = json.loads(text) if text.startswith("{") else yaml.safe_load(text)
+    return [*Draft202012Validator(SCHEMA).iter_errors(value)]
 
 
 def test_every_key_of_a_plan_is_written_and_comes_back() -> None:
-    text = to_yaml(PLAN)
-    assert text.startswith(HEAD)
-    assert yaml.safe_load(text) == yaml.safe_load(to_json(PLAN)) == VALUE
-    assert list(yaml.safe_load(text)) == list(VALUE)
-    assert list(VALUE["robots"]["r1"]) == list(yaml.safe_load(text)["robots"]["r1"])
-    for data in (text, to_json(PLAN)):
-        assert read_plan(data.encode(), "plan") == PLAN
+    assert to_yaml(PLAN) == HEAD + TEXT
+    assert yaml.safe_load(TEXT) == json.loads(to_json(PLAN))
+    for text in (TEXT, to_json(PLAN).decode()):
+        assert read_plan(text.encode(), "plan") == PLAN
+        assert marked(text) == []
 
 
-def test_what_is_empty_is_not_written() -> None:
-    bare = System(nodes=(Node("/a/x", robot="a"),), robots=(Robot("a"),), layout="both")
-    assert yaml.safe_load(to_yaml(bare)) == {
-        "layout": "both",
-        "shared_nodes": {},
-        "shared_topics": [],
-        "shared_frames": [],
-        "ignored_nodes": [],
-        "robots": {"a": {"tf": "/tf", "frames": [], "nodes": {"/a/x": []}}},
-    }
+# What YAML takes for something else, and what no one line holds.
+ODD = st.text(st.characters(codec="utf-8"), max_size=6) | st.sampled_from(
+    ["no", "~", "1e3", "0x1", "- a", "a: b", "#", "a | b", "a:1", "..", "[]", "\x85", "\ufeff"]
+)
 
 
-def test_the_text_has_a_row_a_line_and_quotes_where_yaml_would_take_it_otherwise() -> None:
-    body = to_yaml(PLAN).removeprefix(HEAD)
-    assert (
-        "      /r1/drive:\n      - [publishes, topic, /r1/x, std_msgs/msg/String | a/msg/B, x]\n"
-        in body
+@pytest.mark.more
+@given(ODD, ODD, ODD, st.booleans() | st.integers() | st.floats(allow_nan=False) | ODD)
+def test_any_text_comes_back(name: str, word: str, type_: str, value: object) -> None:
+    assume(" | " not in f"{type_}{name}")
+    node = Node(f"/{name}", robot=f"{word}1", host=word, stack=name, place=Place(word, 2), sure=MAY)
+    end = End(TOPIC, PUBLISHES, f"/{word}", type_, node=node.name, code_name=name, also=(name,))
+    plan = System(
+        (node, Node("/runs", robot=f"{word}1")),
+        (end, end._replace(sure=MAY._replace(why=word))),
+        parameters=(Parameter(node.name, name, parameter_text(value)),),
+        robots=(Robot(f"{word}1", (name, type_)),),
+        layout="both",
+        ignored_nodes=(type_,),
     )
-    assert "      /r1/arm: []\n" in body
-    assert 'ignored_nodes: ["helper*"]\n' in body
-    assert "    one_sender: true\n" in body
-    assert "  /r1/drive: a.yaml:3\n" in body
-    no = System(nodes=(Node("/no", robot="no"),), robots=(Robot("no"), Robot("a: b")), layout="x")
-    assert '  "no":\n' in to_yaml(no)
-    assert '  "a: b":\n' in to_yaml(no)
+    for data in (to_yaml(plan).encode(), to_json(plan)):
+        assert read_plan(data, "plan") == plan
+
+
+def test_what_is_as_usual_is_not_written() -> None:
+    bare = System(nodes=(Node("/a/x", robot="a"),), robots=(Robot("a"),), layout="both")
+    made = to_yaml(bare).removeprefix(HEAD)
+    assert made == "schema: 3\nlayout: both\nrobots:\n- name: a\n  nodes:\n  - {name: /a/x}\n"
+    odd = System(nodes=(Node("/no", robot="no"),), robots=(Robot("no"), Robot("a: b")), layout="x")
+    assert '- name: "no"\n' in to_yaml(odd) and '- {name: "a: b"}\n' in to_yaml(odd)
 
 
 def test_json_has_a_robot_a_line() -> None:
-    lines = to_json(PLAN).splitlines()
-    assert lines[0] == "{"
-    assert lines[-4:-2] == [' "robots": {', next(it for it in lines if it.startswith('  "r1": {'))]
-    assert lines[-2:] == [" }", "}"]
+    lines = to_json(PLAN).decode().splitlines()
+    assert [lines[at + 1].startswith('  {"name": "r1", "frames": [') for at, it in enumerate(lines)
+            if it == ' "robots": ['] == [True]  # fmt: skip
 
 
-def without(*path: str) -> dict[str, Any]:
-    return changed(path, None, drop=True)
-
-
-def changed(path: tuple[Any, ...], value: object, drop: bool = False) -> dict[str, Any]:
-    """The plan's value with another one at the path."""
-    at = copy = deepcopy(VALUE)
-    for key in path[:-1]:
-        at = at[key]
-    at.pop(path[-1]) if drop else at.__setitem__(path[-1], value)
-    return copy
-
-
-ROW = ("shared_nodes", "/map_server", 0)
-R1 = ("robots", "r1")
+DRIVES, R1 = "robots[0].nodes[0]", "robots[0]"
 
 
 @pytest.mark.parametrize(
-    ("value", "message"),
+    ("old", "new", "said"),
     [
-        ([], "the plan is not a mapping"),
-        (without("layout"), "the plan: key 'layout' is missing; the keys are layout, shared_nodes"),
-        (changed(("lay",), 1), "the plan: unknown key 'lay'; the keys are layout"),
-        (changed(("robots",), []), "robots is not a mapping"),
-        (changed(("robots",), {}), "no robot is planned, so every graph would be as planned"),
-        (without(*R1, "tf"), "robots.r1: key 'tf' is missing"),
-        (changed((*R1, "x"), 1), "robots.r1: unknown key 'x'"),
-        (changed((*R1, "tf"), "tf"), "robots.r1.tf: 'tf' is not a full name"),
-        (changed((*R1, "frames"), "map"), "robots.r1.frames is not a list of names"),
-        (changed((*R1, "other_frames"), [1]), "robots.r1.other_frames is not a list of names"),
-        (changed((*R1, "optional"), ["/x", 1]), "robots.r1.optional is not a list of names"),
-        (changed((*R1, "spelled"), 1), "robots.r1.spelled: write one word"),
-        (changed((*R1, "nodes"), {"x": []}), "robots.r1.nodes: 'x' is not a full name"),
-        (changed((*R1, "nodes"), {"/x": 1}), "robots.r1.nodes./x is not a list; write []"),
-        (changed(("shared_nodes",), {"x": []}), "shared_nodes: 'x' is not a full name"),
-        (changed(ROW, ["serves", "service", "/m", ""]), "/map_server[0]: write [role, kind, name"),
-        (changed(ROW, ["serves", "service", "/m", "", 1]), "write [role, kind, name, type"),
-        (changed(ROW, ["serve", "service", "/m", "", ""]), "'serve', 'service': write a role (pub"),
-        (changed(ROW, ["serves", "node", "/m", "", ""]), "'serves', 'node': write a role"),
-        (changed(ROW, ["serves", "service", "m", "", ""]), "'m' is not a full name"),
-        (changed(("shared_topics",), "/clock"), "shared_topics is not a list of names"),
-        (changed(("shared_frames",), [1]), "shared_frames is not a list of names"),
-        (changed(("ignored_nodes",), "x"), "ignored_nodes is not a list of names"),
-        (changed(("distro",), "jazy"), "distro: "),
-        (changed(("topics", "x"), {}), "topics: 'x' is not a full name"),
-        (changed(("topics", "/y"), []), "topics./y is not a mapping"),
-        (changed(("topics", "/y"), {"sender": []}), "topics./y: "),
-        (changed(("topics", "/y"), {"senders": "x"}), "topics./y.senders is not a list"),
-        (changed(("topics", "/y"), {"one_sender": 1}), "topics./y.one_sender: write true or false"),
-        (changed(("topics", "/y"), {"qos": []}), "topics./y.qos: write words, as"),
-        (changed(("topics", "/y"), {"qos": {"durability": 1}}), "topics./y.qos: write words"),
-        (
-            changed(("topics", "/y"), {"qos": {"durability": "volatile", "history": 1}}),
-            "topics./y.qos: write words, as {durability: transient_local}",
-        ),
-        (changed(("topics", "/y"), {"qos": {"depth": "x"}}), "topics./y.qos: "),
-        (changed(("topics", "/y"), {"bridge": []}), "topics./y.bridge: write [publishes], [sub"),
-        (changed(("topics", "/y"), {"type": 1}), "topics./y.type: write a type, as sensor_msgs"),
-        (changed(("one_of",), {}), "one_of is not a list; write [[NODE, NODE]]"),
-        (changed(("one_of",), ["/x"]), "one_of[0] is not a list of names"),
-        (changed(("one_of",), [["x"]]), "one_of[0]: 'x' is not a full name"),
-        (changed(("one_of",), [["/x"], ["/y", "/x"]]), "one_of[1]: /x is in one_of[0] too; join"),
-        (changed(("states",), [1]), "states is not a mapping with names as keys"),
-        (changed(("states", "x"), {}), "states.x: 'x' is not a full name"),
-        (changed(("states", "/x"), {"life": 1}), "states./x: "),
-        (changed(("states", "/x"), {"lifecycle": "on"}), "states./x: lifecycle: "),
-        (changed(("states", "/x"), {"host": 1}), "states./x: host: write a word in quotes"),
-        (changed(("states", "/x"), {"parameters": [1]}), "states./x.parameters is not a mapping"),
-        (
-            changed(("states", "/x"), {"parameters": {"a": {}}}),
-            "states./x.parameters.a: write a text, a number, true or false, or a list of one",
-        ),
-        (changed(("states", "/x"), {"parameters": {"a": [None]}}), "states./x.parameters.a: write"),
-        (changed(("from", "/x"), 1), "from./x: write a text"),
-        (changed(("sends", "/x"), "a, b -> c"), "sends./x: write parent -> child, not 'a, b -> c'"),
-        (changed(("open",), {}), "open is not a list; leave it out"),
-        (changed(("open", 0), []), "open[0]: write a mapping of code, level, at, message, hint"),
-        (changed(("open", 1, "hint"), 1), "open[1]: write texts"),
-        (changed(("open", 0, "level"), "bad"), "open[0]: 'bad' is not one of"),
-        (changed(("open", 0, "at"), "a.yaml"), "open[0]: at: write file:line, or nothing"),
+        ("layout:", "layuot:", "layuot: unknown key; the keys are nodes, ends, edges"),
+        ("schema: 3", "schema: 4", "schema: expected 3, not 4; write it again with multibot plan"),
+        ("release: jazzy", "release: jammy", "release: expected one of"),
+        ("[publishes, topic", "[publish, topic", f"{DRIVES}.ends[0].role: expected one of publ"),
+        ("[publishes, topic", "[publishes, topics", f"{DRIVES}.ends[0].kind: expected one of topic"),
+        ("topic, /r1/x", "topic, r1/x", f"{DRIVES}.ends[0].name: expected a full name that starts"),
+        ("a/msg/B, x]", "a/msg/B]", f"{DRIVES}.ends[0]: expected [role, kind, name, type, name in"),
+        ("a/msg/B, x]", "a/msg/B, 1]", f"{DRIVES}.ends[0]: expected [role, kind, name, type, name"),
+        ("y, type: std_msgs/msg/String, ", "y, ", f"{DRIVES}.ends[1].type: missing; it is needed"),
+        ("node: /gone, ", "", "ends[0].node: missing; it is needed"),
+        ("- name: /r1/drive", "- name: drive", f'{DRIVES}.name: expected a full name that starts'),
+        ("  - {name: /r1/arm,", "  - [/r1/arm]\n  - {name: /r1/arm,", "nodes[1]: expected an object"),
+        ("    - [publ", "    - publ\n    - [publ", f"{DRIVES}.ends[0]: expected an object, not"),
+        ("lifecycle: active", "life: active", f"{DRIVES}.life: unknown key; the keys are name, pro"),
+        ("host: pc", "host: 1", f"{DRIVES}.host: expected text, not 1"),
+        ("nav2, sure: may", "nav2, sure: perhaps", "nodes[1].sure.word: expected one of runs, may"),
+        ("{use_sim_time: false,", "{use_sim_time: {},", f"{DRIVES}.parameters.use_sim_time: write a"),
+        ("[1, 2.5,", "[null, 2.5,", f"{DRIVES}.parameters.rates: write a text, a number, true or f"),
+        ('{use_sim_time: false, rates: [1, 2.5, "no"], gain: 1.0, is_on: true}', "[1]",
+         f"{DRIVES}.parameters: expected a mapping of names to values, not [1]"),
+        ("tf_topic: /r1/tf", "tf_topic: r1/tf", f"{R1}.tf_topic: expected a full name that starts"),
+        ("frames: [b1/base]", "frames: b1/base", f"{R1}.frames: expected a list"),
+        ("- name: r1\n", "-\n", f"{R1}.name: missing; it is needed"),
+        ("- name: r1\n", "- nam: r1\n", f"{R1}.nam: unknown key; the keys are name, frames, tf_topic"),
+        ("    ends:\n    - [publ", "    end:\n    - [publ", "plugin, known, ends, parameters"),
+        ("[/clock]", "/clock", 'shared_topics: expected a list, not "/clock"'),
+        ("one_sender: true", "one_sender: 1", "topics[0].one_sender: expected true or false, not 1"),
+        ("{durability: VOLATILE}", "[]", "topics[0].qos: expected a mapping, as {durability: trans"),
+        ("durability: V", "depth: V", "topics[0].qos.depth: write words of history, reliability, d"),
+        ("durability: VOLATILE", "durability: 1", "topics[0].qos.durability: write words of histor"),
+        ("bridge: [publishes]", "bridge: [sends]", "topics[0].bridge[0]: expected one of publishes"),
+        ("name: /r1/x, s", "name: x, s", "topics[0].name: expected a full name that starts with /"),
+        ("level: warning", "level: bad", "gaps[0].level: expected one of error, warning, note"),
+        ("number: 11", "number: true", "domains[0].number: expected a whole number, not true"),
     ],
-)
-def test_what_is_wrong_in_a_plan_is_said_with_its_place(value: object, message: str) -> None:
-    with pytest.raises(InputError) as raised:
-        from_value(value, "p.yaml")
-    assert str(raised.value).startswith("p.yaml: ")
-    assert message in str(raised.value)
+)  # fmt: skip
+def test_what_is_wrong_is_said_with_its_place_and_marked(old: str, new: str, said: str) -> None:
+    assert old in TEXT
+    wrong = TEXT.replace(old, new, 1)
+    with pytest.raises(InputError) as refused:
+        read_plan(wrong.encode(), "p.yaml")
+    assert str(refused.value).startswith("p.yaml: ")
+    assert said in str(refused.value) and "\n" not in str(refused.value)
+    assert marked(wrong)
+
+
+@pytest.mark.parametrize(
+    ("plan", "said"),
+    [
+        (PLAN._replace(robots=()), "no robot is planned, so every graph would be as planned"),
+        (PLAN._replace(nodes=PLAN.nodes[1:2]), "r1 has no node that must run, so every graph"),
+        (PLAN._replace(robots=PLAN.robots * 2), "robots: r1 is there twice; join the two"),
+        (PLAN._replace(domains=(Domain("r2", 1),)), "domains: robot 'r2' is not known"),
+        (PLAN._replace(domains=(Domain("r1", 233),)), "domains: 233: write a ROS_DOMAIN_ID, 0 to 232"),
+        (PLAN._replace(nodes=(DRIVE._replace(lifecycle="on"), *PLAN.nodes[1:])),
+         "/r1/drive: lifecycle: state 'on' is not known; known: active, finalized"),
+        (PLAN._replace(nodes=(DRIVE, PLAN.nodes[2]._replace(sure=MAY))),
+         "/r1/spare: sure: of these nodes one runs, or another group; write instead: [/r1/driv"),
+    ],
+)  # fmt: skip
+def test_what_no_graph_or_every_graph_is_like(plan: System, said: str) -> None:
+    for data in (to_yaml(plan).encode(), to_json(plan)):
+        with pytest.raises(InputError) as refused:
+            read_plan(data, "p")
+        assert said in str(refused.value)
+
+
+def test_a_plan_without_a_layout_is_none() -> None:
+    with pytest.raises(InputError, match="p: layout: missing; it is needed"):
+        read_plan(TEXT.replace("layout: tf-per-robot\n", "").encode(), "p")
+
+
+def test_what_is_below_something_is_its() -> None:
+    """Also in JSON, where such objects are read by a shorter way; what says more has it."""
+    nodes = '{"name": "/x"}, {"name": "/r1/y", "robot": "r1"}'
+    ends = '{"kind": "topic", "role": "publishes", "name": "/t", "type": "T", "node": "/far"}'
+    below = (
+        f'{{"name": "r1", "nodes": [{{"name": "/r1/z", "ends": [{ends}]}}, {{"name": "/r1/w"}}]}}'
+    )
+    text = f'{{"schema": 3, "layout": "both", "robots": [{below}], "nodes": [{nodes}]}}'
+    plan = read_plan(text.encode(), "p")
+    assert [(it.name, it.robot) for it in plan.nodes] == [
+        ("/r1/z", "r1"), ("/r1/w", "r1"), ("/x", ""), ("/r1/y", "r1"),
+    ]  # fmt: skip
+    assert [it.node for it in plan.ends] == ["/far"]
+    said = TEXT.replace("name: /r1/y, ", "name: /r1/y, node: /r1/arm, ")
+    assert read_plan(said.encode(), "p").ends[1].node == "/r1/arm"
+
+
+def test_what_is_below_something_may_be_taken_out() -> None:
+    text = re.sub("{use_sim_time.*}", "", TEXT)
+    rows = [
+        it for it in text.splitlines() if not it.startswith(("    - [pub", "    - {kind", "  - [s"))
+    ]
+    left = "\n".join(rows)
+    plan = read_plan(left.encode(), "p")
+    assert ([it.name for it in plan.ends], len(plan.parameters)) == (["/z"], 1)
+    assert marked(left) == []
+
+
+@pytest.mark.parametrize("value", ["2024-01-01", "{2024-01-01: 1}", "!!binary aGk=", "!!set {a}"])
+def test_what_only_yaml_has_is_refused_in_one_line(value: str) -> None:
+    for key in ("layout: tf-per-robot", "release: jazzy", "host: pc", "place: ../a.yaml:3"):
+        assert key in TEXT
+        text = TEXT.replace(key, f"{key.partition(':')[0]}: {value}")
+        with pytest.raises(InputError, match=r"\Ap: [^\n]*(?:expected|unknown key)[^\n]*\Z"):
+            read_plan(text.encode(), "p")
 
 
 @pytest.mark.parametrize("state", ["unconfigured", "inactive", "active", "finalized"])
 def test_a_state_of_a_life_cycle_is_a_primary_one(state: str) -> None:
     """lifecycle_msgs/msg/State."""
-    plan = from_value(changed(("states", "/x"), {"lifecycle": state}), "p")
-    assert plan.nodes[-1] == Node("/x", lifecycle=state, sure=MAY)
-
-
-@pytest.mark.parametrize("way", [[PUBLISHES], [SUBSCRIBES], [PUBLISHES, SUBSCRIBES]])
-def test_a_bridge_goes_one_way_or_both(way: list[str]) -> None:
-    plan = from_value(changed(("topics",), {"/y": {"bridge": way}}), "p")
-    assert plan.topics == (Topic("/y", bridge=tuple(way)),)
+    text = TEXT.replace("lifecycle: active", f"lifecycle: {state}")
+    assert read_plan(text.encode(), "p").nodes[0].lifecycle == state
 
 
 @pytest.mark.parametrize("policy", ["history", "reliability", "durability", "liveliness"])
-def test_a_policy_is_written_in_small_letters(policy: str) -> None:
-    plan = from_value(changed(("topics",), {"/y": {"qos": {policy: "volatile"}}}), "p")
-    assert plan.topics == (Topic("/y", qos=((policy, "VOLATILE"),)),)
+def test_a_policy_may_be_written_in_small_letters(policy: str) -> None:
+    text = TEXT.replace("durability: VOLATILE", f"{policy}: volatile")
+    assert read_plan(text.encode(), "p").topics[0].qos == ((policy, "VOLATILE"),)
 
 
-def test_a_node_that_only_another_key_names_may_run_and_is_of_its_namespace() -> None:
-    plan = from_value(changed(("one_of",), [["/r1/drive", "/r1/new", "/new"]]), "p")
-    assert [(it.name, it.robot, it.sure.word) for it in plan.nodes[-2:]] == [
-        ("/r1/new", "r1", "may"),
-        ("/new", "", "may"),
-    ]
+OLD = """\
+distro: jazzy
+layout: both
+shared_nodes: {}
+shared_topics: [/clock]
+shared_frames: [map]
+ignored_nodes: []
+robots:
+  robot1: {tf: /tf, frames: [], nodes: {/robot1/amcl: []}}
+"""
 
 
-def test_shared_nodes_may_be_names_alone() -> None:
-    for names in (["/map_server"], {"/map_server": None}):
-        plan = from_value(changed(("shared_nodes",), names), "p")
-        assert [it.name for it in plan.nodes if not it.robot] == ["/map_server"]
-    assert all(it.robot for it in from_value(changed(("shared_nodes",), None), "p").nodes)
+@pytest.mark.parametrize("name", ["plan.yaml", "plan.json"])
+def test_a_plan_of_an_earlier_version_is_refused_with_the_command_that_makes_it(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = json.dumps(yaml.safe_load(OLD)) if name.endswith("json") else OLD
+    (tmp_path / name).write_text(text)
+    file = str(tmp_path / name)
+    for words in (
+        ["check", file, "--from", f"{FIXTURES}/graphs/healthy.json"],
+        ["check-launch", str(ROOT / "tests/support/launched_here.py"), "--plan", file],
+    ):
+        assert main(words) == 2
+        said = capsys.readouterr().err
+        assert f"{file}: a plan of an earlier version" in said
+        assert f"multibot plan fleet.yaml -o {file}" in said
+        assert said.count("\n") == 1
 
 
-def test_keys_that_may_be_left_out() -> None:
-    value = {key: VALUE[key] for key in ("layout", "shared_topics", "shared_frames")}
-    value |= {
-        "shared_nodes": [],
-        "robots": {"a": {"tf": "/tf", "frames": [], "nodes": {"/x": None}}},
-    }
-    plan = from_value(value, "p")
-    assert plan == System(
-        nodes=(Node("/x", robot="a"),),
-        robots=(Robot("a"),),
-        layout="tf-per-robot",
-        shared_topics=("/clock",),
-        shared_frames=("map",),
-    )
-    assert value_of(plan).get("distro") is None
+def test_a_plan_is_no_graph(capsys: pytest.CaptureFixture[str]) -> None:
+    """It would be as planned, whatever runs."""
+    plan = f"{FIXTURES}/graphs/plan.yaml"
+    assert main(["check", plan, "--from", plan]) == 2
+    assert "plan.yaml: a plan; use multibot check" in capsys.readouterr().err
 
 
-def test_a_parameter_that_a_file_sets_is_not_the_plans_own() -> None:
-    by_file = Parameter("/r1/drive", "rate", "5", Place("p.yaml", 2))
-    value = value_of(PLAN._replace(parameters=(*PLAN.parameters, by_file)))
-    assert value["states"] == VALUE["states"]
+def test_a_plan_in_json_is_no_graph(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plan = tmp_path / "plan.json"
+    plan.write_bytes(to_json(PLAN))
+    assert main(["check", str(plan), "--from", str(plan)]) == 2
+    assert "plan.json: a plan; use multibot check" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("data", "message"),
-    [
-        (b"{\n x", "p:2:2: not valid JSON: "),
-        (b"layout: [", "p:1:10: not valid YAML: "),
-        (b'{"a": "\xff"}', "p: not valid JSON: "),
-        (b"layout: \xff", "p: not valid YAML: "),
-    ],
-)
-def test_a_file_that_cannot_be_read(data: bytes, message: str) -> None:
-    with pytest.raises(InputError) as raised:
-        read_plan(data, "p")
-    assert message in str(raised.value)
-    assert str(raised.value).endswith("use the file that multibot plan wrote")
-
-
-def test_a_file_is_told_by_its_first_words() -> None:
-    assert is_json(b"\xef\xbb\xbf \n{") and not is_json(b"layout: {}")
-    assert is_plan(b"# x\nlayout: both\n") and is_plan(b'{\n "layout": "both"')
-    assert not is_plan(b"robots: []\nx-layout: both\n")
+def test_a_fleet_file_is_told_from_a_plan() -> None:
     for fleet in (
         b"robots:\n- name: a",
         b"robots: [a]",
@@ -350,7 +381,7 @@ def test_a_file_is_told_by_its_first_words() -> None:
         b"include: a",
     ):
         assert is_fleet(fleet)
-    for other in (b"robots:\n  a: {}", b"x: [a]", b"  include: a"):
+    for other in (b"robots:\n  a: {}", b"x: [a]", b"  include: a", TEXT.encode()):
         assert not is_fleet(other)
 
 
@@ -370,3 +401,34 @@ def test_a_plan_that_tests_nothing_says_so() -> None:
 def test_words_that_stand_for_a_robot() -> None:
     assert robot_words(PLAN) == {"r1": "r1", "b1": "r1"}
     assert robot_words(System(robots=(Robot("a"),))) == {"a": "a"}
+
+
+def test_the_example_of_the_page_is_a_plan() -> None:
+    page = (ROOT / "docs" / "plan.md").read_text()
+    example = page.partition("```yaml\n")[2].partition("```")[0]
+    assert marked(example) == []
+    plan = read_plan(example.encode(), "plan.md")
+    assert to_yaml(plan).removeprefix(HEAD) == example
+
+
+def test_a_plan_in_a_file_names_its_schema(tmp_path: Path) -> None:
+    words = ["plan", str(FIXTURES / "robots" / "rover.urdf"), "robot1", "robot2"]
+    plan = tmp_path / "plan.yaml"
+    assert main([*words, "-o", str(plan)]) == 0
+    first, text = plan.read_text().split("\n", 1)
+    named = first.removeprefix("# yaml-language-server: $schema=")
+    assert json.loads((tmp_path / named).read_text()) == SCHEMA
+    assert marked(text) == []
+    assert main([*words, "-o", str(tmp_path / "plan.json")]) == 0
+    assert yaml.safe_load(text) == json.loads((tmp_path / "plan.json").read_bytes())
+
+
+def test_a_built_plan_names_the_schema_beside_it(tmp_path: Path) -> None:
+    """A relative path: a build is the same on every machine."""
+    out = tmp_path / "out"
+    fleet = ROOT / "examples" / "launch_tutorial" / "fleet.yaml"
+    assert main(["build", str(fleet), "-o", str(out)]) == 0
+    first = (out / "plan.yaml").read_text().partition("\n")[0]
+    named = out / first.removeprefix("# yaml-language-server: $schema=")
+    assert named.parent == out and json.loads(named.read_text()) == SCHEMA
+    assert marked((out / "plan.yaml").read_text()) == []

@@ -18,7 +18,7 @@ def others(layout: str, *defaults: str) -> set[str]:
     frames = tuple(FrameParameter(f"f{at}", default=it) for at, it in enumerate(defaults))
     facts = [NodeFacts("scanner", "acme", (), frames=frames)]
     table = build_table(["robot1"], facts, naming, release=NEWEST_LTS)
-    (robot,) = expect(table, naming, {"robot1": ["base_link"]}, facts).robots
+    (robot,) = expect(table, naming, {"robot1": ["base_link"]}).robots
     return {*robot.other_frames}
 
 

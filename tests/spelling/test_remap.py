@@ -20,7 +20,7 @@ from multibot_rewrite.description.readback.reading import Reading, read
 from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.records import NodeRule, NodeTable, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table, plugin_nodes
 from multibot_rewrite.spelling.table_formats import FORMS, as_data
 from multibot_rewrite.system.records import (
@@ -82,17 +82,17 @@ def table(layout: str, nodes: tuple[NodeFacts, ...] = NODES, **policy: str) -> T
 
 def rules(found: Table, robot: str, node: str) -> dict[str, str]:
     return {
-        rule.source: rule.target
-        for one in found.nodes
+        source: target
+        for one in found.runs
         if (one.robot, one.node) == (robot, node)
-        for rule in one.rules
+        for source, target in one.rules
     }
 
 
 def leads(found: Table, robot: str, node: str) -> dict[str, str]:
     """Asked name -> fully qualified name."""
-    names = (n for n in found.names if n.robot == robot and n.node.endswith(node))
-    return {name.endpoint.name: name.name for name in names}
+    runs = (it for it in found.runs if it.robot == robot and it.full_name.endswith(node))
+    return {end.name: name for run in runs for end, name in run.names}
 
 
 # ---------------------------------------------------------------- what is needed
@@ -146,7 +146,7 @@ def test_without_a_namespace_every_name_has_a_rule_and_actions_have_six() -> Non
 
 
 def test_a_node_without_a_namespace_gets_a_name_of_its_own() -> None:
-    (node,) = (n for n in table("L4").nodes if (n.robot, n.node) == ("robot2", "driver"))
+    (node,) = (n for n in table("L4").runs if (n.robot, n.node) == ("robot2", "driver"))
     assert (node.namespace, node.name) == ("/", "driver_robot2")
     assert leads(table("L4"), "robot2", "driver_robot2")["~/get_parameters"] == (
         "/driver_robot2/get_parameters"
@@ -165,14 +165,14 @@ def test_below_a_namespace_of_its_own_a_target_is_absolute() -> None:
 def test_a_shared_node_may_have_a_namespace() -> None:
     maps = NodeFacts("maps/server", "x", (Endpoint(TOPIC, PUBLISHES, "map"),), shared=True)
     found = build_table(ROBOTS, (maps,), make_naming("both"), release=NEWEST_LTS)
-    (node,) = found.nodes
+    (node,) = found.runs
     assert (node.namespace, node.name) == ("/maps", "server")
-    assert [it.name for it in found.names] == ["/maps/map"]
+    assert [name for _, _, name in found.ends] == ["/maps/map"]
 
 
 def test_a_shared_node_runs_once_as_it_is() -> None:
-    (node,) = (n for n in table("L2").nodes if n.node == "bridge")
-    assert node == NodeTable("", "bridge", "/", "bridge", ())
+    (node,) = (n for n in table("L2").runs if n.node == "bridge")
+    assert node[:5] == ("", "bridge", "/", "bridge", ())
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -180,7 +180,7 @@ def test_a_shared_node_runs_once_as_it_is() -> None:
 def test_robots_meet_in_shared_names_only(layout: str, affix: str) -> None:
     found = table(layout, affix=affix)
     assert with_meetings(found, (), make_naming(layout)).problems == found.problems
-    ours, theirs = ({n.name for n in found.names if n.robot == robot} for robot in ROBOTS)
+    ours, theirs = ({name for run, _, name in found.ends if run.robot == robot} for robot in ROBOTS)
     shared = {"/clock", "/rosout"} | ({"/tf", "/tf_static"} if layout == "L2" else set())
     assert ours & theirs == shared
 
@@ -228,23 +228,18 @@ def test_a_topic_and_a_service_of_one_name_share_a_rule() -> None:
     assert found.problems == ()
 
 
-def plugin(*given: tuple[str, str]) -> dict[str, list[tuple[NodeFacts, NodeTable]]]:
+def plugin(*given: tuple[str, str]) -> dict[str, list[Run]]:
     """A plugin with /scan in each robot's description, with these rules."""
     facts = NodeFacts("lidar", "lidar", (Endpoint(TOPIC, PUBLISHES, "/scan"),))
     return {
         robot: [
-            (
+            Run(
+                robot,
+                "lidar",
+                f"/{robot}",
+                "lidar",
+                tuple((a, b.replace("ROBOT", robot)) for a, b in given),
                 facts,
-                NodeTable(
-                    robot,
-                    "lidar",
-                    f"/{robot}",
-                    "lidar",
-                    tuple(
-                        NodeRule(robot, "lidar", a, b.replace("ROBOT", robot), TOPIC, "")
-                        for a, b in given
-                    ),
-                ),
             )
         ]
         for robot in ROBOTS
@@ -270,7 +265,7 @@ def test_rules_that_do_harm_or_nothing(given: list[tuple[str, str]], codes: list
 
 def test_one_robot_alone_has_no_other_in_its_table() -> None:
     found = build_table(["robot1"], (DRIVER,), make_naming("L2"), release=NEWEST_LTS)
-    assert {name.robot for name in found.names} == {"robot1"}
+    assert {run.robot for run in found.runs} == {"robot1"}
 
 
 # ---------------------------------------------------------------- from a description
@@ -290,10 +285,10 @@ def test_plugins_of_a_rewritten_description_keep_robots_apart() -> None:
             plugins[one.robot] = list(plugin_nodes(reading(one.data), one.robot))
         found = build_table(ROBOTS, (), make_naming(layout), plugins, release=NEWEST_LTS)
         assert with_meetings(found, (), make_naming(layout)).problems == (), layout
-        drive = [n for n in found.names if n.robot == "robot1" and n.endpoint.name == "cmd_vel"]
-        assert [n.name for n in drive] == [
-            "/cmd_vel/robot1" if layout == "L4" else "/robot1/cmd_vel"
-        ], layout
+        drive = [
+            name for run, end, name in found.ends if (run.robot, end.name) == ("robot1", "cmd_vel")
+        ]
+        assert drive == ["/cmd_vel/robot1" if layout == "L4" else "/robot1/cmd_vel"], layout
 
 
 # ---------------------------------------------------------------- the forms
@@ -326,8 +321,8 @@ def test_yaml_and_json_are_the_same_data() -> None:
 
 def test_a_shared_node_keeps_its_namespace_and_name_to_the_letter() -> None:
     node = NodeFacts("/fleet/x_mux", "twist_mux", (), shared=True)
-    (found, *_) = table("L1", (node,)).nodes
-    assert found == NodeTable("", "/fleet/x_mux", "/fleet", "x_mux", ())
+    (found, *_) = table("L1", (node,)).runs
+    assert found[:5] == ("", "/fleet/x_mux", "/fleet", "x_mux", ())
 
 
 def test_the_data_of_a_table_names_its_layout_and_each_robot() -> None:
@@ -367,7 +362,7 @@ def test_a_plugin_without_what_its_parameters_switch_off(
     )
     text = text.replace("<publish_odom_tf>true</publish_odom_tf>", parameters)
     found = plugin_nodes(reading(text.encode()), "r")
-    drive = next(facts for facts, table in found if table.name == "diff_drive")
+    drive = next(it.fact for it in found if it.name == "diff_drive")
     conditions = {it.name: it.when for it in drive.endpoints if it.when}
     assert conditions == off
     assert bool(drive.sends) == sends

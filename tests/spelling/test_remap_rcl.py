@@ -8,12 +8,14 @@ import itertools
 import shlex
 
 import pytest
+from named_ends import named_ends
 from rcl_names import INSTALL, ask
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.stacks import load_stack
-from multibot_rewrite.spelling.records import NodeTable, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.table_formats import ros_args
 from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
@@ -43,13 +45,13 @@ def table(request: pytest.FixtureRequest) -> Table:
     return build_table(ROBOTS, list(nodes), make_naming(layout, affix), release=NEWEST_LTS)
 
 
-def rules_of(lines: list[str], node: NodeTable) -> list[str]:
+def rules_of(lines: list[str], node: Run) -> list[str]:
     """What follows each ``-r`` in the line of the ros-args form of the node, or of its host, whose
     namespace and name are not its own."""
     own = f"# {node.robot}: {node.node}"
     if own not in lines:
         name = f"__node:={node.name}", f"__ns:={node.namespace}"
-        rules = rules_of(lines, node._replace(node=node.home.host))
+        rules = rules_of(lines, node._replace(node=node.fact.host))
         return [*name, *(it for it in rules if not it.startswith("__"))]
     at = lines.index(own)
     words = shlex.split(lines[at + 1]) if lines[at + 1] != "(no rule)" else []
@@ -60,14 +62,14 @@ def rules_of(lines: list[str], node: NodeTable) -> list[str]:
 def test_every_name_leads_where_the_table_says(table: Table) -> None:
     lines = ros_args(table).splitlines()
     cases, wanted = [], []
-    for node in (one for one in table.nodes if one.robot):
+    for node in (one for one in table.runs if one.robot):
         full = f"{node.namespace.rstrip('/')}/{node.name}"
         names = [
             name
-            for name in table.names
+            for name in named_ends(table)
             if (name.robot, name.node) == (node.robot, full) and not name.endpoint.fixed
         ]
-        asked = [(kind_of(name.endpoint.kind), name.endpoint.name) for name in names]
+        asked = [(kind_of(it.endpoint.kind), in_code(it.endpoint, node.namespace)) for it in names]
         cases.append(
             {
                 "ask": "started",
@@ -82,6 +84,13 @@ def test_every_name_leads_where_the_table_says(table: Table) -> None:
         wanted.append([full, *(name.name for name in names)])
     assert len(cases) > 30
     assert ask(cases) == wanted
+
+
+def in_code(end: Endpoint, namespace: str) -> str:
+    """What the node asks for: a costmap's filter joins its topic with the namespace above
+    (nav2_costmap_2d lyrical layer.cpp joinWithParentNamespace)."""
+    above = namespace.rpartition("/")[0]
+    return f"{above}/{end.name.lstrip('/')}" if end.above else end.name
 
 
 def kind_of(kind: str) -> str:

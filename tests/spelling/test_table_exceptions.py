@@ -11,7 +11,7 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.records import NodeTable, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.records import (
     ACTION,
@@ -39,7 +39,7 @@ def table(layout: str, *nodes: NodeFacts) -> Table:
 
 
 def rules(made: Table, robot: str = "robot1") -> dict[str, str]:
-    return {it.source: it.target for one in made.nodes if one.robot == robot for it in one.rules}
+    return dict(it for one in made.runs if one.robot == robot for it in one.rules)
 
 
 def problems(made: Table) -> list[tuple[str, str]]:
@@ -66,11 +66,11 @@ def test_who_asks_for_one_image_transport_by_name_meets_the_camera(transport: st
     viewer = node("viewer", Endpoint(TOPIC, SUBSCRIBES, asked))
     made = table("postfix", camera, viewer)
     sent, heard = (
-        [it.rules for it in made.nodes if it.node == name] for name in ("camera", "viewer")
+        [it.rules for it in made.runs if it.node == name] for name in ("camera", "viewer")
     )
     for one, other in zip(sent, heard, strict=True):
-        targets = {it.source: it.target for it in one}
-        assert [(it.source, it.target) for it in other] == [(asked, targets[asked])]
+        targets = dict(one)
+        assert [*other] == [(asked, targets[asked])]
 
 
 def test_what_is_no_image_transport_is_a_name_of_its_own() -> None:
@@ -113,7 +113,7 @@ def test_a_name_made_at_run_time_under_a_condition_is_not_told() -> None:
 def alike(*pairs: tuple[str, Sequence[Endpoint]]) -> Table:
     """What two robots' descriptions start: each a node that asks for names which no rule moves."""
     plugins = {
-        robot: [(node(f"{robot}_plugin", *ends), NodeTable(robot, "p", "/", f"{robot}_plugin", ()))]
+        robot: [Run(robot, "p", "/", f"{robot}_plugin", (), node(f"{robot}_plugin", *ends))]
         for robot, ends in pairs
     }
     naming = make_naming("both")

@@ -9,9 +9,9 @@ import json
 import yaml
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.enclaves import Profile, enclave_of, profiles, to_policy
-from multibot_rewrite.spelling.records import EndpointName, Home, NodeRule, NodeTable, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table_formats import FORMS, given_to
 from multibot_rewrite.spelling.ways import deliveries
 from multibot_rewrite.system.records import (
@@ -29,24 +29,26 @@ from multibot_rewrite.system.records import (
 )
 
 
-def node(name: str, *rules: str, home: Home | None = None, robot: str = "a") -> NodeTable:
-    own = (NodeRule(robot, name, *rule.split(":="), "", "") for rule in rules)
+def node(name: str, *rules: str, robot: str = "a", **home: str) -> Run:
+    own = tuple((old, new) for old, _, new in (rule.partition(":=") for rule in rules))
     space = f"/{robot}" if robot else "/"
-    return NodeTable(robot, name, space, name, tuple(own), home or Home())
+    fact = NodeFacts(name, "acme", (), **home)  # type: ignore[arg-type]
+    return Run(robot, name, space, name, own, fact, written="plugin" in home)
 
 
 TABLE = Table(
     "tf-per-robot",
     (
         node("map_server", robot=""),
-        node("driver", "/tf:=tf", "/<x>:=x"),
-        node("helper", "/scan:=scan", home=Home(host="driver")),
+        node("driver", "/tf:=tf", "/<x>:=x")._replace(
+            names=((Endpoint(TOPIC, PUBLISHES, "/tf"), "/a/tf"),)
+        ),
+        node("helper", "/scan:=scan", host="driver"),
         node("box"),
-        node("server", "/map:=map", home=Home(container="box")),
-        node("arm", "/joints:=joints", home=Home(host="controller_manager")),
-        node("gz", "/odom:=odom", home=Home(plugin="gz_ros2_control-system", written=True)),
+        node("server", "/map:=map", container="box"),
+        node("arm", "/joints:=joints", host="controller_manager"),
+        node("gz", "/odom:=odom", plugin="gz_ros2_control-system"),
     ),
-    (EndpointName("a", "/a/driver", Endpoint(TOPIC, PUBLISHES, "/tf"), "/a/tf"),),
     (Finding("MR101", "warning", "no rule", "set it", robot="a", node="driver"),),
     "jazzy",
 )
@@ -112,20 +114,20 @@ def test_the_tables_for_a_launch_file() -> None:
 
 
 def test_a_table_without_nodes_is_an_empty_table_of_a_launch_file() -> None:
-    text = FORMS["launch"](TABLE._replace(nodes=()))
+    text = FORMS["launch"](TABLE._replace(runs=()))
     assert text.splitlines()[1:] == ["NODES = {", "}"]
-    assert FORMS["ros-args"](TABLE._replace(nodes=())) == ""
+    assert FORMS["ros-args"](TABLE._replace(runs=())) == ""
 
 
 def test_the_tags_of_a_plugin() -> None:
-    made = TABLE._replace(nodes=(node("map", robot=""), node("x", "/<t>:=t"), node("y")))
+    made = TABLE._replace(runs=(node("map", robot=""), node("x", "/<t>:=t"), node("y")))
     assert FORMS["gazebo"](made) == (
         "<!-- ROS 2 jazzy -->\n"
         "<!-- a: x -->\n<ros>\n  <namespace>/a</namespace>\n"
         "  <remapping>/&lt;t&gt;:=t</remapping>\n</ros>\n"
         "<!-- a: y -->\n<ros>\n  <namespace>/a</namespace>\n</ros>\n"
     )
-    shared = TABLE._replace(nodes=(node("map", "/x:=y", robot=""),), release="")
+    shared = TABLE._replace(runs=(node("map", "/x:=y", robot=""),), release="")
     assert FORMS["gazebo"](shared) == (
         "<!-- all robots: map -->\n<ros>\n  <remapping>/x:=y</remapping>\n</ros>\n"
     )

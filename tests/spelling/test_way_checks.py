@@ -9,8 +9,8 @@ import pytest
 
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.fleet.fleet import make_fleet, merge
-from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.spelling.records import EndpointName, Home, NodeRule, NodeTable, Table
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.way_checks import not_taken
 from multibot_rewrite.system.records import ACTION, PUBLISHES, SUBSCRIBES, TOPIC
 
@@ -103,29 +103,31 @@ def test_each_robot_of_a_description_is_looked_at() -> None:
     assert found - {"robot1"} == {*robots[1:]}
 
 
-def hosted(robot: str, *names: EndpointName, **home: str) -> Table:
+Name = tuple[Endpoint, str]
+
+
+def hosted(robot: str, *names: Name, **home: str) -> Table:
     """A node in another one's process, with a rule for ``/y`` alone."""
-    rule = NodeRule(robot, "map", "/y", "y", "", "")
+    fact = NodeFacts("map", "acme", (), **{"host": "server", **home})  # type: ignore[arg-type]
     return Table(
         "tf-per-robot",
         (
-            NodeTable(robot, "server", f"/{robot}", "server", ()),
-            NodeTable(robot, "map", f"/{robot}", "map", (rule,), Home(**{"host": "server", **home})),
+            Run(robot, "server", f"/{robot}", "server", ()),
+            Run(robot, "map", f"/{robot}", "map", (("/y", "y"),), fact, names=names),
         ),
-        names, (), "jazzy",
+        (), "jazzy",
     )  # fmt: skip
 
 
-def named(robot: str, name: str, meant: str, **more: str) -> EndpointName:
+def named(name: str, meant: str, **more: str) -> Name:
     end = {"kind": TOPIC, "role": PUBLISHES, "name": name, **more}
-    return EndpointName(robot, f"/{robot}/map", Endpoint(**end), meant)
+    return Endpoint(**end), meant
 
 
 def test_of_nodes_that_all_robots_have_two_tell_enough() -> None:
-    alone = [hosted(it, named(it, "/x", f"/{it}/x")) for it in ("a", "b", "c", "d")]
-    nodes = tuple(it for table in alone for it in table.nodes)
-    names = tuple(it for table in alone for it in table.names)
-    found = list(not_taken(alone[0]._replace(nodes=nodes, names=names)))
+    alone = [hosted(it, named("/x", f"/{it}/x")) for it in ("a", "b", "c", "d")]
+    runs = tuple(it for table in alone for it in table.runs)
+    found = list(not_taken(alone[0]._replace(runs=runs)))
     assert [(it.robot, it.node, it.names) for it in found] == [
         ("a", "map", ("/x",)), ("b", "map", ("/x",)),
     ]  # fmt: skip
@@ -136,17 +138,17 @@ def test_of_nodes_that_all_robots_have_two_tell_enough() -> None:
 @pytest.mark.parametrize(
     ("name", "told"),
     [
-        (named("a", "/x", "/a/x"), ("/x",)),
-        (named("a", "/y", "/a/y"), ()),
-        (named("a", "/x", "/x"), ()),
-        (named("a", "/go", "/a/go", kind=ACTION), ("/go",)),
+        (named("/x", "/a/x"), ("/x",)),
+        (named("/y", "/a/y"), ()),
+        (named("/x", "/x"), ()),
+        (named("/go", "/a/go", kind=ACTION), ("/go",)),
         # A rule cannot reach it, or it need not be there.
-        (named("a", "/x", "/a/x", fixed="in its code"), ()),
-        (named("a", "/x", "/a/x", when="x: true"), ()),
+        (named("/x", "/a/x", fixed="in its code"), ()),
+        (named("/x", "/a/x", when="x: true"), ()),
         # It is called otherwise, but like nothing that the code or another robot has.
-        (named("a", "/y", "/a/other"), ()),
-        (named("a", "/x", "/a/x", role=SUBSCRIBES), ("/x",)),
+        (named("/y", "/a/other"), ()),
+        (named("/x", "/a/x", role=SUBSCRIBES), ("/x",)),
     ],
 )
-def test_a_name_that_its_rule_does_not_reach(name: EndpointName, told: tuple[str, ...]) -> None:
+def test_a_name_that_its_rule_does_not_reach(name: Name, told: tuple[str, ...]) -> None:
     assert [it.names for it in not_taken(hosted("a", name))] == [told] * bool(told)

@@ -14,9 +14,9 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.knowledge.controller_ways import CONTROLLER_WAYS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.records import Home, NodeRule, NodeTable, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.spelling.way_checks import RunningNode, is_stand_in, running_nodes
+from multibot_rewrite.spelling.way_checks import is_stand_in, running_nodes
 from multibot_rewrite.spelling.ways import deliveries, rules_by_taker
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC
 
@@ -31,18 +31,16 @@ BOX = NodeFacts("box", "rclcpp_components", ())
 
 def table(release: str, *facts: NodeFacts, tags: tuple[str, ...] = ()) -> Table:
     """Two robots; each description has a controller manager's plugin with the rules ``tags``."""
-    plugins = {
-        robot: [(NodeFacts("controller_manager", "gz", ()), tag(robot, *tags))]
-        for robot in (("robot1", "robot2") if tags else ())
-    }
+    plugins = {robot: [tag(robot, *tags)] for robot in (("robot1", "robot2") if tags else ())}
     return build_table(["robot1", "robot2"], facts, make_naming("L1"), plugins, release=release)
 
 
-def tag(robot: str, *rules: str) -> NodeTable:
-    pairs = (rule.replace("ROBOT", robot).split(":=") for rule in rules)
-    own = tuple(NodeRule(robot, "controller_manager", a, b, "", "") for a, b in pairs)
-    home = Home(plugin="gz_ros2_control-system", written=True, process_wide=True)
-    return NodeTable(robot, "controller_manager", f"/{robot}", "controller_manager", own, home)
+def tag(robot: str, *rules: str) -> Run:
+    pairs = (rule.replace("ROBOT", robot).partition(":=") for rule in rules)
+    own = tuple((old, new) for old, _, new in pairs)
+    fact = NodeFacts("controller_manager", "gz", (), plugin="gz_ros2_control-system")
+    names = (robot, "controller_manager", f"/{robot}", "controller_manager")
+    return Run(*names, own, fact, written=True, process_wide=True)
 
 
 def stands(made: Table, node: str) -> list[tuple[str, str, tuple[tuple[str, str], ...]]]:
@@ -50,9 +48,9 @@ def stands(made: Table, node: str) -> list[tuple[str, str, tuple[tuple[str, str]
     return [(it.way, it.taker, it.rules) for it in found]
 
 
-def running(made: Table, node: str, *left_out: str) -> RunningNode:
-    found = running_nodes(made, left_out)
-    return next(it for it in found if (it.node.robot, it.node.node) == ("robot2", node))
+def running(made: Table, node: str, *left_out: str) -> Run:
+    found = (it for _, it in running_nodes(made, left_out))
+    return next(it for it in found if (it.robot, it.node) == ("robot2", node))
 
 
 def test_each_release_has_one_way_for_controllers() -> None:
@@ -101,7 +99,7 @@ def test_the_rules_of_a_plugin_reach_its_controllers_or_not(
 def test_what_a_plugin_publishes_is_of_its_controllers(role: str, theirs: bool) -> None:
     end = Endpoint(TOPIC, role, "odom")
     assert is_stand_in(tag("robot1"), end) is theirs
-    assert not is_stand_in(NodeTable("robot1", "n", "/robot1", "n", ()), end)
+    assert not is_stand_in(Run("robot1", "n", "/robot1", "n", ()), end)
 
 
 def test_what_is_forwarded_comes_before_the_spawners_rules() -> None:

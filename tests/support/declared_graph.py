@@ -11,8 +11,8 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.rosnames import bind, resolve_bound
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.spelling.records import NodeTable
-from multibot_rewrite.spelling.table import parsed
+from multibot_rewrite.spelling.of_runs import parsed
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End
 from tools.interfaces.compare import is_same
 from tools.interfaces.records import Fact
@@ -81,7 +81,7 @@ def names(fact: Fact, node: NodeFacts) -> list[str]:
 REGISTRY = {"full": "Statistics", "names": "StatisticsNames", "values": "StatisticsValues"}
 
 
-def endpoints(kind: str, node: NodeFacts, placed: NodeTable, release: str) -> Iterator[End]:
+def endpoints(kind: str, node: NodeFacts, placed: Run, release: str) -> Iterator[End]:
     """What a node has by its sources."""
     bound = bind(placed.name, placed.namespace, parsed(placed.rules))
     full = f"{placed.namespace.rstrip('/')}/{placed.name}"

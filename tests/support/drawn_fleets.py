@@ -13,6 +13,18 @@ from itertools import combinations
 from math import dist
 from typing import NamedTuple
 
+from drawn_keys import (
+    add_keys,
+    has_no_adapter,
+    has_no_certificates,
+    has_no_such_world,
+    in_other_layout,
+    in_other_style,
+    maybe,
+    parts,
+    shares_no_such_node,
+    started_for_each,
+)
 from drawn_spellings import Data, spelled
 from hypothesis import strategies as st
 
@@ -76,6 +88,10 @@ ARM = (
     joint("elbow", "revolute", "upper_arm", "forearm"),
     joint("tool_joint", "fixed", "forearm", "tool"),
 )
+TOWER = (
+    *(link(it) for it in ("tower", "camera_link")),
+    joint("pan", "revolute", "tower", "camera_link"),
+)
 CONTROL = """\
 <ros2_control name="arm" type="system">
   <hardware><plugin>HARDWARE</plugin></hardware>
@@ -134,6 +150,12 @@ def _with_argument(text: str) -> str:
     return f"{head}\n{XACRO_HEAD}{body.replace('</robot>', tail)}"
 
 
+def _joined(text: str, *parts: str) -> str:
+    """A robot with another one on it, whose names begin with up_."""
+    other = re.sub(r'(?:name|link)="(?=\w)', r"\g<0>up_", "".join(parts))
+    return text.replace("</robot>", f"{other}</robot>")
+
+
 MOBILE, MANIPULATOR = "mobile", "arm"
 GZ, CLASSIC, NONE = "gz", "classic", ""
 
@@ -153,6 +175,7 @@ KINDS = {
     "gz rover": Kind(_robot("ROBOT", *BASE, GZ_LIDAR, GZ_DRIVE), ".urdf", MOBILE, GZ),
     "plain cart": Kind(_robot("ROBOT", *BASE), ".urdf", MOBILE, NONE),
     # Behind arm_left its wheel is called as the left one of others is behind arm.
+    "tower": Kind(_robot("ROBOT", *TOWER), ".urdf", MOBILE, NONE),
     "barrow": Kind(
         _robot("ROBOT", *BARROW),
         ".urdf", MOBILE, NONE,
@@ -169,6 +192,8 @@ KINDS = {
         _robot("ROBOT", *ARM, CONTROL.replace("HARDWARE", "mock_components/GenericSystem")),
         ".urdf", MANIPULATOR, NONE,
     ),
+    "joined cart": Kind(_joined(_robot("ROBOT", *BASE), *BARROW), "", MOBILE, NONE),
+    "joined rover": Kind(_joined(_robot("ROBOT", *BASE, GZ_LIDAR, GZ_DRIVE), *TOWER), "", MOBILE, GZ),
     "gz arm": Kind(
         _robot(
             "ROBOT", *ARM, CONTROL.replace("HARDWARE", "gz_ros2_control/GazeboSimSystem"), GZ_CONTROL
@@ -176,6 +201,10 @@ KINDS = {
         ".urdf", MANIPULATOR, GZ, RELEASES[1:],
     ),
 }  # fmt: skip
+# The kinds with nodes of ROS in the process of the simulator.
+IN_SIMULATOR = ("gz arm", "classic rover")
+# The robots that these are joined of.
+JOINED = {"joined cart": ("plain cart", "barrow"), "joined rover": ("gz rover", "tower")}
 SRDF = """\
 <robot name="ROBOT"><group name="arm"><joint name="shoulder"/><joint name="elbow"/></group></robot>
 """
@@ -296,15 +325,12 @@ class DrawnFleet(NamedTuple):
 # ---------------------------------------------------------------- fleets that build
 
 
-def maybe(draw: st.DrawFn, of_ten: int = 3) -> bool:
-    """True so many times of ten; what is left out is simpler."""
-    return draw(st.integers(0, 9)) >= 10 - of_ten
-
-
 @st.composite
 def fleets(draw: st.DrawFn) -> DrawnFleet:
     """A fleet that its pages allow, but for what chance brings together."""
-    release, layout = draw(st.sampled_from(RELEASES)), draw(st.sampled_from(LAYOUTS))
+    is_cell = maybe(draw, 1)
+    release = draw(st.sampled_from(RELEASES))
+    layout = "frames-per-robot" if is_cell else draw(st.sampled_from(LAYOUTS))
     at_run_time = layout == "frame-prefix"
     side = "prefix" if at_run_time else draw(st.sampled_from(("prefix", "postfix")))
     data: Data = {"layout": layout, "distro": release, "affix": side}
@@ -324,25 +350,44 @@ def fleets(draw: st.DrawFn) -> DrawnFleet:
     names = [f"{numbered}{at + 1}" for at, _ in enumerate(names)] if numbered else names
     known = _kinds(draw, release, data.get("simulator", ""))
     kinds = [draw(st.sampled_from(known))] * len(names)
-    if draw(st.booleans()) and not numbered:
+    if is_cell:
+        kinds = ["arm"] * len(names)
+    elif draw(st.booleans()) and not numbered:
         kinds = [draw(st.sampled_from(known)) for _ in names]
     making = _Making(draw, data, {}, {})
     own = draw(
         st.sampled_from(((), ("tag",), ("namespace",), ("model",), OWN) if not numbered else ((),))
     )
     words = {key: _own_words(draw, key, names, layout) for key in own}
-    posed = maybe(draw, 8)
+    posed = maybe(draw, 8) or is_cell
     data["robots"] = [
         _robot_row(making, name, kinds[at], {key: it[at] for key, it in words.items()})
         | ({"pose": _pose(draw, at)} if posed else {})
         for at, name in enumerate(names)
     ]
+    if is_cell:
+        _make_cell(making)
     if numbered:
         data["robots"] = [*_alike(draw, data["robots"][0], names)]
-    if maybe(draw, 1) and "gz arm" not in kinds:
+    if maybe(draw, 1) and {*kinds}.isdisjoint(IN_SIMULATOR):
         data["domains"] = {name: 11 + at for at, name in enumerate(names)}
         data |= {"crossing": ["robot_description"]} if draw(st.booleans()) else {}
+    add_keys(draw, data, making.files)
     return DrawnFleet(data, making.files, tuple(kinds), spelled(draw, data))
+
+
+def _make_cell(making: _Making) -> None:
+    """Let one move_group plan for all robots, which are arms."""
+    draw, data = making.draw, making.data
+    data |= {"cell": {"name": "workcell"} if maybe(draw) else {}}
+    groups = []
+    for row in data["robots"]:
+        row["stack"] = draw(st.sampled_from((["moveit"], ["ros2_control", "moveit"])))
+        row["srdf"] = _written(making, "arm", ".srdf", SRDF.replace("ROBOT", "arm"), row["name"])
+        tag = row.get(data["affix"], row["name"])
+        groups.append(f"{tag}_arm" if data["affix"] == "prefix" else f"arm_{tag}")
+    if draw(st.booleans()):
+        data["cell"]["groups"] = {"all_arms": groups}
 
 
 def _alike(draw: st.DrawFn, row: Data, names: list[str]) -> Iterator[Data]:
@@ -388,7 +433,7 @@ def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) 
     its = KINDS[kind]
     row: Data = {"name": name}
     row |= {data["affix"] if key == "tag" else key: word for key, word in words.items()}
-    row["description"] = _description(making, kind, name)
+    row |= _described(making, kind, name)
     if kind == "gz rover" and maybe(draw, 1):
         model = KINDS["sdf rover"].text.replace("ROBOT", "rover")
         row["simulated"] = _written(making, "model", ".sdf", model, name)
@@ -411,6 +456,15 @@ def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) 
     if "moveit" in row.get("stack", ()):
         row["srdf"] = _written(making, "arm", ".srdf", SRDF.replace("ROBOT", "arm"), name)
     return row
+
+
+def _described(making: _Making, kind: str, name: str) -> Data:
+    """What a robot is described by: a file, or the parts that it is joined of."""
+    if kind not in JOINED:
+        return {"description": _description(making, kind, name)}
+    base, other = (_description(making, it, name) for it in JOINED[kind])
+    at = making.draw(st.sampled_from(("base_link", "lidar_link")))
+    return {"join": parts(base, other, at, making.draw)}
 
 
 def _description(making: _Making, kind: str, name: str) -> str:
@@ -460,6 +514,9 @@ def _companions(making: _Making, kind: str, name: str) -> Data:
 def _pose(draw: st.DrawFn, at: int) -> Data:
     pose: Data = {"x": 3 * at + draw(st.sampled_from((0, 0.0, 0.5, 1e-05)))}
     pose |= {"y": draw(st.sampled_from((-1, 0.25, 10)))} if maybe(draw) else {}
+    pose |= (
+        draw(st.sampled_from(({"z": 0.05}, {"roll": 0.1, "pitch": -0.2}))) if maybe(draw, 1) else {}
+    )
     return pose | ({"yaw": draw(st.sampled_from((1.57, -3.14, 0)))} if maybe(draw) else {})
 
 
@@ -497,8 +554,13 @@ def _stand_in_each_other(fleet: DrawnFleet) -> bool:
 
 
 def _missing(fleet: DrawnFleet) -> bool:
-    named = (row["description"] for row in fleet.data["robots"])
-    return any(it not in fleet.files for it in named)
+    return any(it not in fleet.files for row in fleet.data["robots"] for it in described_by(row))
+
+
+def described_by(row: Data) -> list[str]:
+    """The files that a robot is described by."""
+    own = [row["description"]] if "description" in row else []
+    return [*own, *(it["description"] for it in row.get("join", ()))]
 
 
 def _links(fleet: DrawnFleet) -> list[set[str]]:
@@ -546,6 +608,104 @@ def _same(key: str) -> Callable[[Data, DrawnFleet], object]:
     return put
 
 
+def _part_somewhere_else(data: Data) -> None:
+    row = _first(data)
+    row.pop("description", None)
+    row.pop("simulated", None)
+    row.pop("arguments", None)
+    at = {"parent": "nosuch_link"}
+    row["join"] = [
+        {"description": "plain_cart.urdf"},
+        {"description": "barrow.urdf", "prefix": "p_", "at": at},
+    ]
+
+
+def _keep_groups(data: Data) -> None:
+    for key in ("domains", "crossing", "relayed", "shape", "params_style"):
+        data.pop(key, None)
+    data |= {"layout": "frames-per-robot", "cell": {}, "groups": "keep"}
+    for at, row in enumerate(data["robots"]):
+        row |= {
+            "description": "arm.urdf",
+            "srdf": "arm.srdf",
+            "stack": ["moveit"],
+            "pose": {"x": at},
+        }
+
+
+# Causes that are in keys of the fleet file alone.
+FLEET_CAUSES: dict[str, tuple[Callable[[Data], object], Callable[[Data], bool]]] = {
+    "poses in no shared frame": (lambda data: data.update(world="nosuch_frame"), has_no_such_world),
+    "a shared node that no robot has": (
+        lambda data: data.update(shared_nodes=["nosuch"]),
+        shares_no_such_node,
+    ),
+    "a shared node that nav2_bringup starts for each": (
+        lambda data: (
+            data.update(
+                layout="both",
+                params_style="bringup",
+                shared_nodes=["map_server"],
+            ),
+            data.pop("shape", None),
+            _first(data).update(stack=["nav2"]),
+        ),
+        started_for_each,
+    ),
+    "a vendor that starts another layout": (
+        lambda data: data.update(
+            layout="frames-per-robot",
+            **{"shape": "nav2"} if "shape" in data else {"params_style": "bringup"},
+        ),
+        in_other_layout,
+    ),
+    "a vendor that takes another style": (
+        lambda data: data.update(layout="tf-per-robot", shape="nav2", params_style="full"),
+        in_other_style,
+    ),
+    "an adapter that finds no robot": (
+        lambda data: (
+            data.update(free_fleet={"router": "tcp/10.0.0.1:7447", "map": "L1"}),
+            _first(data).pop("stack", None),
+        ),
+        has_no_adapter,
+    ),
+    "groups of one name in a cell": (
+        _keep_groups,
+        lambda data: "cell" in data and data.get("groups") == "keep",
+    ),
+    "a cell of arms that have no SRDF": (
+        lambda data: (
+            data.update(layout="frames-per-robot", cell={}),
+            _first(data).pop("srdf", None),
+        ),
+        lambda data: (
+            "cell" in data and any("srdf" not in {**data, **row} for row in data["robots"])
+        ),
+    ),
+    "operators without a keystore": (
+        lambda data: data.update(zenoh={"router": "tcp/10.0.0.1:7447", "operators": ["/boss"]}),
+        has_no_certificates,
+    ),
+    "a description and parts": (
+        lambda data: _first(data).update(
+            description="plain_cart.urdf",
+            join=[
+                {"description": "plain_cart.urdf", "name": "both"},
+                {"description": "barrow.urdf", "prefix": "p_", "at": {"parent": "base_link"}},
+            ],
+        ),
+        lambda data: any("join" in row and "description" in row for row in data["robots"]),
+    ),
+    "a part that is fixed to no link": (
+        _part_somewhere_else,
+        lambda data: any(
+            it.get("at", {}).get("parent") == "nosuch_link"
+            for row in data["robots"]
+            for it in row.get("join", ())
+        ),
+    ),
+}
 CAUSES = {
     "robots share a name": Cause(_same("name"), _share_a_word),
     "robots share a namespace": Cause(_same("namespace"), _share_a_word),
@@ -595,6 +755,10 @@ CAUSES = {
             "arguments" in row and kind != "xacro rover" for row, kind, _ in rows(fleet)
         ),
     ),
+    **{
+        name: Cause(lambda data, _, put=put: put(data), lambda fleet, it=holds: it(fleet.data))
+        for name, (put, holds) in FLEET_CAUSES.items()
+    },
     # A namespace of its own has them not, and its name is in no name of ROS then.
     "two underscores": Cause(
         lambda data, _: (_first(data).update(name="r__1"), _first(data).pop("namespace", None)),
@@ -662,7 +826,11 @@ CAUSES = {
         ),
         lambda fleet: (
             fleet.data["layout"] in ("tf-per-robot", "frame-prefix")
-            and any(row["description"] == "world.urdf" for row, _ in simulated(fleet))
+            and any(
+                '<robot name="world"' in fleet.files.get(path, "")
+                for row, _ in simulated(fleet)
+                for path in described_by(row)
+            )
         ),
     ),
     # A start pose is given to no robot that maps: slam_toolbox says where it is.
@@ -684,13 +852,13 @@ CAUSES = {
         ),
         lambda fleet: fleet.data.get("use_sim_time") is True and not simulated(fleet),
     ),
-    "a manager in a simulator has another domain": Cause(
+    "a node in the simulator has another domain": Cause(
         lambda data, _: (
             data.update(domains={row["name"]: 7 + at for at, row in enumerate(data["robots"])}),
             _first(data).update(description="gz_arm.urdf", simulator="gazebo"),
         ),
         lambda fleet: (
-            "domains" in fleet.data and any(kind == "gz arm" for _, kind in simulated(fleet))
+            "domains" in fleet.data and any(kind in IN_SIMULATOR for _, kind in simulated(fleet))
         ),
     ),
 }
@@ -712,11 +880,16 @@ def with_kinds(fleet: DrawnFleet, data: Data) -> DrawnFleet:
     named["world.urdf"] = "gz rover"
     files, kinds = {**fleet.files}, []
     for row, before, kind in zip(data["robots"], fleet.data["robots"], fleet.kinds, strict=True):
-        path, old = row["description"], before["description"]
+        path, old = row.get("description"), before.get("description")
+        # A cause that names a description has no parts in mind.
+        if path and path != old and "both" not in row.get("join", [{}])[0].get("name", ""):
+            row.pop("join", None)
         kinds.append(named.get(path, kind) if path != old else kind)
         if path != old and path in named:
             files[path] = KINDS[named[path]].text.replace("ROBOT", path.partition(".")[0])
             row.pop("arguments", None)
+    plain = {f"{it.replace(' ', '_')}.urdf": KINDS[it].text for it in ("plain cart", "barrow")}
+    files |= {path: text.replace("ROBOT", "r") for path, text in plain.items() if path not in files}
     files |= {"controllers.yaml": CONTROLLERS, "arm.srdf": SRDF.replace("ROBOT", "arm")}
     files |= {"start_pose.yaml": NAV_PARAMS}
     return DrawnFleet(data, files, tuple(kinds))

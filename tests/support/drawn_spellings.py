@@ -23,9 +23,11 @@ SHORT = {
     "postfix": "L4",
     "frame-prefix": "L5",
 }
-OF_ALL = ("description", "srdf", "arguments", "stack", "simulator")
-PATHS = ("description", "srdf", "simulated")
-FILES = ("params", "rviz", "moveit", "bridge")
+OF_ALL = ("description", "join", "srdf", "arguments", "stack", "simulator")
+PATHS = (
+    *("description", "srdf", "simulated", "simulator_world", "nodes", "vocabulary", "launch_roots"),
+)
+FILES = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 
 
 def spelled(draw: st.DrawFn, data: Data) -> dict[str, Data]:
@@ -96,7 +98,9 @@ def _pattern(rows: list[Data]) -> Data | None:
 def _at_the_top(data: Data) -> None:
     """What most robots have, for all of them: another one has its own."""
     rows = data["robots"]
-    for key in OF_ALL:
+    # Of one for all and another one at a robot that of the robot counts: both at one robot are a fault.
+    has_both = any({"description", "join"} <= row.keys() for row in rows)
+    for key in (it for it in OF_ALL if not (has_both and it in ("description", "join"))):
         _raise(data, rows, key, nothing=[] if key == "stack" else None)
     top: Data = {}
     for kind in FILES:
@@ -125,7 +129,7 @@ def _words(data: Data) -> None:
     """A list of one word is a word."""
     for row in (data, *data["robots"]):
         for own in (row, row.get("companions", {})):
-            for key in ("stack", "params", "moveit", "bridge"):
+            for key in ("stack", *FILES):
                 value = own.get(key)
                 if isinstance(value, list) and len(value) == 1 and isinstance(value[0], str):
                     own[key] = value[0]
@@ -145,8 +149,12 @@ def _in_two_files(draw: st.DrawFn, data: Data) -> dict[str, Data]:
 
 def _from(folder: str, key: str, value: Any) -> Any:
     """A value with its paths as they are from a folder."""
-    if key in PATHS:
+    if key in PATHS and isinstance(value, str):
         return os.path.relpath(value, folder)
+    if key in PATHS:
+        return [os.path.relpath(it, folder) for it in value]
+    if key == "join":
+        return [{**it, "description": os.path.relpath(it["description"], folder)} for it in value]
     if key != "companions":
         return value
     return {

@@ -17,8 +17,7 @@ from typing import NamedTuple
 from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main as multibot
-from multibot_rewrite.spelling.plan_file import from_yaml
-from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.json import from_yaml, to_json
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,

@@ -39,11 +39,10 @@ from collections.abc import Iterable, Iterator
 
 from graph_cases import environment, qos
 from node_answers import told
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 from plans import told as planned_told
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.guess import GuessedRobot, whose_by_guess, with_frames
 from multibot_rewrite.system.index import Index, Known, index
 from multibot_rewrite.system.parameters import Answer, with_answers
@@ -126,7 +125,7 @@ def read_system(text: str) -> Index:
     assert not plan.ends, "a danger needs no plan: begin its lines with running:"
     robots = sorted({*ROBOT.findall(text)})
     frames = [name for frame in graph.edges for name in (frame.child, frame.parent)]
-    guessed = (with_frames(GuessedRobot(it, f"/{it}"), frames) for it in robots)
+    guessed = with_frames((GuessedRobot(it, f"/{it}") for it in robots), frames)
     running = [line.removeprefix("running: ") for line in text.splitlines()]
     messages = {name: int(count) for name, count in _words(CAME, running)}
     return index(graph, whose_by_guess(guessed), Known(messages=messages, seconds=60.0))

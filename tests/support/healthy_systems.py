@@ -16,7 +16,7 @@ from nav2_graphs import EVERYDAY, ROVER
 from nav2_graphs import healthy as as_planned
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.spelling.plan_file import from_yaml
+from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,

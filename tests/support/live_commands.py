@@ -10,9 +10,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.records import (
     PUBLISHES,

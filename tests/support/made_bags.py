@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 from rosbags.interfaces import (
     Qos,
     QosDurability,
@@ -20,7 +20,6 @@ from rosbags.interfaces import (
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
 
 STORE = get_typestore(Stores.ROS2_HUMBLE)

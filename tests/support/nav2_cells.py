@@ -23,6 +23,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from named_ends import named_ends
 from vendor_sources import VARIABLE, install, packages_below, sources_folder
 
 from multibot_rewrite import load_fleet
@@ -256,10 +257,10 @@ def processes(fleet: LoadedFleet, rows: list[dict[str, Any]], folder: Path) -> l
     """The order for the stand-ins: each process with its words, its nodes and those in them."""
     facts = {it.name: it for it in fleet.plan.fleet.facts}
     ends: dict[str, list[Any]] = {}
-    for it in fleet.planned.table.names:
+    for it in named_ends(fleet.planned.table):
         if it.robot == ROBOTS[0] and not it.endpoint.when:
             ends.setdefault(it.node, []).append(it.endpoint)
-    names = {it.node: it.full_name for it in fleet.planned.table.nodes if it.robot == ROBOTS[0]}
+    names = {it.node: it.full_name for it in fleet.planned.table.runs if it.robot == ROBOTS[0]}
     known = load_nodes(fleet.plan.file.distro)
 
     def node(name: str, code: str, words: list[str], parameters: Any, below: str = "") -> Any:

@@ -10,13 +10,12 @@ from tempfile import TemporaryDirectory
 
 from graph_cases import bridge
 from paths import ROBOTS
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.pages.scene import Scene, make_scene
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import planned_end
-from multibot_rewrite.spelling.plan_file import from_yaml
+from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,

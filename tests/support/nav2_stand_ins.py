@@ -20,8 +20,9 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.live import stub_nodes
-from multibot_rewrite.live.rehearsal import TF, StubEndpoint, substitute_type
+from multibot_rewrite.live.rehearsal import TF, substitute_type
 from multibot_rewrite.producers.ros.worker import Send, run_worker
 from multibot_rewrite.system.records import TOPIC, edge_of
 
@@ -97,7 +98,7 @@ def endpoints(stubs: Any, node: Any, one: dict[str, Any]) -> list[Any]:
         if helped and by not in helpers:
             helpers[by] = helper_of(stubs.session, node, by)
         owner = helpers[by] if helped else node
-        end = StubEndpoint(kind, role, named, type_, False)
+        end = Endpoint(kind, role, named, type_)
         made += stub_nodes._create_endpoint(stubs, owner, end, edges)
     if one["name"] == "tf_namespace_bridge":
         for topic in ("tf", "tf_static"):
@@ -106,8 +107,8 @@ def endpoints(stubs: Any, node: Any, one: dict[str, Any]) -> list[Any]:
         relay(node, value("input_topic"), value("output_topic"), stubs.replaced)
     for managed in value("node_names", []) if one["manager"] else []:
         for service, type_ in (("change_state", "ChangeState"), ("get_state", "GetState")):
-            end = StubEndpoint(
-                "service", "calls", f"{managed}/{service}", f"lifecycle_msgs/srv/{type_}", False
+            end = Endpoint(
+                "service", "calls", f"{managed}/{service}", f"lifecycle_msgs/srv/{type_}"
             )
             made += stub_nodes._create_endpoint(stubs, node, end, ())
     return made

@@ -60,6 +60,19 @@ def planned(
     )
 
 
+def planned_end(
+    node: str,
+    kind: str,
+    role: str,
+    name: str,
+    type_: str = "",
+    code_name: str = "",
+    also: tuple[str, ...] = (),
+) -> End:
+    """An end of which nothing is known that only a running system shows."""
+    return End(kind, role, name, type_, node=node, code_name=code_name, also=also)
+
+
 def own(plan: System, robot: str = "") -> tuple[str, ...]:
     """The names of a robot's nodes, or of those for all robots."""
     return tuple(nodes_by_robot(plan)[robot])
@@ -68,6 +81,17 @@ def own(plan: System, robot: str = "") -> tuple[str, ...]:
 def optional(plan: System, robot: str) -> tuple[str, ...]:
     """The nodes of a robot that may be missing."""
     return tuple(it.name for it in plan.nodes if it.robot == robot and it.sure.word == MAY.word)
+
+
+def robot_named(plan: System, name: str) -> Robot:
+    """The robot of that name; raises StopIteration."""
+    return next(it for it in plan.robots if it.name == name)
+
+
+def ends_of(plan: System, node: str) -> list[End]:
+    """The ends of a node; raises AssertionError for a node that is not planned."""
+    assert node in {it.name for it in plan.nodes}
+    return [it for it in plan.ends if it.node == node]
 
 
 def places(plan: System) -> dict[str, str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import nav2_graphs
 from nav2_graphs import TEXT
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.live.diagnose import diagnose
@@ -13,7 +13,6 @@ from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.pages.scene import Scene, make_scene
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,

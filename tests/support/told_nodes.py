@@ -16,7 +16,8 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.fleet.scripts import LoadedFleet
-from multibot_rewrite.live.rehearsal import StubEndpoint, StubNode, stub_nodes
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.live.rehearsal import StubNode, stub_nodes
 from multibot_rewrite.spelling.transforms import with_odometry
 from multibot_rewrite.spelling.way_checks import running_nodes
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, edge_of
@@ -63,8 +64,8 @@ def _known(fleet: LoadedFleet) -> Iterator[tuple[str, StubNode]]:
     """All nodes of the plan by full name."""
     table = fleet.planned.table
     made = stub_nodes(table, fleet.planned.edges)
-    for it, (_, stub) in zip(running_nodes(table, ()), made, strict=True):
-        yield it.node.full_name, stub
+    for (_, it), (_, stub) in zip(running_nodes(table, ()), made, strict=True):
+        yield it.full_name, stub
 
 
 def _process(
@@ -72,15 +73,15 @@ def _process(
 ) -> Iterator[tuple[str, StubNode]]:
     """The node of a process and those that it makes; one that no plan has is there, too."""
     arguments = (ROS_ARGS, *rules) if rules else ()
-    own = [it for it in fleet.planned.table.nodes if it.full_name == full]
+    own = [it for it in fleet.planned.table.runs if it.full_name == full]
     if not own:
         yield "", StubNode(full.rpartition("/")[2] or "unnamed", arguments, (), (), ())
     for it in own:
         yield it.robot, _told(stubs[it.full_name], arguments)
         hosted = [
             one
-            for one in fleet.planned.table.nodes
-            if one.robot == it.robot and one.home.host == it.node and not one.home.plugin
+            for one in fleet.planned.table.runs
+            if one.robot == it.robot and one.fact.host == it.node and not one.fact.plugin
         ]
         free = tuple(word for word in rules if not word.startswith(("__ns", "__node")))
         for one in hosted:
@@ -120,8 +121,8 @@ def _plugins(
     model: str, fleet: LoadedFleet, stubs: Mapping[str, StubNode]
 ) -> Iterator[tuple[str, StubNode]]:
     (robot,) = (it for it in fleet.plan.robots if it.spec.model == model)
-    for it in fleet.planned.table.nodes:
-        if it.robot == robot.spec.namespace and it.home.plugin:
+    for it in fleet.planned.table.runs:
+        if it.robot == robot.spec.namespace and it.fact.plugin:
             yield it.robot, stubs[it.full_name]
 
 
@@ -134,12 +135,11 @@ def _bridge(told: Told, rules: list[str], fleet: LoadedFleet) -> StubNode:
     }
     rows = yaml.safe_load(Path(config).read_text())
     ends = tuple(
-        StubEndpoint(
+        Endpoint(
             TOPIC,
             role,
             row["topic_name" if "topic_name" in row else "ros_topic_name"],
             row["ros_type_name"],
-            False,
         )
         for row in rows
         for role in _ROLES[row.get("direction", "BIDIRECTIONAL")]

@@ -27,7 +27,7 @@ from multibot_rewrite.base.rosnames.rules import RemapRule, parse_remap
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.spelling.table import parsed
+from multibot_rewrite.spelling.of_runs import parsed
 from multibot_rewrite.system.records import RUNS, System
 
 DESCRIPTION = "robot_description"
@@ -143,7 +143,7 @@ def _topics(
     built: Built, row: dict[str, Any], name: str, given: Rows, theirs: Rows, ours: Rows
 ) -> None:
     """Where the names of a node lead by the vendor's parameters and rules, and by the table."""
-    nodes = built.fleet.table.nodes if built.fleet else ()
+    nodes = built.fleet.table.runs if built.fleet else ()
     table = next((it for it in nodes if it.full_name == name), None)
     if table is None or built.fleet is None:
         return

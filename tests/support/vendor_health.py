@@ -18,7 +18,7 @@ from vendor_systems import OTHER, ROBOT, Outcome, Started
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.records import NodeRule, NodeTable
+from multibot_rewrite.spelling.records import Rules, Run
 from multibot_rewrite.system.records import End, Node, System
 
 TF = ("/tf", "/tf_static")
@@ -29,7 +29,7 @@ _TWIST = "geometry_msgs/msg/Twist"
 def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Finding, ...]:
     """What ``check`` says of two robots that run as the vendor starts them."""
     known = {it.name: _unstamped(it) for it in found.fleet.facts}
-    rules = {it.full_name: it.rules for it in found.fleet.table.nodes}
+    rules = {it.full_name: it.rules for it in found.fleet.table.runs}
     nodes: list[str] = []
     ends: list[End] = []
     declared: set[str] = set()
@@ -82,14 +82,13 @@ def kind_of(node: Started, short: str, release: str, kinds: Mapping[str, str]) -
     return next((it for it in given if it in facts(release)), "")
 
 
-def placed(node: Started, short: str, more: tuple[NodeRule, ...]) -> NodeTable:
+def placed(node: Started, short: str, more: Rules) -> Run:
     """The node under its name, with the remap rules that the launch gives it, then with those that it
     needs besides: vendors' launch files do not separate names that are absolute in the code."""
     namespace, _, name = node.name.rpartition("/")
     # tf is heard by a helper node in the namespace of the process, not in that of a costmap in it.
-    given = (it for it in node.rules if "/" not in short or it[0] not in TF)
-    rules = tuple(NodeRule("", name, old, new, "", "") for old, new in given)
-    return NodeTable("", short, namespace or "/", name, (*rules, *more))
+    rules = tuple(it for it in node.rules if "/" not in short or it[0] not in TF)
+    return Run("", short, namespace or "/", name, (*rules, *more))
 
 
 def _of(plan: System, nodes: Iterable[str]) -> System:

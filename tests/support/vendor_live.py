@@ -18,8 +18,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.live.rehearsal import substitute_type, with_substitutes
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import from_yaml
-from multibot_rewrite.system.json import from_json
+from multibot_rewrite.system.json import from_json, from_yaml
 from multibot_rewrite.system.records import TOPIC, System
 
 PLAN = "plan.yaml"

@@ -156,6 +156,65 @@ def test_a_plan_says_whose_a_frame_is(frame: str, robot: str, plain: str) -> Non
     assert (whose.frame_robot(frame), whose.plain_frame(frame)) == (robot, plain)
 
 
+BARE = System(
+    robots=(
+        Robot("barrow", ("base_link", "axle")),
+        Robot("link", ("base_link", "lidar_link", "left_wheel")),
+        Robot("lidar", ("base_link", "lidar_link", "left_wheel")),
+        Robot("rover", ("base_link", "laser")),
+    )
+)
+
+
+@pytest.mark.parametrize(
+    ("frame", "robot"),
+    [
+        # Of the second and third robot, whose names are in it, though the first has no such frame.
+        ("lidar_link", ""),
+        # Gazebo calls the frames of a sensor by its model, which may be called as a robot is and more.
+        ("rover_2/base_link/lidar", ""),
+        ("rover_2_base_link", ""),
+        # Another robot's frame, with its name as a whole or glued.
+        ("rover/base_link/lidar", "rover"),
+        ("rover/laser", "rover"),
+        ("rover_laser", "rover"),
+        ("rover_odom", "rover"),
+        ("laser", "rover"),
+    ],
+)
+def test_a_part_of_a_word_is_a_robot_if_the_rest_is_a_frame(frame: str, robot: str) -> None:
+    assert whose_by_plan(BARE).frame_robot(frame) == robot
+
+
+def test_where_a_plan_glues_names_to_frames_any_rest_will_do() -> None:
+    robots = (Robot("a", ("a_base_link", "a_odom")), Robot("b", ("b_base_link", "b_odom")))
+    whose = whose_by_plan(System(robots=robots))
+    assert whose.frame_robot("b_gripper") == "b"
+    assert whose.plain_frame("b_gripper") == "gripper"
+
+
+def test_robots_that_are_called_as_topics_of_others_are() -> None:
+    """The topics that a bridge brings, and what is below them; a domain_bridge is of all robots and
+    names a robot's topic."""
+    robots = (Robot("scan", tf_topic="/tf/scan"), Robot("a", tf_topic="/tf/a"))
+    rsp = tuple(node(f"/rsp_{it.name}", it.name) for it in robots)
+    rows = tuple(
+        Topic(f"/scan/{it.name}{end}", bridge=(PUBLISHES,))
+        for it in robots
+        for end in ("", "/points")
+    )
+    whose = whose_by_plan(System(nodes=rsp, robots=robots, topics=rows))
+    assert [*map(whose.robot, ("/scan/a", "/scan/a/points"))] == ["a", "a"]
+    assert [*map(whose.robot, ("/scan/scan", "/scan/scan/points"))] == ["scan", "scan"]
+    assert whose.robot("/scan/a/other") == "a"
+    crossing = (
+        End(TOPIC, PUBLISHES, "/odom/a", "", "", "/rsp_a", None, "", "odom"),
+        End(TOPIC, PUBLISHES, "/odom/a", "", "", "/a_bridge_0", None, "", "/odom/a"),
+    )
+    plan = System(nodes=(*rsp, node("/a_bridge_0")), ends=crossing, robots=robots)
+    assert whose_by_plan(plan).robot("/ros_gz_bridge_a") == "a"
+
+
 def test_the_robots_of_a_plan_are_in_order() -> None:
     assert whose_by_plan(PLAN).robots == ("a", "scan")
 

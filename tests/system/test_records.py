@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.system import records
-from multibot_rewrite.system.json_values import FARTHEST, WrongValue, read_transform, shown
 from multibot_rewrite.system.merging import Look, merged
 from multibot_rewrite.system.parameters import Answer, parameter_text, parameter_value, with_answers
 from multibot_rewrite.system.questions import Question, questions
 from multibot_rewrite.system.reach import hidden_from_here, machines, why_not_seen
+from multibot_rewrite.system.record_values import FARTHEST, WrongValue, read_transform, shown
 from multibot_rewrite.system.records import (
     MAY,
     NOWHERE,
@@ -179,7 +179,7 @@ def test_machines_are_what_fast_dds_calls_them() -> None:
 def test_a_robot_may_be_hidden_where_one_machine_is_all_that_was_seen(
     graph: System, hidden: bool
 ) -> None:
-    assert hidden_from_here(graph) is hidden
+    assert hidden_from_here(graph, machines(graph)) is hidden
 
 
 STARTED = "is the robot started, and with this ROS_DOMAIN_ID?"
@@ -206,11 +206,11 @@ STARTED = "is the robot started, and with this ROS_DOMAIN_ID?"
     ],
 )
 def test_why_a_robot_is_not_seen(graph: System, said: str) -> None:
-    assert why_not_seen(graph, "robot1") == said
+    assert why_not_seen(graph, "robot1", machines(graph)) == said
 
 
 def test_why_a_robot_on_another_machine_is_not_seen() -> None:
-    said = why_not_seen(seen(ONE), "robot1")
+    said = why_not_seen(seen(ONE), "robot1", machines(seen(ONE)))
     assert said.startswith("all that is seen runs on one machine (/n0). If robot1 is on another,")
 
 

@@ -17,14 +17,16 @@ from multibot_rewrite import system_of_description
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.system.json import from_json, to_json
-from multibot_rewrite.system.json_values import read_seconds
+from multibot_rewrite.system.record_values import read_seconds
 from multibot_rewrite.system.records import (
     MAY,
     Controller,
     Edge,
+    End,
     Heard,
     Node,
     Parameter,
+    Place,
     Robot,
     System,
 )
@@ -69,6 +71,21 @@ def test_what_fixes_a_file_is_not_in_the_file_of_a_system() -> None:
 def test_every_kind_of_record_is_valid_and_comes_back() -> None:
     VALID.validate(json.loads(to_json(ALL)))
     assert from_json(to_json(ALL), "g") == ALL
+
+
+def test_what_version_0_2_0_wrote_is_read() -> None:
+    """Schema 2 has every field of an end up to its process, and places and certainties as objects."""
+    end = {"kind": "topic", "role": "publishes", "name": "/tf", "type": "T", "type_hash": "",
+           "node": "/r1/amcl", "qos": None, "process": ""}  # fmt: skip
+    edge = {"child": "a", "parent": "b", "topic": "/tf", "static": False, "publishers": []}
+    node = {"name": "/r1/amcl", "sure": {"word": "may"}, "place": {"file": "a.yaml", "line": 3}}
+    value = {"schema": 2, "nodes": [node], "ends": [end], "edges": [edge]}
+    VALID.validate(value)
+    assert from_json(json.dumps(value).encode(), "g") == System(
+        (Node("/r1/amcl", sure=MAY, place=Place("a.yaml", 3)),),
+        (End("topic", "publishes", "/tf", "T", node="/r1/amcl"),),
+        (Edge("a", "b", "/tf"),),
+    )
 
 
 @pytest.mark.more

@@ -28,8 +28,8 @@ from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.records import NodeTable
-from multibot_rewrite.spelling.table import parsed
+from multibot_rewrite.spelling.of_runs import parsed
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -124,7 +124,7 @@ def kinds(name: str, release: str) -> dict[str, str]:
 
 def played(name: str, release: str, plan: FleetPlan) -> System:
     """The graph of all nodes that run, with what their sources declare."""
-    placed = {(it.robot, it.node): it for it in plan.fleet.table.nodes}
+    placed = {(it.robot, it.node): it for it in plan.fleet.table.runs}
     known: dict[str, NodeFacts] = {it.name: it for it in plan.fleet.facts}
     ends: list[End] = []
     nodes: list[str] = []
@@ -160,7 +160,7 @@ def _node(name: str) -> Node:
     return Node(name, name)
 
 
-def _tree(description: bytes, publisher: NodeTable) -> Iterator[Edge]:
+def _tree(description: bytes, publisher: Run) -> Iterator[Edge]:
     """What robot_state_publisher sends of a description."""
     bound = bind(publisher.name, publisher.namespace, parsed(publisher.rules))
     for joint in etree.fromstring(description).findall("joint"):

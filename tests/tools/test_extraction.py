@@ -146,6 +146,18 @@ def test_a_filter_that_is_given_no_node_is_none(tmp_path: Path) -> None:
     assert facts(tmp_path, 'bus.subscribe("in");') == set()
 
 
+def test_a_filter_has_the_type_of_its_member(tmp_path: Path) -> None:
+    header = """class Robot { message_filters::Subscriber<a_msgs::msg::Scan> scan_;
+      image_transport::SubscriberFilter image_; std::vector<a_msgs::msg::Scan> seen_; };"""
+    body = """scan_.subscribe(this, "in"); image_.subscribe(this, "eye");
+      seen_.subscribe(this, "none");"""
+    assert facts(tmp_path, body, header=header) == {
+        ("subscribes", "in", "a_msgs/msg/Scan", "", "", ""),
+        ("subscribes", "eye", "sensor_msgs/msg/Image", "", "", ""),
+        ("subscribes", "none", "", "", "", ""),
+    }
+
+
 def test_a_value_is_of_its_package(tmp_path: Path) -> None:
     """Another node's default of a parameter with the same name is not taken."""
     other = tmp_path / "repo@1.2.3" / "another"

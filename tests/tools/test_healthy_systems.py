@@ -55,7 +55,7 @@ def system(release: str, name: str) -> tuple[list[tuple[str, NodeFacts]], Table,
     naming = make_naming("L2")
     table = build_table(("robot1", "robot2"), nodes, naming, release=NEWEST_LTS)
     kinds = [(KINDS.get(it.name, it.name), it) for it in nodes]
-    return kinds, table, expect(table, naming, {"robot1": (), "robot2": ()}, nodes)
+    return kinds, table, expect(table, naming, {"robot1": (), "robot2": ()})
 
 
 def graph(release: str, name: str) -> tuple[System, System]:
@@ -63,7 +63,7 @@ def graph(release: str, name: str) -> tuple[System, System]:
     by_name = {(it.name): (kind, it) for kind, it in kinds}
     ends = []
     nodes = []
-    for placed in table.nodes:
+    for placed in table.runs:
         kind, node = by_name[placed.node]
         if kind not in facts(release):
             assert node.when, f"{release} has no facts of {kind}"

@@ -107,7 +107,7 @@ def _declared(index: Index, node: str, visit: Visit, scope: Scope, call: Call) -
             node,
             api.role,
             said.text,
-            _type(index, scope, api, types),
+            _type(index, scope, api, types) or _type_of_member(index, scope, call.on),
             _way(api, [on, *nodes], node) or visit.way,
             said.parameter,
             _both(visit.condition, call.condition),
@@ -158,6 +158,14 @@ def _type(index: Index, scope: Scope, api: Api, types: tuple[str, ...]) -> str:
         return api.type
     at = int(api.type)
     return type_of(index, scope, types[at]) if at < len(types) else ""
+
+
+def _type_of_member(index: Index, scope: Scope, name: str) -> str:
+    """Return the type of the messages of a member that is told later what to subscribe to; empty for
+    any other member."""
+    member = _member(index, scope, name.strip("<>"))
+    made = next(iter(apis().get(last(member), ())), None)
+    return _type(index, scope, made, template_arguments(member)) if made else ""
 
 
 def _way(api: Api, nodes: list[str], node: str) -> str:

@@ -20,7 +20,8 @@ from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, is_apart
-from multibot_rewrite.spelling.table import node_table, parsed
+from multibot_rewrite.spelling.of_runs import parsed
+from multibot_rewrite.spelling.table import run_of
 from multibot_rewrite.spelling.targets import placed, target_of
 
 Facts = Mapping[str, NodeFacts]
@@ -129,7 +130,7 @@ def _ruled_text(
 ) -> TopicText:
     """The new name if it resolves correctly, else the old one if a rule moves that."""
     naming = context.topics.naming
-    table = node_table(NAMESPACE_SLOT, node, naming, context.nodes)
+    table = run_of(NAMESPACE_SLOT, node, naming, context.nodes)
     bound = bind(table.name, table.namespace, parsed(table.rules))
     wanted = _wanted(context, kind, texts[1], node)
     parent = placed(NAMESPACE_SLOT, "node", naming, node.apart)[0]

@@ -44,13 +44,12 @@ def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[s
     ours = {node.name for node in facts if not node.shared}
     stack = {
         node.full_name: node.node
-        for node in table.nodes
+        for node in table.runs
         if node.robot == robot and node.node in ours
     }
     found: dict[str, str] = {}
-    for name in table.names:
-        if name.robot == robot and name.node in stack and name.endpoint.kind in (TOPIC, ACTION):
-            above, _, node = stack[name.node].rpartition("/")
-            asked = name.endpoint.remapped or name.endpoint.name
-            found.setdefault(expand(asked, above, node), name.name)
+    for run, end, name in table.ends:
+        if run.robot == robot and run.full_name in stack and end.kind in (TOPIC, ACTION):
+            above, _, node = stack[run.full_name].rpartition("/")
+            found.setdefault(expand(end.remapped or end.name, above, node), name)
     return found

@@ -17,9 +17,8 @@ import yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.params.sections import is_for, raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, names_below, pairs
+from multibot_rewrite.system.parameters import Scalar, Value
 
-Scalar = bool | int | float | str
-Value = Scalar | list[Scalar]
 # rcl compares these words, in these capitalisations only.
 _TRUE = frozenset(["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"])
 _FALSE = frozenset(["N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"])

@@ -20,7 +20,7 @@ from multibot_rewrite.companions.params.sections import (
     is_for,
 )
 from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob, frames_stay
-from multibot_rewrite.companions.yaml_blocks import newline
+from multibot_rewrite.companions.yaml_blocks import line_start, newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, quoted
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNode
@@ -118,7 +118,7 @@ def inserted(
         at = body.start_mark.index + 1
         return Splice(at, at, text)
     at = body.value[0][0].start_mark.index
-    before = document.text[document.text.rfind("\n", 0, at) + 1 : at]
+    before = document.text[line_start(document, at) : at]
     if body.flow_style:
         text = "".join(f"{line.path}: {line.value}, " for line in lines)
         return Splice(at, at, text)

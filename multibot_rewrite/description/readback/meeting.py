@@ -47,7 +47,7 @@ _OF_FRAME = "allow it with --shared FRAME (shared_frames in a fleet file)"
 _ALLOW = f"rename it for each robot, or {_ALLOWED}"
 _ADVICE = {
     TWO_NODES: "give each robot's node a name or namespace of its own",
-    TWO_SERVERS: _ALLOW,
+    TWO_SERVERS: "rename it for each robot",
     COMMAND: _ALLOW,
     DATA: _ALLOW,
     OPENED: "write another for each robot, or give it by `arguments` of a fleet file",
@@ -164,7 +164,9 @@ def _for_code(name: RuntimeName) -> str:
     if name.tag == "ros2_control":
         rule = f"-r {name.name}:={name.name.lstrip('/')}"
         return f"give each robot's controller manager the rule {rule}, and a namespace"
-    return f"{_FIXED}: {_ALLOWED}"
+    # Of two servers any answers: that cannot be meant.
+    is_served = code_of(name) == TWO_SERVERS
+    return f"{_FIXED}: {'load the plugin for one robot only' if is_served else _ALLOWED}"
 
 
 class LostRule(NamedTuple):

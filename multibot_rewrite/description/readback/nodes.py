@@ -8,6 +8,7 @@ plugin's name is the node's, an empty namespace is the root), gz_ros2_control_pl
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from math import pi
 
 from lxml.etree import _Element
 
@@ -22,6 +23,7 @@ from multibot_rewrite.base.rosnames import (
     parse_remap,
     resolve_bound,
 )
+from multibot_rewrite.description.checks.numbers import value_of
 from multibot_rewrite.description.readback.parameters import sends_odometry, switched_off, values_of
 from multibot_rewrite.description.readback.wired import wired_of
 from multibot_rewrite.description.readback.xml import child_text, text_of
@@ -41,6 +43,8 @@ _MANAGER_NAME = "controller_manager_name"
 PUBLISHES, SERVES = "publishes", "serves"
 # Parent and child.
 PAIR = 2
+# Joints of arms turn twice at most from end to end; wheels are without limits, or with those of 1e16.
+_SOME_TURNS = 10 * pi
 
 
 class ReadEndpoint(NamedTuple):
@@ -72,10 +76,11 @@ class ReadRule(NamedTuple):
 class ReadNode(NamedTuple):
     """The node of a plugin, which is the ``number``-th of the file.
 
-    ``name`` and ``namespace`` are those before its ``rules``; ``stems`` are parameters with what
-    further topics are below; ``frames`` are parameters with the frames they hold, ``sends`` the
-    parameters of parent and child of a transform it publishes. ``helper`` is a node that it starts
-    beside its own, ``manager`` the full name of the controller manager that it makes, if any.
+    ``name`` and ``namespace`` are those that its rules ``__node`` and ``__ns`` make, ``rules`` the
+    other ones; ``stems`` are parameters with what further topics are below; ``frames`` are parameters
+    with the frames they hold, ``sends`` the parameters of parent and child of a transform it publishes.
+    ``helper`` is a node that it starts beside its own, ``manager`` the full name of the controller
+    manager that it makes, if any.
     """
 
     section: VocabularySection
@@ -110,11 +115,10 @@ def node_of(
     namespace = "/" + ("" if home is None else child_text(home, "namespace") or "").strip("/")
     rules = tuple(() if home is None else _rules(home))
     bound = _bound(name, namespace, [it.rule for it in rules])
+    # The namespace is the helper's; the node is where its own rules place it.
     helper = f"{namespace.rstrip('/')}/{section.helper}" if section.helper else ""
-    if helper:
-        # The namespace is the helper's; the node is where its own rules place it.
-        name, namespace = bound.node, bound.namespace
-        rules = tuple(it for it in rules if not it.rule.source.startswith("__"))
+    name, namespace = bound.node, bound.namespace
+    rules = tuple(it for it in rules if not it.rule.source.startswith("__"))
     frames = tuple(frames_of(plugin, section))
     endpoints, bare = _endpoints(plugin, section, bound, rules), _bound(name, namespace, ())
     return ReadNode(
@@ -141,22 +145,32 @@ def _manager(plugin: _Element, section: VocabularySection, name: str, namespace:
     return f"{namespace.rstrip('/')}/{called}"
 
 
-def wheels_in(plugin: _Element) -> bool:
-    """May one of its controllers send odometry, and so /tf? Those that do command velocities of joints
-    that turn (ros2_controllers: diff_drive_controller, tricycle_controller, mecanum_drive_controller,
-    omni_wheel_drive_controller and steering_controllers_library, command_interface_configuration)."""
-    root = plugin.getroottree().getroot()
-    types = {it.get("name"): it.get("type") for it in root.iter("joint") if it.get("type")}
+def wheels_in(element: _Element) -> bool:
+    """May a controller of the description with this element send odometry, and so /tf? Those that do
+    command velocities of joints that turn (ros2_controllers: diff_drive_controller,
+    tricycle_controller, mecanum_drive_controller, omni_wheel_drive_controller and
+    steering_controllers_library, command_interface_configuration)."""
+    root = element.getroottree().getroot()
+    joints = {it.get("name"): it for it in root.iter("joint") if it.get("type")}
     systems = list(root.iter("ros2_control"))
-    turned = (
+    commanded = (
         joint
         for system in systems
         for joint in system.iterchildren("joint")
         if any(it.get("name") == "velocity" for it in joint.iterchildren("command_interface"))
     )
-    return not systems or any(
-        types.get(it.get("name")) not in ("prismatic", "fixed") for it in turned
-    )
+    return not systems or any(_turns_on(joints.get(it.get("name"))) for it in commanded)
+
+
+def _turns_on(joint: _Element | None) -> bool:
+    """May it be the joint of a wheel? Limits that it reaches after some turns are those of an arm."""
+    if joint is None:
+        return True
+    limit = joint.find("limit") if joint.get("type") == "revolute" else None
+    if limit is None:
+        return joint.get("type") not in ("prismatic", "fixed")
+    lower, upper = (value_of(limit, it, 0.0) for it in ("lower", "upper"))
+    return lower is None or upper is None or upper - lower > _SOME_TURNS
 
 
 def itself(node: ReadNode) -> BoundNode:

@@ -8,7 +8,7 @@ import stat
 from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
 
-from multibot_rewrite.base.bounded import MAX_BYTES
+from multibot_rewrite.base.bounded import MAX_BYTES, read_start
 from multibot_rewrite.base.model import UNREADABLE, InputError, MultibotError
 from multibot_rewrite.base.outside import outside, real_path, variable
 from multibot_rewrite.base.record import NamedTuple
@@ -143,8 +143,8 @@ class Access:
 def check_file(path: str) -> None:
     """Raise InputError for a file that cannot be read, or is too large."""
     try:
-        with open(path, "rb") as file:
-            size = os.fstat(file.fileno()).st_size
+        read_start(path, 0)
+        size = os.stat(path).st_size
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}", UNREADABLE) from None
     if size > MAX_BYTES:

@@ -42,13 +42,20 @@ def _untyped(plan: System) -> list[str]:
 
 
 def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
-    """The nodes of plugins, which are in the simulator's process."""
+    """The nodes of plugins, which are in the simulator's process. rclcpp has one context there, so one
+    domain (gazebo_ros_pkgs ros2 gazebo_ros/include/gazebo_ros/node.hpp, CreateWithArgs; no element of
+    <ros> names another). What gz sends has its bridge, a process of the robot's domain. A domain_bridge
+    brings no services and actions, by which a manager is asked."""
     numbers = domain_of(plan)
     own = [it for it in plan.nodes if it.plugin.file and numbers[it.robot] != numbers[""]]
     if own:
-        where = f"is a plugin of the simulator, in domain {numbers['']}, and its robot is in"
+        where = (
+            f"runs in the process of the simulator, in domain {numbers['']}, and its robot is in"
+        )
         level = WARNING if all(it.sure == MAY for it in own) else ERROR
-        hint = "write simulator: none for real robots, or leave out domains"
+        hint = (
+            "give the robots one domain in the simulation, or write simulator: none for real robots"
+        )
         robots = dict.fromkeys(it.robot for it in own)
         message = f"{own[0].name} {where} {numbers[own[0].robot]}"
         yield _told(apart, message, hint, level)._replace(robots=tuple(robots))

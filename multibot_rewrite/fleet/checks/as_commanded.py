@@ -50,11 +50,11 @@ class Command(NamedTuple):
 
 def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
     """Return in words what the lines of ``commands.md`` and the planned processes do not share."""
-    _, *sections = _SECTION.split(text)
+    above, *sections = ([*_commands(section)] for section in _SECTION.split(text))
     found: list[str] = []
     for robot, section in zip(starts.robots, sections, strict=False):
-        found += _of_robot(robot, [*_commands(section)])
-    opened = [it for it in _commands(text) if it.program == _RVIZ]
+        found += _of_robot(robot, section)
+    opened = [it for section in (above, *sections) for it in section if it.program == _RVIZ]
     return [*found, *_apart(map(_planned, starts.shown), opened)]
 
 

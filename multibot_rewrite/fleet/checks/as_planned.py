@@ -13,7 +13,8 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
-from multibot_rewrite.rules.check import ABSENCE, absences, check, doubts
+from multibot_rewrite.rules.check import ABSENCE, absences, doubts
+from multibot_rewrite.rules.domains import check_view
 from multibot_rewrite.rules.launch.judge import CLAIMS
 from multibot_rewrite.rules.system import (
     clocks,
@@ -33,7 +34,8 @@ from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.spelling.ways import HOST, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.records import RUNS, Environment, Node, Place, System
+from multibot_rewrite.system.questions import LIST_CONTROLLERS
+from multibot_rewrite.system.records import RUNS, SERVES, Environment, Node, Place, System
 
 # Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
 # no parameter file names. Between robots they are the build's.
@@ -75,7 +77,7 @@ def not_as_planned(
     nodes that the launch file is to start. What the build has ``told`` is said as it was told. Robots
     that are ``real`` have drivers that no file names."""
     running = {it.name: it for it in seen.nodes}
-    found = check(planned, seen._replace(environment=Environment()))
+    found = check_view(planned, seen._replace(environment=Environment()))
     if not found:
         return
     by_plan = index(planned, whose_by_plan(planned))
@@ -173,7 +175,16 @@ def _is_of_launch(it: Finding, planned: System, seen: System, started: Set[str])
         loaded = own.way == SPAWNER or (own.way == HOST and not own.taker)
         return not loaded or _has_manager(own, seen)
     known = any(one.known for one in seen.nodes if one.name == it.node)
-    return _is_read(seen) and (known or own.way == SPAWNER)
+    return _is_read(seen) and (known or _is_under_own_manager(own, planned))
+
+
+def _is_under_own_manager(it: Node, planned: System) -> bool:
+    """Return whether it is a controller of a manager of the plan, which is told its type."""
+    robots = {one.name: one.robot for one in planned.nodes}
+    serving = {
+        one.node for one in planned.ends if (one.role, one.type) == (SERVES, LIST_CONTROLLERS)
+    }
+    return it.way == SPAWNER and it.robot in {robots.get(one) for one in serving}
 
 
 def _has_manager(controller: Node, seen: System) -> bool:

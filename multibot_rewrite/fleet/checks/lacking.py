@@ -16,7 +16,6 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP
-from multibot_rewrite.spelling.plan import STACK
 
 CARTOGRAPHER = "cartographer_node"
 LACKING = declare("MF857", "node-without-its-file", ERROR, formats=("fleet",))
@@ -57,7 +56,7 @@ def lacking(plan: FleetPlan) -> Iterator[Finding]:
     for robot in (it for it in plan.robots if not it.spec.launch):
         for node in plan.evidence_of(robot).nodes:
             need = NEEDS.get(node.kind)
-            is_named = not node.origin.startswith(STACK)
+            is_named = not node.origin.stack
             if need is None or is_named or node.when or node.shared or need.is_there(robot):
                 continue
             message = f"robot {robot.spec.name!r} runs {node.name} ({node.origin}) with {need.what}"

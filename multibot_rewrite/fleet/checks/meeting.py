@@ -4,7 +4,8 @@ remap table, for what no description starts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import islice
 from types import MappingProxyType
 
@@ -58,7 +59,7 @@ def _meetings(
     domains: Mapping[str, int],
 ) -> Iterator[Finding]:
     shared = [it for member in members for it in member.shared]
-    spawned = {it.robot for it in table.nodes if it.home.is_controller}
+    spawned = {it.robot for it in table.runs if it.fact.is_controller}
     if not spawned.issuperset(it.robot for it in members):
         # The rewrite says what to do about these.
         yield from (it for it in shared if it.code == NOT_TAKEN)
@@ -76,28 +77,27 @@ def _meetings(
 
 def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
     """What each robot has, first by its description."""
-    found = {it.robot: [*_of_description(it, table)] for it in members}
-    for it in table.nodes:
-        if it.robot and not it.home.written:
+    ruled: dict[str, set[str]] = defaultdict(set)
+    for run in (it for it in table.runs if it.fact.of_hardware):
+        ruled[run.robot] |= {end.name for end, _ in run.names}
+    found = {it.robot: [*_of_description(it, ruled[it.robot])] for it in members}
+    for it in table.runs:
+        if it.robot and not it.written:
             found.setdefault(it.robot, []).append(_of_table(NODE, it.full_name, it.node))
-    for end in table.names:
+    for run, end, name in table.ends:
         # That no rule reaches one is told of its node.
-        if end.robot and not end.endpoint.fixed:
-            kind, type_ = end.endpoint.kind, end.endpoint.type
-            found.setdefault(end.robot, []).append(_of_table(kind, end.name, end.node, type_))
+        if run.robot and not end.fixed:
+            its = _of_table(end.kind, name, run.full_name, end.type)
+            found.setdefault(run.robot, []).append(its)
     return found
 
 
-def _of_description(it: Member, table: Table) -> Iterator[RuntimeName]:
-    """Yield what a robot has by its description alone: the table has the rules of the nodes that its
-    hardware makes."""
-    made = {
-        node.full_name for node in table.nodes if node.robot == it.robot and node.home.of_hardware
-    }
-    ends = {end.endpoint.name for end in table.names if end.node in made}
+def _of_description(it: Member, ruled: Set[str]) -> Iterator[RuntimeName]:
+    """Yield what a robot has by its description alone: the table has rules for the names of the nodes
+    that its hardware makes, which are ``ruled``."""
     for name in it.reading.names:
-        ruled = name.tag == "ros2_control" and name.name in ends
-        if not (ruled or name.of_controllers):
+        is_ruled = name.tag == "ros2_control" and name.name in ruled
+        if not (is_ruled or name.of_controllers):
             yield name
 
 

@@ -16,11 +16,13 @@ OTHER_MANAGER = declare("MF850", "other-manager", ERROR, formats=("fleet",))
 
 def other_manager(robots: Iterable[RewrittenRobot], table: Table) -> Iterator[Finding]:
     """The robots whose stack has a manager that no plugin makes, though one makes another."""
+    robots = [*robots]
+    tables = table.by_robot(it.member.robot for it in robots)
     first: dict[str, RewrittenRobot] = {}
     for robot in robots:
-        own = [it for it in table.nodes if it.robot == robot.member.robot]
+        own = tables[robot.member.robot].runs
         made = [it.manager for it in robot.member.reading.nodes if it.manager]
-        asked = {it.full_name for it in own if it.node == MANAGER and not it.home.written}
+        asked = {it.full_name for it in own if it.node == MANAGER and not it.written}
         if made and asked and asked.isdisjoint(made):
             message = f"the plugin makes {made[0]}, but spawners ask {min(asked)}"
             hint = "remove <namespace> and <controller_manager_name> of the plugin"

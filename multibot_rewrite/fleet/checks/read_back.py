@@ -17,6 +17,7 @@ from tempfile import TemporaryDirectory
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.description.readback.meeting import COMMAND, DATA
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.fleet.build import Outputs
@@ -94,20 +95,22 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         found = launched(graph, _known(plan))
         seen = found.system
         real = frozenset(it.spec.namespace for it in plan.robots if it.spec.simulator == REAL)
-        wrong = [*not_as_planned(made.planned, seen, made.starts.nodes, made.findings, real)]
+        whole, started = found.with_bridged, made.starts.nodes
+        wrong = [*not_as_planned(made.planned, whole, started, made.findings, real)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
-        started = made.starts.nodes
         by_plan = whose_by_plan(made.planned)
         of_launch = _of_launch(found, by_plan, codes, _given_elsewhere(made.planned, started))
         alone = [
             it
             for it in of_launch
-            if it.robot not in real or not is_for_driver(it, made.planned, started)
+            if not _is_shared(it, made.planned)
+            and (it.robot not in real or not is_for_driver(it, made.planned, started))
         ]
         wrong += _not_open(alone, made)
-        switch = _switch(plan) if any(it.code == NO_MANAGER.code for it in wrong) else ""
-        wrong = [_with_switch(it, switch) if switch else it for it in wrong]
+        if any(it.code == NO_MANAGER.code for it in wrong):
+            remedy = _remedy(plan)
+            wrong = [it._replace(hint=remedy) if it.code == NO_MANAGER.code else it for it in wrong]
         return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
 
 
@@ -121,10 +124,15 @@ def _of_launch(
 
     seen = index(found.system, whose)
     judged = inconclusive_where_in_doubt(judge(seen), found.system)
-    between = (placed(as_sure(it, found, seen), found) for it in judged)
+    between = placed((as_sure(it, found, seen) for it in judged), found)
     every = (*judge_launch(found), *bridge_findings(found), *between)
     asked = (it for it in every if not elsewhere & {*it.names})
     yield from (it for it in asked if it.level == ERROR and it.code not in told)
+
+
+def _is_shared(it: Finding, planned: System) -> bool:
+    """Does a finding say that robots share a topic which the fleet file shares?"""
+    return it.code in (COMMAND, DATA) and {*it.names} <= {*planned.shared_topics}
 
 
 def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
@@ -138,24 +146,18 @@ def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
     ]
 
 
-def _switch(plan: FleetPlan) -> str:
-    """Return the argument of a description, with its value, that loads the plugin of a simulator with a
-    controller manager; empty for none."""
+def _remedy(plan: FleetPlan) -> str:
+    """Return what to write where nothing starts a controller manager: the argument of a description
+    with which a simulator's plugin makes one, else the stack that has one."""
     for it in (it.spec for it in plan.robots):
         given = filled(it.arguments, it.name)
-        found = switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED)
-        if found:
-            return f"{found[0]}: {found[1]!r}"
-    return ""
-
-
-def _with_switch(it: Finding, switch: str) -> Finding:
-    if it.code != NO_MANAGER.code:
-        return it
-    hint = (
-        f"write arguments: {{{switch}}} for the description, whose plugin starts it; or {it.hint}"
+        if found := switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED):
+            name, value = found
+            first = f"write arguments: {{{name}: {value!r}}} for the description"
+            return f"{first}, whose plugin starts it; or add ros2_control to `stack:`"
+    return (
+        "add ros2_control to `stack:`, which starts it; or load gz_ros2_control in the description"
     )
-    return it._replace(hint=hint)
 
 
 def _given_elsewhere(planned: System, started: Set[str]) -> set[str]:

@@ -57,7 +57,7 @@ def shared_by_nothing(
     frames |= {
         it for sent in fleet.edges.values() for edge in sent for it in (edge.child, edge.parent)
     }
-    topics |= {it.endpoint.name.strip("/") for it in fleet.table.names}
+    topics |= {end.name.strip("/") for _, end, _ in fleet.table.ends}
     further = b"\n".join(texts)
     asked = (
         *((it, topics, frames, "/") for it in asked_topics),

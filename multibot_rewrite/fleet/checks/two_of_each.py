@@ -22,6 +22,7 @@ from multibot_rewrite.fleet.file.robot_spec import (
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.outputs.output_file import PLAN, OutputFile
 from multibot_rewrite.producers.launch.records import LaunchGraph
+from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import System
 
 # What two robots do to each other needs two of them.
@@ -30,7 +31,7 @@ _FUNCTION = re.compile(r"(?m)^def start_(\w+)\(\):\n(?:(?:[ ].*)?\n)*")
 # The table of the launch file: what starts each robot.
 _TABLE = "\nROBOTS = {\n"
 _ROW = re.compile(r"""(?m)^    ['"](\w+)['"]: .*,\n""")
-_PLANNED = re.compile(r"(?m)^  ([^\s:]+):\n(?:    .*\n)+")
+_PLANNED = re.compile(r"(?m)^- name: ([^\s/]\S*)\n(?:  .*\n)+")
 _FILE = re.compile(r"""(?:file|text)\(['"]([^'"\n]+)['"]\)""")
 _NUMBER = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?![\w.])")
 # The read-back looks for an RViz config, and not into it.
@@ -158,6 +159,7 @@ def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
 def _planned(plan: System, robots: Collection[str]) -> System:
     """The plan without some robots, and without what only they have."""
     names = {it.name for it in plan.nodes if it.robot in robots}
+    owner = whose_by_plan(plan).robot
     gone: dict[str, bool] = defaultdict(lambda: True)
     for it in plan.ends:
         gone[it.name] &= it.node in names
@@ -170,7 +172,8 @@ def _planned(plan: System, robots: Collection[str]) -> System:
         ends=kept(plan.ends),
         edges=tuple(it for it in plan.edges if not it.publishers or not names >= {*it.publishers}),
         robots=tuple(it for it in plan.robots if it.name not in robots),
-        topics=tuple(it for it in plan.topics if not gone.get(it.name)),
+        # A bridge may bring a topic that no planned node has an end of.
+        topics=tuple(it for it in plan.topics if not gone.get(it.name, owner(it.name) in robots)),
         parameters=kept(plan.parameters),
         controllers=tuple(it for it in plan.controllers if it.manager not in names),
         interfaces=kept(plan.interfaces),

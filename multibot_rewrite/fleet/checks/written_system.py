@@ -24,10 +24,11 @@ from multibot_rewrite.producers.ends import (
     either_way,
     plugin_ends,
 )
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.producers.transforms import edge
+from multibot_rewrite.spelling.of_runs import ends_of
 from multibot_rewrite.spelling.plan import tf_topic
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, tree_joints
 from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.records import (
@@ -46,15 +47,12 @@ from multibot_rewrite.system.records import (
     Robot,
     System,
     edge_of,
-    place_of,
 )
 
 # Of robots that differ in their names alone two show where they meet.
 SHOWN = 2
 _MAY_RUN = "a driver that no file names may run"
 DRIVERS = Environment(caveats=(Caveat(UNKNOWN_NODES, True, _MAY_RUN),))
-Sections = Mapping[str, GivenNode]
-NO_SECTIONS: Sections = {}
 
 
 def of_each_kind(plan: FleetPlan) -> list[RewrittenRobot]:
@@ -65,10 +63,7 @@ def of_each_kind(plan: FleetPlan) -> list[RewrittenRobot]:
 def with_robots(fleet: Fleet, robots: Iterable[RewrittenRobot]) -> Fleet:
     """What a fleet has of some robots and for all."""
     kept = {"", *(it.spec.namespace for it in robots)}
-    table = fleet.table._replace(
-        nodes=tuple(it for it in fleet.table.nodes if it.robot in kept),
-        names=tuple(it for it in fleet.table.names if it.robot in kept),
-    )
+    table = fleet.table._replace(runs=tuple(it for it in fleet.table.runs if it.robot in kept))
     return fleet._replace(
         table=table,
         inventories={name: it for name, it in fleet.inventories.items() if name in kept},
@@ -81,16 +76,15 @@ def written_system(
     plan: FleetPlan, fleet: Fleet, shown: Sequence[RewrittenRobot], texts: Sequence[OutputFile]
 ) -> System:
     """What runs on these robots by the files that were made, with the places in the sources."""
-    robots = {it.spec.namespace: it for it in shown}
-    may = {name: _conditional(plan, it) for name, it in robots.items()}
-    given = {name: _sections(plan, it) for name, it in robots.items()}
-    nodes = tuple(_nodes(fleet, may, given))
+    robots = {"", *(it.spec.namespace for it in shown)}
+    runs = [it for it in fleet.table.runs if it.robot in robots]
+    nodes = {it.full_name: _node(it) for it in merged(runs)}
     # Rules of a plugin are for its whole process: topics of controllers that the table does not have.
     by_process = (end for it in shown for end in plugin_ends(it.member.reading) if end.sure == MAY)
-    edges = (edge for it in shown for edge in _edges(plan, fleet, it))
+    edges = (edge for it in shown for edge in _edges(fleet, it))
     return System(
-        nodes=(*nodes, *_bridges(shown, texts)),
-        ends=(*_ends(fleet, nodes, given), *_bridged(shown, texts), *by_process),
+        nodes=(*nodes.values(), *_bridges(shown, texts)),
+        ends=(*_ends(runs, nodes), *_bridged(shown, texts), *by_process),
         edges=tuple(edges),
         robots=tuple(Robot(it.spec.namespace) for it in shown),
         environment=DRIVERS,
@@ -98,46 +92,21 @@ def written_system(
     )
 
 
-def _conditional(plan: FleetPlan, robot: RewrittenRobot) -> frozenset[str]:
-    """The nodes of a robot that are started under a condition."""
-    facts = plan.evidence_of(robot).nodes
-    return frozenset(it.name for it in facts if it.when)
+def _node(run: Run) -> Node:
+    # A person starts a tool, or nobody does.
+    sure = MAY if run.fact.when or is_tool_word(run.code_name) else RUNS
+    return Node(run.full_name, robot=run.robot, known=run.node, sure=sure, place=run.place)
 
 
-def _sections(plan: FleetPlan, robot: RewrittenRobot) -> Sections:
-    """What the robot's own files set, by node; their places are those of the sources."""
-    return {it.name: it for it in plan.evidence_of(robot).given}
-
-
-def _nodes(
-    fleet: Fleet, may: Mapping[str, frozenset[str]], given: Mapping[str, Sections]
-) -> Iterator[Node]:
-    for it in merged(fleet.table.nodes):
-        if not it.robot or it.robot in may:
-            # A person starts a tool, or nobody does.
-            doubtful = it.node in may.get(it.robot, ()) or is_tool_word(it.code_name)
-            place = _section(it.node, given.get(it.robot, NO_SECTIONS))
-            plugin = place_of(fleet.sources.get(it.full_name, ""))
-            place = plugin if plugin != NOWHERE else place
-            sure = MAY if doubtful else RUNS
-            yield Node(it.full_name, robot=it.robot, known=it.node, sure=sure, place=place)
-
-
-def _ends(fleet: Fleet, nodes: Iterable[Node], given: Mapping[str, Sections]) -> Iterator[End]:
-    known = {it.name: it for it in nodes}
-    for it in fleet.table.names:
-        end, node = it.endpoint, known.get(it.node)
-        if node is None or it.name in OF_EVERY_NODE:
+def _ends(runs: Iterable[Run], nodes: Mapping[str, Node]) -> Iterator[End]:
+    for node, end in ((nodes[run.full_name], end) for run in runs for end in ends_of(run)):
+        if end.name in OF_EVERY_NODE:
             continue
-        sections = given.get(it.robot, NO_SECTIONS)
-        place = _parameter(node.known, end.parameter, sections) if it.robot else NOWHERE
         # A node with parameters is meant to run: what it needs has to be there.
         needs = end.role in NEEDS and node.place != NOWHERE
-        sure = MAY if end.when else RUNS if needs else node.sure
-        told = (end.name, end.also, sure, place if place != NOWHERE else node.place)
-        yield from either_way(
-            End(end.kind, end.role, it.name, end.type, "", it.node, None, "", *told)
-        )
+        sure = end.sure if end.sure != RUNS else RUNS if needs else node.sure
+        place = end.place if end.place != NOWHERE else node.place
+        yield from either_way(end._replace(node=node.name, sure=sure, place=place))
 
 
 def _bridges(robots: Iterable[RewrittenRobot], texts: Iterable[OutputFile]) -> Iterator[Node]:
@@ -193,11 +162,12 @@ def _is_of(node: str, robot: str, nodes: Mapping[str, str]) -> bool:
     return nodes.get(node, "") == robot or node.startswith(f"/{robot}/")
 
 
-def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edge]:
-    name, given = robot.spec.namespace, _sections(plan, robot)
+def _edges(fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edge]:
+    name = robot.spec.namespace
     topic = tf_topic(name, fleet.naming)
-    full = {it.node: it.full_name for it in fleet.table.nodes if it.robot == name}
-    root = full.get(STATE_PUBLISHER, f"/{name}/{STATE_PUBLISHER}")
+    runs = {it.node: it for it in fleet.table.runs if it.robot == name}
+    described = runs.get(STATE_PUBLISHER)
+    root = described.full_name if described else f"/{name}/{STATE_PUBLISHER}"
     tree = robot.tree
     joints = (joint for joint, _ in tree_joints(robot.member.sent.root))
     for it, joint in zip(tree, joints, strict=True):
@@ -208,12 +178,9 @@ def _edges(plan: FleetPlan, fleet: Fleet, robot: RewrittenRobot) -> Iterator[Edg
     in_tree = {*tree}
     for (owner, node), sent in fleet.edges.items():
         if owner == name:
-            place = _section(node, given)
-            yield from (
-                edge(it, full.get(node, f"/{name}/{node}"), place, topic)
-                for it in sent
-                if it not in in_tree
-            )
+            run = runs.get(node)
+            sender, place = (run.full_name, run.place) if run else (f"/{name}/{node}", NOWHERE)
+            yield from (edge(it, sender, place, topic) for it in sent if it not in in_tree)
 
 
 def _simulated(robot: RewrittenRobot) -> Iterator[Edge]:
@@ -223,16 +190,3 @@ def _simulated(robot: RewrittenRobot) -> Iterator[Edge]:
         given = [text_at(host, it.path) for it in sites]
         if len(given) == 2 and all(given):
             yield edge_of(given[0], given[1])
-
-
-def _section(node: str, given: Sections) -> Place:
-    """Where a file has parameters for the node."""
-    found = given.get(node) or given.get(node.rpartition("/")[2])
-    return found.place if found else NOWHERE
-
-
-def _parameter(node: str, name: str, given: Sections) -> Place:
-    """Where a file sets a parameter of the node."""
-    found = given.get(node) or given.get(node.rpartition("/")[2])
-    value = found.values.get(name) if found else None
-    return value.place if value else NOWHERE

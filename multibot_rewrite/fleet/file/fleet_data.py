@@ -50,7 +50,8 @@ def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
             words = (it for it in listed(paths) if isinstance(it, str))
             for path in (it for it in words if not os.path.isfile(it)):
                 file, line = places[here]
-                what = "is a folder, not a file" if os.path.isdir(path) else "does not exist"
+                what = "is no file" if os.path.lexists(path) else "does not exist"
+                what = "is a folder, not a file" if os.path.isdir(path) else what
                 raise InputError(f"{file}:{line}: {path} {what}; correct the path")
 
 

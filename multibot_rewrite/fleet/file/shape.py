@@ -20,6 +20,7 @@ from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, params_of, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 
 REAL, SIMULATED = "real", "simulated"
 DESCRIPTION, SRDF, BRIDGE = "description", "srdf", "bridge"
@@ -120,7 +121,7 @@ def _names_of(robot: RewrittenRobot, what: str) -> Iterator[str]:
     if what in described:
         yield from [expanded_name(described[what])] if described[what] else ()
     elif what == BRIDGE:
-        yield from ["bridge.yaml"] if spec.companions.get(BRIDGE) else ()
+        yield from [BRIDGE_FILE] if spec.companions.get(BRIDGE) else ()
     else:
         found = (path for path, nodes in _nodes_by_file(spec) if what in nodes)
         yield from (_plain_name(robot, path) for path in found)

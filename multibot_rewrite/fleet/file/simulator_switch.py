@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The argument of a xacro that switches between the simulated and the real robot.
 
-Authors call it ``sim_mode``, ``use_sim``, ``use_gazebo``, ``sim_gazebo``, ``sim_ignition``: it chooses
+Authors call it ``sim_mode``, ``use_sim``, ``use_gazebo``, ``sim_ignition``, ``real_robot``: it chooses
 the hardware class of ``<ros2_control>``, and often the plugins of the simulator.
 """
 
@@ -22,7 +22,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.rules.facts.simulators import SIMULATORS
 
-_NAME = lazy_compile(r"sim|gazebo|ignition|(?:^|_)(?:gz|ign)(?:_|$)")
+_NAME = lazy_compile(r"sim|gazebo|ignition|(?:^|_)(?:gz|ign|real|hardware|hw|fake|mock)(?:_|$)")
 _OTHER = {"true": "false", "True": "False", "1": "0"}
 _OTHERS = {**_OTHER, **{off: on for on, off in _OTHER.items()}}
 # What classes of simulators and those of vendors for them are called like.
@@ -34,6 +34,11 @@ _CLASSES = tuple(it for simulator in SIMULATORS for it in simulator.hardware)
 MOST = 8
 # Does a description, expanded with some arguments, suit?
 Suits = Callable[[_Element], bool]
+
+
+def is_called_as_switch(argument: str) -> bool:
+    """Is an argument called as those are that switch between the simulated and the real robot?"""
+    return _NAME.search(argument.lower()) is not None
 
 
 def hardware_classes(root: _Element) -> list[str]:
@@ -103,7 +108,7 @@ def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterato
         for it in read_document(data, file).root.iter("{*}arg"):
             declared.setdefault(it.get("name", ""), it.get("default", ""))
     every = {**declared, **given}
-    named = [it for it in every if _NAME.search(it.lower()) and every[it] in _OTHERS]
+    named = [it for it in every if is_called_as_switch(it) and every[it] in _OTHERS]
     yield from ((it, _OTHERS[every[it]]) for it in named[:MOST])
     text = b"\n".join(sources.values()).decode("utf-8", "replace")
     words = (

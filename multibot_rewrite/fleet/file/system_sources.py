@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
+from multibot_rewrite.base.file_kinds import PLAN, recognised
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.releases import release_here, release_told
@@ -25,7 +26,7 @@ from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.snapshot_file import read_snapshots
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import is_plan, read_plan
+from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.system.environment import settings
 from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.questions import ANSWER_SECONDS, questions
@@ -124,7 +125,7 @@ def system_of_files(*paths: Path) -> System:
     if len(paths) == 1:
         file = os.fspath(paths[0])
         data = read_file(file, MAX_FLEET_BYTES)
-        if is_plan(data):
+        if recognised(data) == PLAN:
             return read_plan(data, file)
     return read_snapshots([os.fspath(it) for it in paths])
 

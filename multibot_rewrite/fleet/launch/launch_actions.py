@@ -41,14 +41,14 @@ from multibot_rewrite.knowledge.programs import (
     known_program,
     program_of,
 )
-from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.spelling.domain_bridge import bridge_name, bridge_path
-from multibot_rewrite.spelling.records import EndpointName
 from multibot_rewrite.spelling.ways import COMPONENT, SPAWN, SPAWNER, Started, spawner_arguments
 from multibot_rewrite.system.records import PUBLISHES
 
-STATE, BRIDGE = "robot_state_publisher", "bridge.yaml"
+STATE = "robot_state_publisher"
 # Started by hand, or once for all robots.
 _BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
@@ -114,7 +114,7 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
     """The nodes that are not started, each with the reason; it is empty for those that are started by
     something else."""
     naming, file = given.plan.fleet.naming, given.plan.file
-    relayed = {it.table.node for it in relays(given.robot.spec.namespace, naming, file)}
+    relayed = {it.run.node for it in relays(given.robot.spec.namespace, naming, file)}
     for name in given.names.started:
         it = given.facts.get(name)
         if name in _BY_HAND or name in relayed:
@@ -134,14 +134,14 @@ def _is_needed(given: _Given, it: NodeFacts) -> bool:
     topic = it.when.removeprefix(f"{UNSENT}: ")
     if topic == it.when:
         return False
-    sent = [one for one in given.plan.fleet.table.names if _sends(one, topic)]
-    mine = {one.name for one in sent if one.node == given.names.full_name(it.name)}
-    others = {one.name for one in sent if one.node != given.names.full_name(it.name)}
-    return mine.isdisjoint({*others, *given.bridged})
+    full = given.names.full_name(it.name)
+    ends = given.plan.fleet.table.ends
+    sent = [(run.full_name == full, name) for run, end, name in ends if _sends(end, topic)]
+    others = {name for is_mine, name in sent if not is_mine}
+    return others.union(given.bridged).isdisjoint(name for is_mine, name in sent if is_mine)
 
 
-def _sends(it: EndpointName, topic: str) -> bool:
-    end = it.endpoint
+def _sends(end: Endpoint, topic: str) -> bool:
     return end.role == PUBLISHES and not end.when and end.name.endswith(topic)
 
 
@@ -182,7 +182,7 @@ def _components(given: _Given, container: str) -> Iterator[Component]:
     left = dict(_left(given))
     mine = ((name, it) for name, it in given.names.started.items() if name not in left)
     for name, it in mine:
-        if it.way == COMPONENT and it.node.home.container == container and name in given.facts:
+        if it.way == COMPONENT and it.node.fact.container == container and name in given.facts:
             program = program_of(given.facts[name], given.release)
             if program is not None and program.plugin:
                 yield Component(
@@ -304,8 +304,8 @@ def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:
     names = names_of(plan.fleet.table, "")
     known = {it.name: it for one in plan.evidence.values() for it in one.nodes}
     starts = [*_shared(plan, names, known)]
-    if BRIDGE in files:
-        starts.append(Start(*_BRIDGE[:2], "", "", ({"config_file": File(BRIDGE)},)))
+    if BRIDGE_FILE in files:
+        starts.append(Start(*_BRIDGE[:2], "", "", ({"config_file": File(BRIDGE_FILE)},)))
     return tuple(starts)
 
 

@@ -24,8 +24,8 @@ from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
 from multibot_rewrite.knowledge.records import Param
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.system.records import Place
 
 PARAMS = "params"

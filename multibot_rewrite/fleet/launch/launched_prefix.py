@@ -15,7 +15,7 @@ from multibot_rewrite.fleet.fleet import FRAME_PREFIX
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, node_sources
-from multibot_rewrite.producers.evidence.records import Given
+from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
 OTHER_PREFIX = declare("MF841", "launch-file-adds-prefix", WARNING, formats=("fleet",))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import cast
 
 import yaml
@@ -32,6 +32,7 @@ from multibot_rewrite.fleet.outputs.spawn import simulators
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
+from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.spelling.bridged_topics import (
     BridgedTopic,
@@ -39,8 +40,6 @@ from multibot_rewrite.spelling.bridged_topics import (
     as_yaml,
     bridged_topics,
 )
-
-BRIDGE = "bridge.yaml"
 
 
 class GroupBridges(NamedTuple):
@@ -57,7 +56,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
     """
     fleet = plan.fleet
     topics, unbridged = bridged_topics(
-        fleet.inventories, fleet.naming, fleet.models, fleet.table.names, fleet.placed
+        fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, fleet.placed
     )
     groups = [_read(group) for group in group_robots(plan)]
     for group, files in groups:
@@ -114,7 +113,7 @@ def _for_all(
         return
     text, findings = merge_bridges(shared, [it for it in topics if not it.robot])
     yield from findings
-    yield OutputFile(BRIDGE, text.encode(), tuple(dict.fromkeys(path for path, _ in shared)))
+    yield OutputFile(BRIDGE_FILE, text.encode(), tuple(dict.fromkeys(path for path, _ in shared)))
 
 
 NO_TOPIC = declare("MF509", "sensor-without-gz-topic", WARNING, formats=("fleet-urdf",))
@@ -178,7 +177,9 @@ def merge_bridges(
     """
     parts: list[str] = []
     findings: list[Finding] = []
-    bridged: dict[str, tuple[int, str]] = {}
+    # By gz topic the file, by ROS topic its first gz topic.
+    bridged: dict[str, int] = {}
+    onto: dict[str, str] = {}
     for at, (file, text) in enumerate(texts):
         document = read_yaml(text.encode(), file)
         root = document.root
@@ -188,8 +189,8 @@ def merge_bridges(
             gz = _full(text_of(node, BOTH) or text_of(node, GZ) or text_of(node, ROS))
             ros = _full(text_of(node, BOTH) or text_of(node, ROS) or text_of(node, GZ))
             # Topics for all robots, such as the clock, are bridged once, by the first file.
-            if bridged.setdefault(gz, (at, ros))[0] == at:
-                findings += _same_ros_topic(document, node, gz, ros, bridged)
+            if bridged.setdefault(gz, at) == at:
+                findings += _same_ros_topic(document, node, gz, ros, onto.setdefault(ros, gz))
                 parts.append(moved(cut_out(document, start, end), -column))
     more = [it for it in generated if _full(it.gz) not in bridged]
     return "".join(parts) + as_yaml(more), tuple(findings)
@@ -203,9 +204,8 @@ ONE_ROS_TOPIC = declare("MF506", "bridge-two-on-one-topic", ERROR, formats=("bri
 
 
 def _same_ros_topic(
-    document: YamlText, node: yaml.Node, gz: str, ros: str, bridged: Mapping[str, tuple[int, str]]
+    document: YamlText, node: yaml.Node, gz: str, ros: str, first: str
 ) -> Iterator[Finding]:
-    first = next((other for other, (_, name) in bridged.items() if name == ros), gz)
     if first != gz and ros not in TF and text_of(node, "direction") != "ROS_TO_GZ":
         message = f"gz topics {first} and {gz} are both bridged to ROS topic {ros}"
         yield found_at(document, node, ONE_ROS_TOPIC, message, "give each its own ros_topic_name")

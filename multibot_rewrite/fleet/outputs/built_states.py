@@ -12,7 +12,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.manifest import folders_of
 from multibot_rewrite.fleet.outputs.params_style import ZONES
 from multibot_rewrite.producers.evidence.parameter_files import named_values
-from multibot_rewrite.producers.evidence.records import Given
+from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import Parameter, System, nodes_by_robot
 

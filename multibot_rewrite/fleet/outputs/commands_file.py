@@ -96,7 +96,7 @@ def _controllers(plan: FleetPlan) -> Iterator[str]:
 def _start_parameters(plan: FleetPlan, pose: InitialPose) -> bytes:
     import yaml
 
-    tables = plan.fleet.table.nodes
+    tables = plan.fleet.table.runs
     node = next(it for it in tables if (it.robot, it.node) == (pose.robot, pose.node))
     data = {node.full_name: {"ros__parameters": dict(pose.values)}}
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)

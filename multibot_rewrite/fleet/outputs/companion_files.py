@@ -41,10 +41,10 @@ from multibot_rewrite.knowledge.parameter_entries import PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.nodes import children_of
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.rules.files.given import Beside
 from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.rules.files.wheels import with_description
+from multibot_rewrite.spelling.records import GivenNode
 
 # The key of a fleet file -> the kind of the files that it names.
 _KINDS = {"params": PARAMS, "moveit": MOVEIT, "behavior_trees": TREE, "lua": LUA}

@@ -200,7 +200,7 @@ def moveit_frames(plan: FleetPlan) -> Iterator[Finding]:
     if not plan.fleet.naming.layout.at_run_time:
         return
     those = {it.name for it in plan.fleet.facts if it.package in _PACKAGES}
-    running = {it.robot: it.node for it in reversed(plan.fleet.table.nodes) if it.node in those}
+    running = {it.robot: it.node for it in reversed(plan.fleet.table.runs) if it.node in those}
     for robot in plan.robots:
         if node := running.get(robot.spec.namespace):
             root = next(iter(robot.links), "")

@@ -25,8 +25,8 @@ from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputF
 from multibot_rewrite.fleet.outputs.shape_outputs import taken_as_they_are
 from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
 from multibot_rewrite.fleet.robots.start_poses import start_poses
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.stacks import load_stack
-from multibot_rewrite.spelling.records import EndpointName
 
 # The stacks that are nav2_bringup's launch files.
 _STACKS = ("nav2_composed", "nav2_slam")
@@ -100,11 +100,10 @@ def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
     """What a robot's nodes use by an absolute name that neither a rule nor a parameter moves."""
     first = plan.robots[0].spec.namespace
     started = {it.name for stack in _STACKS for it in load_stack(stack, plan.file.distro)}
-    names = {it.full_name: it.node for it in plan.fleet.table.nodes if it.robot == first}
     left = [
-        f"{it.endpoint.name} of {names[it.node]}"
-        for it in plan.fleet.table.names
-        if it.robot == first and names.get(it.node) in started and _is_left(it)
+        f"{end.name} of {run.node}"
+        for run, end, name in plan.fleet.table.ends
+        if run.robot == first and run.node in started and _is_left(end, name)
     ]
     if left:
         message = f"nav2_bringup gives no remap rule for {', '.join(dict.fromkeys(left))}"
@@ -114,7 +113,6 @@ def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
         yield NO_RULE.finding(message, hint, file=plan.file.file, line=1)
 
 
-def _is_left(it: EndpointName) -> bool:
-    own = it.endpoint
-    moved = own.name.startswith("/") and own.name != it.name and own.name not in _TF
+def _is_left(own: Endpoint, name: str) -> bool:
+    moved = own.name.startswith("/") and own.name != name and own.name not in _TF
     return moved and not own.parameter and not own.fixed

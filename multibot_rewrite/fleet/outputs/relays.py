@@ -21,11 +21,11 @@ from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.launch.starts import Start
-from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
-from multibot_rewrite.spelling.records import EndpointName, NodeTable
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.targets import placed, target_of
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Origin, Place
 
 BRIDGE, _WORLD = "tf_namespace_bridge", "bridged_world"
 _RELAY, _STATIC = ("topic_tools", "relay"), ("tf2_ros", "static_transform_publisher")
@@ -34,13 +34,10 @@ _IN_CODE = "its code says its names"
 
 
 class Relay(NamedTuple):
-    """A node that brings tf of one robot to ``/tf``: as the table has it, its program, the topics that
-    it reads and writes, what it is told."""
+    """A node that brings tf of one robot to ``/tf``: its program, and what it is told."""
 
-    table: NodeTable
+    run: Run
     program: tuple[str, str]
-    reads: tuple[str, ...]
-    writes: tuple[str, ...]
     parameters: Mapping[str, str] = {}
     arguments: tuple[str, ...] = ()
 
@@ -48,7 +45,7 @@ class Relay(NamedTuple):
     def start(self) -> Start:
         """Its process; raises nothing."""
         told = (self.parameters,) if self.parameters else ()
-        own = self.table.namespace, self.table.name
+        own = self.run.namespace, self.run.name
         return Start(*self.program, *own, told, arguments=self.arguments)
 
 
@@ -75,20 +72,21 @@ def relays(robot: str, naming: Naming, file: FleetFile) -> list[Relay]:
 def _copies(robot: str, naming: Naming) -> Iterator[Relay]:
     above = f"/{robot}" if naming.topics == NAMESPACE else ""
     for topic in TF_TOPICS:
-        table = _table(robot, f"{topic}_relay", naming)
+        node = f"{topic}_relay"
         target = target_of(f"/{topic}", TOPIC, robot, naming)
         source = f"{above}/{target.lstrip('/')}"
         told = {"input_topic": source, "output_topic": f"/{topic}"}
-        yield Relay(table, _RELAY, (source,), (f"/{topic}",), told)
+        run = _run(robot, node, naming, (source,), (f"/{topic}",), _FIXED)
+        yield Relay(run, _RELAY, told)
 
 
 def _bridge(robot: str, naming: Naming, world: str) -> Iterator[Relay]:
     reads, writes = (tuple(f"{above}/{it}" for it in TF_TOPICS) for above in (f"/{robot}", ""))
-    table = _table(robot, BRIDGE, naming)
-    yield Relay(table, (BRIDGE, BRIDGE), reads, writes)
+    yield Relay(_run(robot, BRIDGE, naming, reads, writes, _IN_CODE), (BRIDGE, BRIDGE))
     if frame := world or world_frame(naming):
         words = ("--frame-id", frame, "--child-frame-id", f"{robot}/{frame}")
-        yield Relay(_table(robot, _WORLD, naming), _STATIC, (), writes[1:], arguments=words)
+        run = _run(robot, _WORLD, naming, (), writes[1:], _IN_CODE)
+        yield Relay(run, _STATIC, arguments=words)
 
 
 def not_bridged(robot: str) -> str:
@@ -97,8 +95,15 @@ def not_bridged(robot: str) -> str:
     return f"{why}: install it, or take layout both"
 
 
-def _table(robot: str, node: str, naming: Naming) -> NodeTable:
-    return NodeTable(robot, node, *placed(robot, node, naming), ())
+def _run(
+    robot: str, node: str, naming: Naming, reads: Iterable[str], writes: Iterable[str], why: str
+) -> Run:
+    """A node with topics of these full names; ``why`` no rule moves them."""
+    ends = ((role, it) for role, own in ((SUBSCRIBES, reads), (PUBLISHES, writes)) for it in own)
+    names = ((Endpoint(TOPIC, role, it, TF_TYPE, fixed=why), it) for role, it in ends)
+    origin = Origin(place=Place("relayed of the fleet file"))
+    fact = NodeFacts(node, "", (), origin=origin)
+    return Run(robot, node, *placed(robot, node, naming), (), fact, names=tuple(names))
 
 
 def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
@@ -107,18 +112,5 @@ def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
         return fleet
     check_relayed(file, fleet.naming)
     made = [it for spec in file.robots for it in relays(spec.namespace, fleet.naming, file)]
-    table = fleet.table
-    nodes = (*table.nodes, *(it.table for it in made))
-    names = (*table.names, *(name for it in made for name in _names(it)))
-    origins = {it.table.full_name: "relayed of the fleet file" for it in made}
-    return fleet._replace(
-        table=table._replace(nodes=nodes, names=names), origins={**fleet.origins, **origins}
-    )
-
-
-def _names(relay: Relay) -> Iterable[EndpointName]:
-    robot, node = relay.table.robot, relay.table.full_name
-    why = _FIXED if relay.program == _RELAY else _IN_CODE
-    for role, names in ((SUBSCRIBES, relay.reads), (PUBLISHES, relay.writes)):
-        for name in names:
-            yield EndpointName(robot, node, Endpoint(TOPIC, role, name, TF_TYPE, fixed=why), name)
+    runs = (*fleet.table.runs, *(it.run for it in made))
+    return fleet._replace(table=fleet.table._replace(runs=runs))

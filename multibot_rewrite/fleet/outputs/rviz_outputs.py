@@ -114,10 +114,10 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
 def _own_rules(plan: FleetPlan) -> Iterator[tuple[str, str]]:
     """The name and the rules of an rviz2 that the robot's stacks start."""
     table = plan.fleet.table
-    own = next((it for it in table.nodes if it.robot and it.node == RVIZ), None)
+    own = next((it for it in table.runs if it.robot and it.node == RVIZ), None)
     if own and not plan.fleet.naming.layout.namespaced:
         yield "__node", own.name
-    yield from ((it.source, it.target) for it in (own.rules if own else ()))
+    yield from own.rules if own else ()
 
 
 def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:

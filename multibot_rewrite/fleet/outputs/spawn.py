@@ -74,8 +74,7 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
 def in_folder(plan: FleetPlan) -> tuple[Spawn, ...]:
     """How the robots are spawned where their files are beside: from the file of a description that no
     planned node publishes; of an SDF none does."""
-    names = (it for it in plan.fleet.table.names if it.endpoint.role == PUBLISHES)
-    sent = {it.name for it in names}
+    sent = {name for _, end, name in plan.fleet.table.ends if end.role == PUBLISHES}
     made, _ = spawns(plan)
     return tuple(_from_file(*it, sent) for it in zip(made, plan.robots, strict=True))
 

@@ -7,13 +7,15 @@ Source: teleop_twist_keyboard jazzy (``stamped`` and ``frame_id``; it publishes 
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import robot_topic
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
+from multibot_rewrite.fleet.robots.fitting.node_topics import CommandEnd, entry_of, relays_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
@@ -42,9 +44,14 @@ def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
 
 def _is_driven(plan: FleetPlan, robot: RewrittenRobot) -> bool:
     """Does something read velocity commands, or send them to a base that is not in the plan?"""
-    own = (it for it in plan.fleet.table.names if it.robot == robot.spec.namespace)
-    sends = any(it.endpoint.role == PUBLISHES and it.name == _usual(robot) for it in own)
-    return sends or bool(_listeners(plan, robot))
+    own = _ends(plan, robot)
+    sends = any(end.role == PUBLISHES and name == _usual(robot) for _, end, name in own)
+    return sends or bool(_obeyed([*_commands(plan, robot)]))
+
+
+def _ends(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, Endpoint, str]]:
+    runs = (it for it in plan.fleet.table.runs if it.robot == robot.spec.namespace)
+    yield from ((run.full_name, end, name) for run in runs for end, name in run.names)
 
 
 def _usual(robot: RewrittenRobot) -> str:
@@ -52,13 +59,14 @@ def _usual(robot: RewrittenRobot) -> str:
 
 
 def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
-    """The robot's ``cmd_vel`` if a node subscribes to it, else the first one with a subscriber."""
-    name, usual = robot.spec.namespace, _usual(robot)
-    heard = _listeners(plan, robot)
-    topic = usual if usual in heard or not heard else next(iter(heard))
-    types = heard.get(topic) or {type_ for name, type_ in _bridged(plan, robot) if name == topic}
+    """How to drive a robot: by its ``cmd_vel`` if a node obeys it, else the first topic that one obeys;
+    where a mux, a smoother or a monitor sends there, by an input of that."""
+    ends = [*_commands(plan, robot)]
+    usual, obeyed = _usual(robot), _obeyed(ends)
+    topic = entry_of(usual if usual in obeyed or not obeyed else obeyed[0], ends)
+    types = {it.type for it in ends if it.role == SUBSCRIBES and it.topic == topic}
     with_stamp = STAMPED in types and PLAIN not in types
-    return Teleop(name, topic, with_stamp, _base(robot) if with_stamp else "")
+    return Teleop(robot.spec.namespace, topic, with_stamp, _base(robot) if with_stamp else "")
 
 
 def arguments(it: Teleop) -> list[str]:
@@ -73,22 +81,26 @@ def command(it: Teleop) -> str:
     return shlex.join([*run, *arguments(it)])
 
 
-def _listeners(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, set[str]]:
-    """Subscribed topics of commands without a publisher in the plan, with their types, then those of
-    any name that bridges bring to the simulator."""
-    names = (it for it in plan.fleet.table.names if it.robot == robot.spec.namespace)
-    own = [it for it in names if it.endpoint.kind == TOPIC]
-    sent = {it.name for it in own if it.endpoint.role == PUBLISHES}
-    heard: dict[str, set[str]] = {}
-    for name in own:
-        asked = name.endpoint.name.rpartition("/")[2] in COMMANDS
-        asked = asked and name.endpoint.type in (PLAIN, STAMPED)
-        if asked and name.endpoint.role != PUBLISHES and name.name not in sent:
-            heard.setdefault(name.name, set()).add(name.endpoint.type)
+def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[CommandEnd]:
+    """Yield the ends of a robot with velocities: those of its nodes, then the bridges to the simulator,
+    which have no name."""
+    for node, end, name in _ends(plan, robot):
+        if end.kind == TOPIC and end.type in (PLAIN, STAMPED) and not end.when:
+            yield CommandEnd(node, end.role, name, end.type, end.parameter, end.name)
     for topic, type_ in _bridged(plan, robot):
-        if type_ in (PLAIN, STAMPED) and topic not in sent:
-            heard.setdefault(topic, set()).add(type_)
-    return heard
+        if type_ in (PLAIN, STAMPED):
+            yield CommandEnd("", SUBSCRIBES, topic, type_)
+
+
+def _obeyed(ends: Sequence[CommandEnd]) -> list[str]:
+    """Return the topics of commands that a drive obeys, by their usual names or as bridges have them;
+    where none does, the inputs of what is before one."""
+    relays = relays_of(ends)
+    heard = [it for it in ends if it.role == SUBSCRIBES]
+    usual = [it for it in heard if not it.node or it.name.rpartition("/")[2] in COMMANDS]
+    sent = {it.topic for it in ends if it.role == PUBLISHES}
+    drives = [it.topic for it in usual if it.node not in relays]
+    return drives or [it.topic for it in usual if it.topic not in sent]
 
 
 def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
@@ -100,7 +112,7 @@ def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]
                 yield robot_topic(robot.topics, end.name), end.type
     fleet = plan.fleet
     own = {robot.spec.namespace: fleet.inventories[robot.spec.namespace]}
-    made, _ = bridged_topics(own, fleet.naming, fleet.models, fleet.table.names)
+    made, _ = bridged_topics(own, fleet.naming, fleet.models, fleet.table.runs)
     yield from ((it.ros, it.ros_type) for it in made if it.direction == TO_GZ)
 
 

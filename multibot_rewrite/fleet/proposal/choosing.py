@@ -56,7 +56,7 @@ class Undecided(UsageError):
 class Candidate(NamedTuple):
     """A description and what speaks for it: how many launch files load it, whether its package is named
     after it, how many of its names the files beside it have; ``part`` is whether it is called like a
-    part."""
+    part, or the package of another description uses its package."""
 
     robot: Looked
     launched: int
@@ -88,7 +88,11 @@ class Chosen(NamedTuple):
 def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
     """The descriptions by how likely each is the robot; a house or a shelf is none."""
     said = names_of_files(found)
-    order = sorted((_candidate(it, said, found) for it in robots), key=_rank)
+    used = {it.path for it in robots if any(_uses(one, it) for one in robots if one.links > 1)}
+    made = [_candidate(it, said, found) for it in robots]
+    # Where each uses the other, or a ring does, nothing is said.
+    parts = [it._replace(part=it.part or it.robot.path in used) for it in made]
+    order = sorted(parts if len(used) < len(robots) else made, key=_rank)
     alike = [it for it in order[1:] if _same_robot(it, order[0])]
     rivals = [it for it in order[1:] if it not in alike and not _is_behind(it, order[0])]
     return Chosen(order, rivals, alike)
@@ -151,6 +155,15 @@ def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
         links,
         moving,
     )
+
+
+def _uses(it: Looked, other: Looked) -> bool:
+    """Return whether the package of a description depends on that of another one."""
+    own, used = package_of(it.path), package_of(other.path)
+    if own is None or used is None or own == used:
+        return False
+    manifest = text_of(os.path.join(own[1], "package.xml"))
+    return f">{used[0]}<" in manifest or f"find {used[0]})" in text_of(it.path)
 
 
 def is_called_like_a_part(path: str) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
@@ -24,6 +24,7 @@ from multibot_rewrite.fleet.proposal.owners import (
     best_folders,
     hundredths_known,
     moveit_of_others,
+    names_shown,
     of_others,
 )
 from multibot_rewrite.fleet.proposal.searching import Found, text_of, without
@@ -81,6 +82,9 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     found = without(every, left)
     kinds = (it for it in KINDS if it not in ("params", "moveit"))
     own = {package_of(it) for it in (robot.path, *launched_by(robot.path, found))}
+    strange = _of_other_packages(robot, found, own)
+    left |= strange
+    found = without(found, strange)
     files = {
         kind: tuple(_of_kind(kind, robot, getattr(found, kind), left, packages=own))
         for kind in kinds
@@ -209,6 +213,27 @@ def _with_others_names(robot: Looked, found: Found) -> dict[str, str]:
     known = {it: hundredths_known(robot, it) for it in (*found.srdf, *found.rviz)}
     reason = "of its links and joints {} in a hundred are the robot's"
     return {it: reason.format(share) for it, share in known.items() if share < LEAST}
+
+
+def _of_other_packages(
+    robot: Looked, found: Found, own: Collection[tuple[str, str] | None]
+) -> dict[str, str]:
+    """RViz configs of packages that do not name the robot's, and that show none of its links: those of
+    a vendor's driver beside it."""
+    home = package_of(robot.path)
+    naming = [
+        it for it in found.launch if package_of(it) in own or (home and home[0] in text_of(it))
+    ]
+    packages = {*own, *map(package_of, naming), None}
+    strange = (
+        it
+        for it in found.rviz
+        if package_of(it) not in packages
+        and it not in found.meant
+        and not names_shown(it)
+        and not any(os.path.basename(it) in text_of(launch) for launch in naming)
+    )
+    return dict.fromkeys(strange, "it is of a package that does not name the robot's")
 
 
 def _best_known(robot: Looked, paths: Sequence[str]) -> list[str]:

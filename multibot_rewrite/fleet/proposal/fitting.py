@@ -17,7 +17,7 @@ from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.owners import own_names
 from multibot_rewrite.fleet.proposal.searching import Found, text_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.spelling.records import GivenNode
 
 _OF_ROBOT = ("frame", "link", "joint")
 # With so many times as many names that the robot has not, another file is no rival.
@@ -73,6 +73,8 @@ def not_started(
     packages = {known.nodes[it.known].package for it in nodes if it.known in known.nodes}
     if own and own[0] in packages and naming <= {own}:
         return f"it is an example of {own[0]}, and no launch file of another package names it"
+    if not nodes and own and given and given <= {own[0], ""}:
+        return f"it is for any node, and launch files give it to nodes of {own[0]} alone"
     if not launched or packages or given & {"", *(it.package for it in known.nodes.values())}:
         return ""
     if not nodes:

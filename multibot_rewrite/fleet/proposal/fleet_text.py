@@ -12,6 +12,7 @@ from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
@@ -138,6 +139,8 @@ def _of_member(
 
     looked, beside = member.looked, member.companions
     yield "description", (here(looked.path), (f"The description has {looked.links} links",))
+    if member.is_real:
+        yield "simulator", (REAL, ())
     if looked.model:
         yield "simulated", (here(looked.model), ("The same robot as the simulator gets it",))
     if looked.arguments:

@@ -23,7 +23,13 @@ from multibot_rewrite.description.sources.known_arguments import known_arguments
 from multibot_rewrite.description.sources.own_names import ROBOT, filled
 from multibot_rewrite.description.sources.read import read_model
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.fleet.file.simulator_switch import suits_real, suits_simulator, switch_for
+from multibot_rewrite.fleet.file.simulator_switch import (
+    Suits,
+    loads_hardware,
+    suits_real,
+    suits_simulator,
+    switch_for,
+)
 from multibot_rewrite.fleet.proposal.searching import text_of
 
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
@@ -151,7 +157,16 @@ def without_names(it: Looked, given: Mapping[str, str]) -> Looked:
 
 def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
     """The same with the argument that makes it the simulated robot, or the real one, if it has one."""
-    suits = _suits_simulator if simulated else suits_real
+    return _switched(it, _suits_simulator if simulated else suits_real, reach)
+
+
+def with_hardware_loaded(it: Looked, reach: Reach) -> Looked:
+    """Return the same with the argument with which a simulator's plugin loads its hardware, if it has
+    one."""
+    return _switched(it, lambda root: loads_hardware(root) and suits_simulator(root), reach)
+
+
+def _switched(it: Looked, suits: Suits, reach: Reach) -> Looked:
     given = dict(it.arguments)
     if it.model:
         return it

@@ -49,12 +49,13 @@ OF_CLASSIC = "humble"
 
 class Member(NamedTuple):
     """A description with its files; ``names`` are the robots of it, ``radius`` how far it reaches from
-    its base in metres."""
+    its base in metres. ``is_real`` is true for robots that are real among simulated ones."""
 
     looked: Looked
     companions: Companions
     names: tuple[str, ...]
     radius: float
+    is_real: bool = False
 
 
 class Choice(NamedTuple):
@@ -68,7 +69,8 @@ class Proposal(NamedTuple):
     """A fleet: its keys with their reasons, in the order in which they are written; its robots with
     their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
     ``refused`` files that do not go with the robots and ``broken`` descriptions that cannot be read,
-    each with the reason; ``launched`` is what launch files give its nodes."""
+    each with the reason; ``launched`` is what launch files give its nodes. ``chosen`` is what is not as
+    the files have it, so that the fleet builds."""
 
     keys: Mapping[str, Choice]
     members: Sequence[Member]
@@ -78,6 +80,7 @@ class Proposal(NamedTuple):
     refused: Mapping[str, str] = {}
     launched: Launched = Launched()
     broken: Mapping[str, str] = {}
+    chosen: str = ""
 
 
 def layout_of(members: Sequence[Member]) -> Choice:

@@ -11,6 +11,8 @@ from multibot_rewrite.base.findings.formats.shared import said
 from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS
+from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
+from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.as_planned import is_of_sources
 from multibot_rewrite.fleet.checks.read_back import read_back
@@ -21,11 +23,17 @@ from multibot_rewrite.fleet.file.fleet_data import (
     without_place,
 )
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
-from multibot_rewrite.fleet.proposal.looking import Looked, without_names
+from multibot_rewrite.fleet.proposal.looking import (
+    NO_SIMULATOR,
+    Looked,
+    with_hardware_loaded,
+    without_names,
+)
 from multibot_rewrite.fleet.proposal.propose import (
     Choice,
     Proposal,
@@ -86,7 +94,49 @@ def that_builds(
     if bare != own:
         other, wrong = _without_blamed(bare, found, wanted, refused or {})
         made, errors = (made, errors) if wrong else (other, wrong)
-    return in_a_layout_that_builds(made, errors, wanted)
+    made = in_a_layout_that_builds(made, errors, wanted)
+    if made.notes:
+        for other, what in _in_another_world(made, own, found, wanted, refused or {}):
+            if not errors_of(_written(other, wanted), wanted.trust):
+                why = f"{what}, since it does not build as it is: {errors[0][1]}"
+                simulator = Choice(other.keys["simulator"].value, why)
+                return other._replace(keys={**other.keys, "simulator": simulator}, chosen=why)
+    return made
+
+
+def _in_another_world(
+    made: Proposal,
+    own: Sequence[Looked],
+    found: Found,
+    wanted: Wanted,
+    refused: Mapping[str, str],
+) -> Iterator[tuple[Proposal, str]]:
+    """Yield the proposal with the robots real that no simulator can run or that have nothing for one,
+    and with the argument that loads a simulator's hardware, each with what it is. A simulator that was
+    asked for stays."""
+    if wanted.simulator or made.keys["simulator"].value == REAL:
+        return
+    real = [not _can_be_simulated(it.looked) for it in made.members]
+    if all(real):
+        robots = with_arguments(own, wanted._replace(simulator=REAL), found)
+        other, _ = _without_blamed(robots, found, wanted._replace(simulator=REAL), refused)
+        yield other, "the robots are real"
+    elif any(real):
+        members = [it._replace(is_real=one) for it, one in zip(made.members, real, strict=True)]
+        what = "robots that no simulator is for are real"
+        yield made._replace(members=members, notes=()), what
+    switched = [with_hardware_loaded(it, Reach(trust=wanted.trust)) for it in own]
+    if switched != [*own]:
+        given = {it.switch: dict(it.arguments)[it.switch] for it in switched if it.switch}
+        what = f"arguments {given} make the simulated robot"
+        yield _without_blamed(switched, found, wanted, refused)[0], what
+
+
+def _can_be_simulated(it: Looked) -> bool:
+    """Return whether a description has something for a simulator, and a mass."""
+    # The mass of an SDF's link that gives none is 1 (sdformat).
+    has_mass = it.root is not None and (it.tag == "sdf" or weighs(read_robot(it.root)))
+    return it.simulator != NO_SIMULATOR and has_mass
 
 
 def _without_blamed(

@@ -17,6 +17,8 @@ from multibot_rewrite.rules.launch.models import in_each_other
 
 # Robots of which each pair is looked at; of more the nearest neighbours in a list are.
 MOST = 400
+# A robot, where it starts, and how far it reaches.
+_Placed = tuple[RewrittenRobot, tuple[float, float, float], float]
 
 
 def too_near(plan: FleetPlan) -> Iterator[Finding]:
@@ -30,12 +32,12 @@ def too_near(plan: FleetPlan) -> Iterator[Finding]:
     if not any(any(_place(it.spec)) for it in robots):
         yield from _without_poses(robots)
         return
-    reach = {it.spec.sources: _within(it) for it in {it.spec.sources: it for it in robots}.values()}
-    for one, other in _pairs(robots):
-        gap = dist(_place(one.spec), _place(other.spec))
-        needed = reach[one.spec.sources] + reach[other.spec.sources]
-        if gap < needed:
-            yield _finding(other, one.spec.name, gap, needed)
+    sources = [it.spec.sources for it in robots]
+    reach = {key: _within(it) for key, it in dict(zip(sources, robots, strict=True)).items()}
+    placed = [(it, _place(it.spec), reach[key]) for key, it in zip(sources, robots, strict=True)]
+    for (one, here, own), (other, there, more) in _pairs(placed):
+        if (gap := dist(here, there)) < own + more:
+            yield _finding(other, one.spec.name, gap, own + more)
 
 
 def _without_poses(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
@@ -50,13 +52,8 @@ def _within(it: RewrittenRobot) -> float:
     return filled_by(it.member.inventory.document.root)
 
 
-def _pairs(
-    robots: Sequence[RewrittenRobot],
-) -> Iterator[tuple[RewrittenRobot, RewrittenRobot]]:
-    if len(robots) <= MOST:
-        yield from combinations(robots, 2)
-    else:
-        yield from pairwise(robots)
+def _pairs(robots: Sequence[_Placed]) -> Iterator[tuple[_Placed, _Placed]]:
+    return combinations(robots, 2) if len(robots) <= MOST else pairwise(robots)
 
 
 def _place(spec: RobotSpec) -> tuple[float, float, float]:

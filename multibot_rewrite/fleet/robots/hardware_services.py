@@ -16,12 +16,12 @@ MOVED = declare("MF851", "service-of-hardware-moved", NOTE, formats=("fleet",))
 
 def moved_services(plan: FleetPlan) -> Iterator[Finding]:
     """Yield the absolute services of hardware that have the robot's name now, one finding a robot."""
-    table = plan.fleet.table
-    hardware = {it.full_name for it in table.nodes if it.home.of_hardware}
+    tables = plan.fleet.table.by_robot(it.spec.namespace for it in plan.robots)
     for robot in plan.robots:
-        own = [it for it in table.names if it.node in hardware and it.robot == robot.spec.namespace]
-        served = [it for it in own if it.endpoint.role == SERVES and it.endpoint.name[0] == "/"]
-        moved = [(it.endpoint.name, it.name) for it in served if it.name != it.endpoint.name]
+        runs = (it for it in tables[robot.spec.namespace].runs if it.fact.of_hardware)
+        own = (it for run in runs for it in run.names)
+        served = [it for it in own if it[0].role == SERVES and it[0].name[0] == "/"]
+        moved = [(end.name, name) for end, name in served if name != end.name]
         if moved:
             rules = ", ".join(f"{old}:={new}" for old, new in moved)
             message = f"the controller manager of robot {robot.spec.name!r} has the rules {rules}"

@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.rules.launch.declaration import at
 from multibot_rewrite.rules.launch.started import (
     is_managed,
@@ -19,6 +18,7 @@ from multibot_rewrite.rules.launch.started import (
     not_listed,
     said_of_bond,
 )
+from multibot_rewrite.spelling.records import GivenNode
 
 
 def left_idle(

@@ -16,7 +16,6 @@ from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS
 from multibot_rewrite.companions.names.rename_map import KINDS, spell
 from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.params.rcl_parameters import (
-    Value,
     exact_nodes,
     node_parameters,
     parameters_text,
@@ -37,6 +36,7 @@ from multibot_rewrite.knowledge.programs import Program, started_as
 from multibot_rewrite.knowledge.stacks import is_apart
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.spelling.targets import placed, target_of
+from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import TOPIC
 
 
@@ -280,7 +280,7 @@ class LoadedRobot:
         """The relays of its tf to ``/tf``, by their names in ``table``; empty unless the fleet file
         says ``relayed``. Raises nothing."""
         made = relays(self._graph, self._robot.topics.naming, self._fleet.plan.file)
-        return {it.table.node: it for it in made}
+        return {it.run.node: it for it in made}
 
     @cached_property
     def _spawn(self) -> spawn.Spawn:

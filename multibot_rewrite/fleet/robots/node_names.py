@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
-from multibot_rewrite.spelling.records import EndpointName, NodeTable, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER, Started, launch_arguments, started
 from multibot_rewrite.system.records import CALLS
 
@@ -28,7 +28,7 @@ class NodeNames(NamedTuple):
     """
 
     robot: str
-    nodes: Mapping[str, NodeTable]
+    nodes: Mapping[str, Run]
     started: Mapping[str, Started]
     managed: Mapping[str, tuple[str, ...]]
 
@@ -42,7 +42,7 @@ class NodeNames(NamedTuple):
         own = self._found(node)
         it = self.started.get(node)
         if it is None:
-            return [(rule.source, rule.target) for rule in own.rules]
+            return list(own.rules)
         if it.way == SPAWNER:
             raise UsageError(f"node {node!r} {SPAWNED.format(node=node)}")
         return list(it.rules)
@@ -69,12 +69,12 @@ class NodeNames(NamedTuple):
         """The full name of the container that this node is loaded into, empty for other nodes; raises
         nothing."""
         it = self.started.get(node)
-        return self.full_name(it.node.home.container) if it and it.way == COMPONENT else ""
+        return self.full_name(it.node.fact.container) if it and it.way == COMPONENT else ""
 
     def inside(self, node: str) -> list[str]:
         """The other nodes in the process that is started for this one: costmaps, components; raises
         nothing."""
-        homes = {it.node: it.home.host or it.home.container for it in self.nodes.values()}
+        homes = {it.node: it.fact.host or it.fact.container for it in self.nodes.values()}
         return [name for name in homes if node in _above(name, homes)]
 
     @checked
@@ -92,7 +92,7 @@ class NodeNames(NamedTuple):
         """The node's name with its namespace; raises as ``for_node``."""
         return f"{self.namespace(node).rstrip('/')}/{self.name(node)}"
 
-    def _found(self, node: str) -> NodeTable:
+    def _found(self, node: str) -> Run:
         if node in self.nodes:
             return self.nodes[node]
         where = f"robot {self.robot!r}" if self.robot else "nodes for all robots"
@@ -108,19 +108,17 @@ def _above(name: str, homes: Mapping[str, str]) -> Iterator[str]:
 
 def names_of(table: Table, robot: str) -> NodeNames:
     """The nodes of one robot in a fleet's table; of those for all robots if it is empty."""
-    nodes: dict[str, NodeTable] = {}
-    own = [it for it in table.nodes if it.robot == robot]
+    nodes: dict[str, Run] = {}
+    own = [it for it in table.runs if it.robot == robot]
     for it in own:
         nodes.setdefault(it.node, it)
-    names = tuple(it for it in table.names if it.robot == robot)
-    found = started(table._replace(nodes=tuple(own), names=names))
-    calls = [it for it in names if it.endpoint.role == CALLS]
-    managed = {it.node: tuple(_managed(it.full_name, calls)) for it in own}
+    found = started(table._replace(runs=tuple(own)))
+    managed = {it.node: tuple(_managed(it)) for it in own}
     return NodeNames(robot, nodes, {it.node.node: it for it in found}, managed)
 
 
-def _managed(manager: str, calls: Iterable[EndpointName]) -> Iterator[str]:
-    for it in calls:
-        name, _, service = it.endpoint.name.rpartition("/")
-        if (it.node, service) == (manager, CHANGE_STATE):
+def _managed(manager: Run) -> Iterator[str]:
+    for end, _ in manager.names:
+        name, _, service = end.name.rpartition("/")
+        if (end.role, service) == (CALLS, CHANGE_STATE):
             yield name

@@ -14,7 +14,6 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes, stack_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.spelling.records import EndpointName, NodeTable
 from multibot_rewrite.system.records import Edge
 
 
@@ -52,19 +51,14 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
 def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
     """Each robot as a fleet of its own, so that steps about one robot need not search all others."""
     fleet = plan.fleet
-    nodes: dict[str, list[NodeTable]] = defaultdict(list)
-    names: dict[str, list[EndpointName]] = defaultdict(list)
-    for node in fleet.table.nodes:
-        nodes[node.robot].append(node)
-    for name in fleet.table.names:
-        names[name.robot].append(name)
+    tables = fleet.table.by_robot(it.spec.namespace for it in plan.robots)
     edges: dict[str, dict[tuple[str, str], Sequence[Edge]]] = defaultdict(dict)
     for key, sent in fleet.edges.items():
         edges[key[0]][key] = sent
     for robot in plan.robots:
         own = robot.spec.namespace
-        table = fleet.table._replace(nodes=tuple(nodes[own]), names=tuple(names[own]), problems=())
-        yield plan._replace(robots=(robot,), fleet=fleet._replace(table=table, edges=edges[own]))
+        alone = fleet._replace(table=tables[own], edges=edges[own])
+        yield plan._replace(robots=(robot,), fleet=alone)
 
 
 def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:

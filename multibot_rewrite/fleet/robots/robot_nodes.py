@@ -15,6 +15,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import NO_FRAMES, Frames
+from multibot_rewrite.description.readback.nodes import wheels_in
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
@@ -27,15 +28,12 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     under_plugins,
 )
 from multibot_rewrite.fleet.outputs.output_file import params_of
-from multibot_rewrite.fleet.robots.fitting import (
-    changed_frames,
-    described,
-    fitted,
-    fitting_frames,
-    free_nodes,
+from multibot_rewrite.fleet.robots.fitting.fitted import described, fitted, free_nodes
+from multibot_rewrite.fleet.robots.fitting.frames import changed_frames, fitting_frames, with_frames
+from multibot_rewrite.fleet.robots.fitting.transforms import (
+    is_led_elsewhere,
     sends_too,
     sent_by_controllers,
-    with_frames,
 )
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
@@ -50,16 +48,17 @@ from multibot_rewrite.knowledge.parameters import (
 )
 from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, load_stack
+from multibot_rewrite.producers.ends import BRIDGE_NODE
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.of_robot import without_robot
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.system.records import Edge, Origin, Place
 
-WORLD, BRIDGE = "world", "ros_gz_bridge"
+WORLD = "world"
 # The stack of a controller manager that no plugin makes.
 PROGRAM = "ros2_control"
 BY_ARGUMENT = "an argument of the xacro makes it"
@@ -119,7 +118,8 @@ def robot_nodes(
     spawned = launched.spawned if launched else {}
     without, findings = nodes_with(launched, stack, given, known | _started_here(file.distro))
     source = member.source
-    standing = _standing(without, given) if _is_mounted(source.root) else without
+    drives = wheels_in(source.root) and not _is_mounted(source.root)
+    standing = without if drives else _standing(without, given)
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
@@ -144,7 +144,8 @@ def robot_nodes(
     said = (*notes, *findings, *shared, *lost)
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    is_placed = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
+    placing = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
+    is_placed = placing or is_led_elsewhere(member, spec)
     more = unsimulated, arguments, frames, has.sent, is_placed
     return RobotEvidence(given, known, marked, said, spawned, *more)
 
@@ -210,7 +211,7 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
         # On Humble it has the name of Ignition, too.
         loaded = {name.replace("ign_", "gz_", 1) for name in plugin_libraries(member.inventory)}
         return library_key(it.plugin) in loaded
-    of_one = it.name == BRIDGE and not it.shared
+    of_one = it.name == BRIDGE_NODE and not it.shared
     return not of_one or bool(spec.companions.get("bridge")) or is_bridged(member.inventory)
 
 
@@ -228,7 +229,9 @@ def _of_srdf(
     """The node that reads an SRDF may run, where neither a stack nor a launch file says so."""
     if spec.srdf and MOVE_GROUP not in {it.kind for it in nodes}:
         file = os.path.basename(spec.srdf)
-        yield known[MOVE_GROUP]._replace(when=f"its SRDF is {file}", origin=f"{spec.srdf}:1")
+        yield known[MOVE_GROUP]._replace(
+            when=f"its SRDF is {file}", origin=Origin(place=Place(spec.srdf, 1))
+        )
 
 
 def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:

@@ -34,7 +34,7 @@ from multibot_rewrite.fleet.robots.start_pose_rules import (
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridge_rows import PLUGINS, rows_of
 from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
-from multibot_rewrite.spelling.table import joined, names_of, node_table
+from multibot_rewrite.spelling.table import joined, run_of
 from multibot_rewrite.spelling.targets import placed, target_of
 from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, edge_of
@@ -265,8 +265,7 @@ def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
     fleet = plan.fleet._replace(table=table._replace(problems=(*table.problems, *problems)))
     if not held:
         return fleet
-    tables = [node_table(it.robot, POSE_NODE, fleet.naming) for it in held]
-    names = tuple(names_of([(POSE_NODE, table) for table in tables]))
+    runs = tuple(run_of(it.robot, POSE_NODE, fleet.naming) for it in held)
     edges = {(it.robot, NODE): [edge_of(it.parent, it.child, True)] for it in held}
-    more = fleet.table._replace(nodes=tuple(tables), names=names, problems=())
+    more = fleet.table._replace(runs=runs, problems=())
     return fleet._replace(table=joined(fleet.table, more), edges={**fleet.edges, **edges})

@@ -10,7 +10,6 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.moveit.file_kind import SIMPLE
-from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText
 from multibot_rewrite.description.readback.reading import FRAME, Reading, read
@@ -29,7 +28,6 @@ from multibot_rewrite.producers.evidence.hardware import Exported, exported
 from multibot_rewrite.producers.evidence.moveit import planning_system
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics, semantics
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.producers.launch.spawners import active
@@ -40,7 +38,9 @@ from multibot_rewrite.producers.transforms import (
     node_edges,
     virtual_lookups,
 )
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, tree_joints
+from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,

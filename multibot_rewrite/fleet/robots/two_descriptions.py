@@ -25,7 +25,7 @@ def of_sdf_alone(plan: FleetPlan) -> Iterator[Finding]:
     """The robots whose robot_state_publisher gets an SDF: robot_state_publisher.cpp reads it by
     urdf::Model, which asks the parsers that are installed."""
     published = {it.name for it in plan.fleet.facts if it.package == STATE_PUBLISHER}
-    runs = {it.robot for it in plan.fleet.table.nodes if it.node in published}
+    runs = {it.robot for it in plan.fleet.table.runs if it.node in published}
     for robot in plan.robots:
         if robot.member.described.document.root.tag == "sdf" and robot.spec.namespace in runs:
             links = shorten(robot.member.described.declared.get("link", ()))

@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 
+from multibot_rewrite.base.bounded import read_start
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import outside
 from multibot_rewrite.description.sources.packages import entries
@@ -25,8 +26,7 @@ _DEEP, _MOST = 3, 60
 def robot_name(path: str) -> str:
     """The name on the root element as it is written; empty if the first bytes do not have it."""
     try:
-        with open(path, "rb") as file:
-            found = _NAME.search(file.read(HEAD))
+        found = _NAME.search(read_start(path, HEAD))
     except (OSError, ValueError):
         return ""
     return found[1].decode("utf-8", "replace").strip() if found else ""

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.knowledge.records import Claim, NodeFacts
 from multibot_rewrite.producers.evidence.claims import claims_of
 from multibot_rewrite.producers.evidence.hardware import COMMAND, STATE
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.spelling.records import GivenNode
 
 _JOINTS = "<joints|joint|joint_names|joint_name|dof_names>"
 _INTERFACES = "<command_interfaces|command_interface|interface_name|interface_names>"

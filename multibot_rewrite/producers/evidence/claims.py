@@ -16,7 +16,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.conditions import Values, holds
 from multibot_rewrite.knowledge.records import Claim
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, GivenNode
 from multibot_rewrite.system.records import Place
 
 TYPE, COMMAND = "type", "command"

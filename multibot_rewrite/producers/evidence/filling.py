@@ -15,7 +15,8 @@ from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.knowledge.conditions import ALSO, Values, chosen_type, holds, verdict
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.system.records import Origin
 
 _ID = re.compile(r"<([a-z_ ]+)>")
 # What stands for a number in the name of a parameter: odomN is odom0, odom1 and so on.
@@ -47,7 +48,7 @@ def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) ->
         name=given.name,
         endpoints=tuple(dict.fromkeys(made)),
         sends=tuple(sent_with(with_frames, values)),
-        origin=str(given.place),
+        origin=Origin(place=given.place),
     )
 
 

@@ -20,8 +20,8 @@ from multibot_rewrite.knowledge.node_entries import read_claims
 from multibot_rewrite.knowledge.records import MANAGER, Claim, NodeFacts
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines, table, table_of, word
 from multibot_rewrite.producers.evidence.claims import claimed
-from multibot_rewrite.producers.evidence.records import Given
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.spelling.records import Given
+from multibot_rewrite.system.records import Origin, Place
 
 COMMAND, STATE = "command", "state"
 OWNERS = ("joint", "sensor", "gpio")
@@ -68,17 +68,17 @@ def with_hardware(
         return own
     when = manager.when
     made = (
-        known[kind]._replace(name=name, known=kind, origin=str(place), when=when, of_hardware=True)
-        for name, kind, place in _hardware_nodes(root, file)
+        known[kind]._replace(name=name, known=kind, origin=it, when=when, of_hardware=True)
+        for name, kind, it in _hardware_nodes(root, file)
     )
     return (*own, *made)
 
 
-def _hardware_nodes(root: _Element, file: str) -> Iterator[tuple[str, str, Place]]:
+def _hardware_nodes(root: _Element, file: str) -> Iterator[tuple[str, str, Origin]]:
     for hardware in root.iterfind("ros2_control/hardware"):
         plugin = _plugin(hardware)
         for name, kind in plugin.nodes.items() if plugin else ():
-            yield name, kind, _place(hardware, file)
+            yield name, kind, Origin(place=_place(hardware, file))
 
 
 def _by_code(hardware: _Element, file: str) -> Iterator[Exported]:

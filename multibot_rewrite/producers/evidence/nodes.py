@@ -16,7 +16,8 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.alternatives import GUESSED, alternatives
 from multibot_rewrite.producers.evidence.claims import claims_of
 from multibot_rewrite.producers.evidence.filling import filled
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.system.records import Origin
 
 MANAGER = "controller_manager"
 # So many names in one line.
@@ -155,7 +156,7 @@ def _added(given: GivenNode, known: Mapping[str, NodeFacts], either: str) -> Nod
     if node is None:
         package = given.type.partition("/")[0]
         found = NodeFacts(given.name, package, (), host=MANAGER, when=either)
-        return found._replace(origin=str(given.place))
+        return found._replace(origin=Origin(place=given.place))
     runs = given.manager or node.name == MANAGER
     when = either or node.when if runs else f"its parameters are in {given.place.file}"
     return filled(node, given)._replace(when=when)

@@ -21,7 +21,7 @@ from multibot_rewrite.base.nearest import SLIP, nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_node_name
 from multibot_rewrite.companions.names.placeholders import of_one_robot, without_robot
-from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
+from multibot_rewrite.companions.params.rcl_parameters import value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
     INNER,
@@ -34,7 +34,8 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, names_below, pairs
 from multibot_rewrite.knowledge.parameters import KnownNodes
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import Place
 
 OWN_TYPE = "type"

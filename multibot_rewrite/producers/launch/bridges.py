@@ -24,7 +24,8 @@ from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS
 from multibot_rewrite.companions.bridge_entry import SERVICE as SERVICE_ROW
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
+from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 _ROW = lazy_compile(r"(?P<name>[^@]+)@(?P<type>[\w/]+)(?P<way>[@\[\]]?)(?P<gz>.*)")
@@ -54,13 +55,13 @@ def bridge_rows(node: LaunchedNode, words: Collection[str]) -> tuple[Endpoint, .
     return tuple(end for it in rows for end in _for_any_robot(it.end, rules, words))
 
 
-def is_bridge(it: RunningNode) -> bool:
+def is_bridge(it: Run) -> bool:
     """Does the node pass topics of a simulator on?"""
-    known = it.facts is not None and it.facts.kind == _BRIDGE
+    known = it.fact.kind == _BRIDGE
     return known or it.program in (*_BRIDGES, *_OF_IMAGES)
 
 
-def bridged_by(it: RunningNode) -> Iterator[Row]:
+def bridged_by(it: Run) -> Iterator[Row]:
     """All that a bridge passes on; nothing for another node. The names in the simulator may be below
     its namespace (ros_gz humble ros_gz_bridge/src/ros_gz_bridge.cpp, expand_gz_topic_names)."""
     for row in _rows_of(it) if is_bridge(it) else ():
@@ -68,12 +69,12 @@ def bridged_by(it: RunningNode) -> Iterator[Row]:
         yield Row(row.end, expand(row.inside, below, it.name))
 
 
-def expands(it: RunningNode) -> bool:
+def expands(it: Run) -> bool:
     """Does the bridge take names in the simulator as those below its namespace?"""
     return it.value("expand_gz_topic_names") is True
 
 
-def told_rows(it: RunningNode) -> str:
+def told_rows(it: Run) -> str:
     """The topics in the arguments of a bridge, as its file would have them; nothing for no such row."""
     found = [_ROW.fullmatch(word) for word in it.arguments] if it.program in _BRIDGES else []
     rows = [one for one in found if one and one["way"] and "/srv/" not in one["type"]]
@@ -86,7 +87,7 @@ def told_rows(it: RunningNode) -> str:
     return yaml.safe_dump(entries, sort_keys=False) if entries else ""
 
 
-def refused_rows(it: RunningNode) -> Iterator[str]:
+def refused_rows(it: Run) -> Iterator[str]:
     """The arguments of a bridge that are to be a row and are none: it ends then."""
     for word in it.arguments if it.program in _BRIDGES else ():
         row = _ROW.fullmatch(word)
@@ -95,7 +96,7 @@ def refused_rows(it: RunningNode) -> Iterator[str]:
             yield word
 
 
-def _rows_of(it: RunningNode) -> Iterator[Row]:
+def _rows_of(it: Run) -> Iterator[Row]:
     yield from _told(it.program, it.arguments)
     given = it.values.get("config_file")
     path = str(given.value) if given else ""
@@ -128,7 +129,7 @@ def _topics(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
         yield Row(Endpoint(TOPIC, role, name, full), inside)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=4096)  # a fleet has one a robot, and several rules ask for it
 def _of_text(text: str) -> tuple[Row, ...]:
     return tuple(_written(text))
 

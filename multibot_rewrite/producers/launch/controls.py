@@ -11,16 +11,16 @@ from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.evidence.claims import claims_of
 from multibot_rewrite.producers.evidence.hardware import exported
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.launched import file_of
-from multibot_rewrite.producers.launch.records import LaunchGraph, RunningNode
+from multibot_rewrite.producers.launch.records import LaunchGraph
+from multibot_rewrite.spelling.records import GivenNode, Run
 from multibot_rewrite.system.records import CLAIMS, EXPORTS, Interface
 
 _DESCRIPTION = "robot_description"
 
 
 def interfaces_of(
-    nodes: Iterable[RunningNode], published: Mapping[str, str], graph: LaunchGraph
+    nodes: Iterable[Run], published: Mapping[str, str], graph: LaunchGraph
 ) -> Iterator[Interface]:
     """Of controllers whose manager has a known description; ``published`` is what each topic has."""
     nodes = [*nodes]
@@ -29,16 +29,16 @@ def interfaces_of(
         yield from _exports(manager, text, graph)
     known = {it.process for it in nodes if texts.get(it.full_name)}
     for it in nodes:
-        if it.process in known and it.facts and it.facts.is_controller:
+        if it.process in known and it.fact.is_controller:
             yield from _claims(it)
 
 
-def is_manager(it: RunningNode) -> bool:
+def is_manager(it: Run) -> bool:
     """Is it a controller manager?"""
-    return it.facts is not None and it.facts.known == MANAGER
+    return it.fact.known == MANAGER
 
 
-def _description(it: RunningNode, published: Mapping[str, str]) -> str:
+def _description(it: Run, published: Mapping[str, str]) -> str:
     """What a manager has as its parameter, else on the topic that it reads."""
     given = it.values.get(_DESCRIPTION)
     if given and isinstance(given.value, str) and "<robot" in given.value[:4096]:
@@ -61,9 +61,8 @@ def _exports(manager: str, text: str, graph: LaunchGraph) -> Iterator[Interface]
         yield Interface(it.kind, it.name, manager, EXPORTS, it.place)
 
 
-def _claims(it: RunningNode) -> Iterator[Interface]:
-    facts = it.facts
-    given = GivenNode(it.name, facts.known if facts else "", it.program, it.values, it.place)
-    for claim in claims_of(facts.claims if facts else (), given):
+def _claims(it: Run) -> Iterator[Interface]:
+    given = GivenNode(it.name, it.fact.known, it.program, it.values, it.place)
+    for claim in claims_of(it.fact.claims, given):
         place = claim.place if claim.place and claim.place.file else it.place
         yield Interface(claim.kind, claim.name, it.full_name, CLAIMS, place)

@@ -14,7 +14,7 @@ from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.conditions import ALSO, HEARD, PROGRAM, Condition, settled, words_in
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.evidence.records import Given
+from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import TOPIC
 
 Decide = Callable[[Condition], bool | None]

@@ -16,6 +16,8 @@ from multibot_rewrite.base.bounded import A_VALUE, compose_yaml, load_yaml
 from multibot_rewrite.companions.yaml_text import line_of
 
 _SEPARATOR, _CHILDREN = "-sep", "children"
+# What libxml2 says of it, by its release.
+_TOO_DEEP = (etree.ErrorTypes.ERR_RESOURCE_LIMIT, etree.ErrorTypes.ERR_INTERNAL_ERROR)
 _TEXT = "tag:yaml.org,2002:str"
 
 
@@ -56,12 +58,21 @@ class Entity:
 def root_of(data: bytes) -> Entity:
     """The root of a launch file; raises what launch raises for another file."""
     if data.lstrip().startswith(b"<"):
-        root = _of_xml(etree.fromstring(data, etree.XMLParser(resolve_entities=False)))
+        root = _of_xml(_parsed(data))
     else:
         root = _of_document(compose_yaml(data.decode(), "the launch file"))
     if root.tag != "launch":
         raise RuntimeError("Expected 'launch' as root tag")
     return root
+
+
+def _parsed(data: bytes) -> etree._Element:
+    try:
+        return etree.fromstring(data, etree.XMLParser(resolve_entities=False))
+    except etree.XMLSyntaxError as error:
+        if getattr(error, "code", 0) in _TOO_DEEP:
+            raise SyntaxError("elements are nested deeper than in any launch file") from None
+        raise
 
 
 def _of_xml(element: etree._Element) -> Entity:

@@ -32,6 +32,7 @@ _NO_VALUE = lazy_compile(
 )
 # The file as Python has it, in launch and in its stand-in; without a description it makes none.
 _MODULE = "launch_file"
+_MAKES = "generate_launch_description"
 _ASKED = lazy_compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
 _NEXT_TRIED = lazy_compile(r" - \w+Error: ")
 _OF_ROS_1 = re.compile(
@@ -71,11 +72,18 @@ def _known(error: BaseException) -> str:
         return f"the launch configuration {name!r} is not set; {hint}"
     if isinstance(error, FileNotFoundError) and _is_program(str(error.filename)):
         return f"it starts the program {error.filename!r} itself, which is not installed here"
-    if is_no_condition(error):
-        return "what is given as its condition is none; write IfCondition(...)"
     if isinstance(error, SystemExit):
         hint = "give it the arguments that it reads from the command line (NAME:=VALUE)"
         return f"it ends itself (sys.exit({error.code!r})); {hint}"
+    return _lacking(error)
+
+
+def _lacking(error: BaseException) -> str:
+    """What a launch file, or what it gives launch, does not have."""
+    if isinstance(error, AttributeError) and error.name == _MAKES:
+        return f"it has no function {_MAKES}(): write one that returns a LaunchDescription"
+    if is_no_condition(error):
+        return "what is given as its condition is none; write IfCondition(...)"
     return ""
 
 

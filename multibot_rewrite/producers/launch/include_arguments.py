@@ -29,8 +29,13 @@ def unread(file: str, given: Collection[str]) -> Iterator[tuple[str, str]]:
     if not os.path.isfile(file):
         return
     text = read_text(file)
-    declared = {name for found in _DECLARED.findall(text) for name in found if name}
+    declared = arguments_declared(text)
     yield from not_among(given, declared, text, whole=bool(declared) and not _ANY.search(text))
+
+
+def arguments_declared(text: str) -> set[str]:
+    """Return the names of the arguments that the text of a launch file declares."""
+    return {name for found in _DECLARED.findall(text) for name in found if name}
 
 
 def not_among(

@@ -19,11 +19,13 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
+from multibot_rewrite.producers.launch.domain_bridges import BridgedDomains
 from multibot_rewrite.producers.launch.models import Model, Models
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, RunningNode
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_frames
 from multibot_rewrite.spelling.bridged_topics import BridgedTopic, bridged_topics
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Place, System
 
 _WORLDS = (".sdf", ".world", ".model")
@@ -54,20 +56,30 @@ class World(NamedTuple):
 class Launched(NamedTuple):
     """All that a launch starts: as it is written (``graph``), its nodes as they run, the controllers
     that spawners load, the descriptions, those in the simulator, and the system that it makes in a
-    release."""
+    release. ``bridged`` is what its domain_bridges have in ROS domains: in one view of all domains each
+    would be a second sender, so it is not in the system."""
 
     graph: LaunchGraph
-    nodes: tuple[RunningNode, ...]
+    nodes: tuple[Run, ...]
     spawned: tuple[Spawned, ...]
     models: Models
     simulated: tuple[InSimulator, ...]
     system: System
     release: str
+    bridged: BridgedDomains
 
     @property
     def whole(self) -> bool:
         """Is every node known, with all that it does?"""
         return not any(it.incomplete for it in self.system.environment.caveats)
+
+    @property
+    def with_bridged(self) -> System:
+        """The system with the nodes of domain_bridges, for a view of each domain."""
+        seen = self.system
+        return seen._replace(
+            nodes=(*seen.nodes, *self.bridged.nodes), ends=(*seen.ends, *self.bridged.ends)
+        )
 
 
 def file_of(graph: LaunchGraph, text: str) -> str:

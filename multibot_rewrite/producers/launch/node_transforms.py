@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
 from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.producers.launch.bridges import bridged_by
-from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.running import DESCRIPTION
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in, sent_by
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, edge_of
 
@@ -18,11 +18,9 @@ TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
 Sent = Mapping[str, Sequence[Edge]]
 
 
-def edges_of(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
+def edges_of(it: Run, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
     """The transforms of a node, each with its topic."""
-    if it.facts is None:
-        return
-    sent = [end.name for end in it.facts.endpoints if end.role == PUBLISHES and not end.when]
+    sent = [end.name for end in it.fact.endpoints if end.role == PUBLISHES and not end.when]
     for edge in _made(it):
         topic = TF_STATIC if edge.static else TF
         # A driver may send its odometry on tf_static, and nodes may only have one of the two.
@@ -31,7 +29,7 @@ def edges_of(it: RunningNode, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
             yield resolve_bound(named, TOPIC, bound), edge
 
 
-def passed_on(it: RunningNode, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Edge]]:
+def passed_on(it: Run, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Edge]]:
     """The transforms of the simulator that a bridge passes on."""
     for end, own in bridged_by(it):
         if (end.role, end.type) == (PUBLISHES, TF_TYPE):
@@ -39,24 +37,22 @@ def passed_on(it: RunningNode, bound: BoundNode, inside: Sent) -> Iterator[tuple
             yield from ((full, edge) for edge in inside.get(own, ()))
 
 
-def _made(it: RunningNode) -> Iterable[Edge]:
-    if it.facts is None:
-        return ()
+def _made(it: Run) -> Iterable[Edge]:
     if publishes_a_tree(it):
         return tree_of(it) or ()
     prefix = prefix_of(it)
-    return _below(prefix, sent_by(it.facts, ""))
+    return _below(prefix, sent_by(it.fact, ""))
 
 
 def _below(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
     return [edge_of(prefix + it.parent, prefix + it.child, it.static) for it in edges]
 
 
-def prefix_of(it: RunningNode) -> str:
+def prefix_of(it: Run) -> str:
     """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
     ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
     prefix = it.value("tf_prefix")
-    switch = it.facts.prefix_switch if it.facts else ""
+    switch = it.fact.prefix_switch
     if switch:
         own = it.value("tf_frame_prefix") or it.namespace
         prefix = "" if it.value(switch) is False else own
@@ -64,12 +60,12 @@ def prefix_of(it: RunningNode) -> str:
     return f"{bare}/" if bare else ""
 
 
-def publishes_a_tree(it: RunningNode) -> bool:
+def publishes_a_tree(it: Run) -> bool:
     """Does it send the tree of a description?"""
-    return it.facts is not None and it.facts.package == STATE_PUBLISHER
+    return it.fact.package == STATE_PUBLISHER
 
 
-def tree_of(it: RunningNode) -> list[Edge] | None:
+def tree_of(it: Run) -> list[Edge] | None:
     """The transforms of a description under ``frame_prefix``; None where that is not known."""
     prefix = str(it.value("frame_prefix") or "")
     root = root_of(it.value(DESCRIPTION))

@@ -23,7 +23,6 @@ from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.evidence.remapped import remapped
 from multibot_rewrite.producers.launch.bridges import bridge_rows
 from multibot_rewrite.producers.launch.findings import launch_findings
@@ -33,7 +32,8 @@ from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph,
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.system.records import NO_ORIGIN, Origin, Place
 
 # The name of a file for what a launch file gives itself.
 _OWN = "parameters of a launch file"
@@ -77,7 +77,9 @@ def with_launched(
     left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
     # A node that every robot has, such as robot_state_publisher, may be launched under another name.
-    gone |= {it.known for it in nodes.values() if it.known} - {it.name for it in stack if it.origin}
+    gone |= {it.known for it in nodes.values() if it.known} - {
+        it.name for it in stack if it.origin != NO_ORIGIN
+    }
     kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
@@ -178,16 +180,16 @@ def _below(namespace: str, name: str, words: Collection[str]) -> str:
     return "/".join(tokens[1:] if len(tokens) > 1 and tokens[0] in words else tokens)
 
 
-def _origin(place: Place) -> str:
+def _origin(place: Place) -> Origin:
     # Without its folder: a plan is the same from every working directory.
-    return f"{os.path.basename(place.file)}:{place.line}"
+    return Origin(place=Place(os.path.basename(place.file), place.line))
 
 
 def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
     """Should a launch file have started it? What has no process of its own is not launched, and what
     no stack is named for is added to every robot."""
     own = not node.host and not node.plugin and node.name != MANAGER
-    return own and node.name not in launched and bool(node.origin)
+    return own and node.name not in launched and node.origin != NO_ORIGIN
 
 
 def _hosted(

@@ -12,15 +12,9 @@ from typing import Any
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.producers.launch.package_files import file_of_package
-from multibot_rewrite.producers.launch.unknown_modules import ANY_NAME
 from multibot_rewrite.system.records import Place
-from multibot_rewrite.system.tool_nodes import is_viewer
 
-Rules = tuple[tuple[str, str], ...]
 # What starts a node that another program has ended before.
 AT_AN_END = ("at an event (OnProcessExit)", "at an event (on_exit)")
 
@@ -129,51 +123,6 @@ class LaunchGraph(NamedTuple):
         """The texts that nodes get, and those of files that are read for them."""
         yield from (it.text for _, it in self.files)
         yield from (it.text for node in self.nodes for it in node.parameters)
-
-
-class RunningNode(NamedTuple):
-    """A node as a launch starts it.
-
-    ``rules`` are its own ones; ``process_rules`` and ``process_namespace`` are those of its process,
-    which helper nodes in it have.
-    ``facts`` are its endpoints and frames with its parameters, None where nothing is known of it.
-    ``values`` are its parameters, ``texts`` other files that a parameter names, ``untold`` parameters
-    whose values only a run tells. ``process`` tells the
-    processes of the launch apart.
-    """
-
-    name: str
-    namespace: str
-    rules: Rules
-    process_rules: Rules
-    process_namespace: str
-    facts: NodeFacts | None
-    values: Mapping[str, Given]
-    process: str
-    arguments: tuple[str, ...]
-    program: str
-    place: Place
-    texts: tuple[str, ...] = ()
-    untold: tuple[str, ...] = ()
-
-    @property
-    def full_name(self) -> str:
-        """Namespace and name."""
-        return expand(self.name, self.namespace, "")
-
-    @property
-    def is_known(self) -> bool:
-        """Is known what it does, or that it only looks on?"""
-        return self.facts is not None or is_viewer(self.name)
-
-    def value(self, name: str) -> object:
-        """What a parameter is set to; None where nothing sets it."""
-        given = self.values.get(name)
-        return given.value if given else None
-
-    def is_untold(self, name: str) -> bool:
-        """Does only a run tell what a parameter is set to, or if anything sets it?"""
-        return name in self.untold or (ANY_NAME in self.untold and name not in self.values)
 
 
 def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:

@@ -27,11 +27,10 @@ from multibot_rewrite.base.rosnames import (
 from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
-from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE, given_nodes, values_for
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch.deciding import as_named
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
@@ -50,11 +49,10 @@ from multibot_rewrite.producers.launch.records import (
     LaunchGraph,
     LaunchNote,
     ParameterText,
-    Rules,
-    RunningNode,
 )
 from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
+from multibot_rewrite.spelling.records import GivenNode, Rules, Run
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.ways import COSTMAP_HAS_RULES_OF_ITS_PARENT
 from multibot_rewrite.system.records import PUBLISHES, TOPIC
@@ -81,7 +79,7 @@ class Running(NamedTuple):
     """The nodes that a launch starts, hosted ones, controllers and plugins with them; what is not
     known; the descriptions, those on each topic, and what spawners load."""
 
-    nodes: tuple[RunningNode, ...]
+    nodes: tuple[Run, ...]
     notes: tuple[LaunchNote, ...]
     models: Models
     published: Mapping[str, str]
@@ -93,7 +91,7 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     spawned, notes = spawned_in(graph.nodes)
     started = [it for it in graph.nodes if not passes(it)]
     containers = {full_name(it, None): it for it in started}
-    found: list[RunningNode] = []
+    found: list[Run] = []
     for at, it in enumerate(started):
         found += _started(it, containers.get(it.container), f"{at}", known)
     unsure = (it for it in started if not it.name or it.later in AT_AN_END)
@@ -114,7 +112,7 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
         started += wanted
     found += _made_by_hardware(found, {it.topic: it.text for it in descriptions}, known)
     found += _clock(graph)
-    by_name = {it.full_name: it for it in found if it.facts and it.facts.known == MANAGER}
+    by_name = {it.full_name: it for it in found if it.fact.known == MANAGER}
     controllers = _controllers(spawned, by_name, started, known)
     alone = [it for it in spawned if it.manager not in by_name]
     nodes, more = (*found, *controllers), (*notes, *_without_manager(alone))
@@ -127,16 +125,16 @@ def _of_process(manager: LaunchedNode, first: dict[str, Rules]) -> LaunchedNode:
     return manager._replace(remappings=rules)
 
 
-def _apart(found: Sequence[RunningNode], unsure: Collection[str]) -> Iterator[RunningNode]:
+def _apart(found: Sequence[Run], unsure: Collection[str]) -> Iterator[Run]:
     """Two unknown programs whose name only their code has, or of which one starts when something has
     ended: that they share it is not known."""
     times = Counter(it.full_name for it in found)
     for it in found:
-        guessed = it.facts is None and it.full_name in unsure and times[it.full_name] > 1
+        guessed = not it.has_fact and it.full_name in unsure and times[it.full_name] > 1
         yield it._replace(name=f"{it.name}_{it.process}") if guessed else it
 
 
-def _descriptions(nodes: Iterable[RunningNode]) -> Iterator[Published]:
+def _descriptions(nodes: Iterable[Run]) -> Iterator[Published]:
     """The descriptions that launched nodes have as parameters."""
     for it in nodes:
         given = it.values.get(DESCRIPTION)
@@ -158,54 +156,69 @@ def _rule(text: str) -> RemapRule:
     return found
 
 
-def _plugins(model: Model) -> Iterator[RunningNode]:
+def _plugins(model: Model) -> Iterator[Run]:
     """The nodes of plugins in the simulator."""
     # Of gz the manager is the node of the plugin.
     nodes = [it for it in model.reading.nodes if it.manager != it.full_name]
-    facts = {fact.name: fact for fact, _ in plugin_nodes(model.reading, model.name)}
+    facts = {it.node: it.fact for it in plugin_nodes(model.reading, model.name)}
     for it in nodes:
         home, program = it.namespace or "/", it.section.names[0]
-        names = (it.name, home, tuple(rules_of(it)), (), home)
+        names = ("", it.name, home, it.name, tuple(rules_of(it)))
         # Of what only a remap rule names it is not known whether it is sent or read; what a plugin with
         # a manager publishes its controllers do.
         known = () if it.manager else tuple(end for end in facts[it.name].endpoints if end.role)
         own = facts[it.name]._replace(endpoints=known)
-        yield RunningNode(*names, own, {}, SIMULATED, (), program, model.place)
+        yield Run(
+            *names,
+            own,
+            process=SIMULATED,
+            process_namespace=home,
+            program=program,
+            place=model.place,
+        )
 
 
-def _helpers(model: Model, known: Knowledge) -> Iterator[RunningNode]:
+def _helpers(model: Model, known: Knowledge) -> Iterator[Run]:
     """The nodes that plugins make for themselves, without rules, beside the one that they load."""
     for it in (it for it in model.reading.nodes if it.helper):
         above, _, name = it.helper.rpartition("/")
-        home, facts = above or "/", known.nodes.get(name)
-        names = (name, home, (), (), home)
-        yield RunningNode(*names, facts, {}, SIMULATED, (), it.section.names[0], model.place)
+        home, fact = above or "/", known.nodes.get(name, UNKNOWN)
+        program = it.section.names[0]
+        yield Run(
+            *("", name, home, name, (), fact),
+            process=SIMULATED,
+            process_namespace=home,
+            program=program,
+            place=model.place,
+        )
 
 
 def _made_by_hardware(
-    nodes: Sequence[RunningNode], published: Mapping[str, str], known: Knowledge
-) -> Iterator[RunningNode]:
+    nodes: Sequence[Run], published: Mapping[str, str], known: Knowledge
+) -> Iterator[Run]:
     """Yield the nodes that the hardware of a description makes in the process of its manager: they have
     no name of their own in the launch file, so the rules of the whole process are theirs."""
     for it in nodes:
-        if it.facts is None or it.facts.known != MANAGER or it.process == SIMULATED:
+        if it.fact.known != MANAGER or it.process == SIMULATED:
             continue
         root = root_of(it.value(DESCRIPTION) or _described(it, published))
         facts = (
-            with_hardware((it.facts,), root, it.place.file, known.nodes) if root is not None else ()
+            with_hardware((it.fact,), root, it.place.file, known.nodes) if root is not None else ()
         )
         for one in facts[1:]:
-            names = (
-                one.name,
-                it.namespace,
-                it.process_rules,
-                it.process_rules,
-                it.process_namespace,
+            yield it._replace(
+                node=one.name,
+                name=one.name,
+                rules=it.process_rules,
+                fact=one,
+                values={},
+                arguments=(),
+                texts=(),
+                untold=(),
             )
-            yield RunningNode(*names, one, {}, it.process, (), it.program, it.place)
 
 
-def _described(manager: RunningNode, published: Mapping[str, str]) -> str:
+def _described(manager: Run, published: Mapping[str, str]) -> str:
     """Return the description on the topic of a manager, which is private in Humble; empty for none."""
     with suppress(UsageError):
         bound = bound_of(manager.name, manager.namespace, manager.rules)
@@ -214,7 +227,7 @@ def _described(manager: RunningNode, published: Mapping[str, str]) -> str:
     return ""
 
 
-def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:
+def _clock(graph: LaunchGraph) -> Iterator[Run]:
     """Gazebo Classic is a node that has the clock (gazebo_ros src/gazebo_ros_init.cpp); of gz a bridge
     passes it on."""
     classic = [it for it in graph.nodes if it.package == CLASSIC]
@@ -223,9 +236,14 @@ def _clock(graph: LaunchGraph) -> Iterator[RunningNode]:
     started = started or [it for it in classic if it.executable == _CLASSIC_SPAWNER]
     for it in [one for one in started if _has_clock(one.arguments)][:1]:
         clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
-        facts = NodeFacts("gazebo", it.package, (clock,))
-        names = (facts.name, "/", (), (), "/")
-        yield RunningNode(*names, facts, {}, SIMULATED, (), SIMULATOR, it.place)
+        fact = NodeFacts("gazebo", it.package, (clock,))
+        yield Run(
+            *("", fact.name, "/", fact.name, (), fact),
+            process=SIMULATED,
+            process_namespace="/",
+            program=SIMULATOR,
+            place=it.place,
+        )
 
 
 def _has_clock(words: Sequence[str]) -> bool:
@@ -240,7 +258,7 @@ def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
 
 def _started(
     it: LaunchedNode, container: LaunchedNode | None, process: str, known: Knowledge
-) -> Iterator[RunningNode]:
+) -> Iterator[Run]:
     """A launched node, and the nodes that its code makes in its process."""
     facts = known_node(it, (), known.nodes)
     name = full_name(it, facts)
@@ -252,43 +270,38 @@ def _started(
     hosted = {expand(n.name, it.namespace, ""): n for n in inside if facts and not n.is_controller}
     documents = [document_of(text.file, text.text) for text in it.parameters if has_sections(text)]
     handed_on = it.container and has_release(COSTMAP_HAS_RULES_OF_ITS_PARENT, known.release)
-    for full, own in {name: facts, **hosted}.items():
+    for full, own in {name: facts or UNKNOWN, **hosted}.items():
         above, _, last = full.rpartition("/")
         given = GivenNode(full.strip("/"), "", "", values_for(full, documents), it.place)
         rules = it.remappings if full == name or handed_on else home
         arguments = it.arguments if full == name else ()
-        yield RunningNode(
-            last,
-            above or "/",
-            rules,
-            home,
-            (container or it).namespace,
-            _with_values(own, given, arguments),
-            given.values,
-            it.container or process,
-            arguments,
-            f"{it.package}/{it.executable}",
-            it.place,
-            tuple(text.text for text in it.parameters if not has_sections(text)),
-            tuple(text.untold for text in it.parameters if text.untold),
+        yield Run(
+            *("", last, above or "/", last, rules, _with_values(own, given, arguments)),
+            process=it.container or process,
+            process_namespace=(container or it).namespace,
+            process_rules=home,
+            values=given.values,
+            texts=tuple(text.text for text in it.parameters if not has_sections(text)),
+            untold=tuple(text.untold for text in it.parameters if text.untold),
+            program=f"{it.package}/{it.executable}",
+            arguments=arguments,
+            place=it.place,
         )
 
 
-def _with_values(
-    facts: NodeFacts | None, given: GivenNode, words: Sequence[str] = ()
-) -> NodeFacts | None:
-    if facts is None:
-        return None
+def _with_values(facts: NodeFacts, given: GivenNode, words: Sequence[str] = ()) -> NodeFacts:
+    if facts == UNKNOWN:
+        return facts
     made = as_named(filled(facts, given)._replace(known=facts.kind), words, given.values)
     return with_static_transform(made, words)
 
 
 def _controllers(
     spawned: Sequence[Spawned],
-    managers: Mapping[str, RunningNode],
+    managers: Mapping[str, Run],
     started: Iterable[LaunchedNode],
     known: Knowledge,
-) -> Iterator[RunningNode]:
+) -> Iterator[Run]:
     """The controllers that spawners load into launched managers, where they are activated."""
     if not spawned:
         return
@@ -308,18 +321,14 @@ def _controllers(
         for it in {it.name: it for it in active}.values():
             mine = _given_to(it, given)
             wide = manager.rules if forwarded.of_manager else ()
-            yield RunningNode(
-                it.name,
-                manager.namespace,
-                (*wide, *it.rules),
-                (),
-                manager.namespace,
-                _with_values(known.nodes.get(mine.known), mine),
-                mine.values,
-                manager.process,
-                (),
-                mine.type or UNTYPED,
-                it.place,
+            fact = _with_values(known.nodes.get(mine.known, UNKNOWN), mine)
+            yield Run(
+                *("", it.name, manager.namespace, it.name, (*wide, *it.rules), fact),
+                process=manager.process,
+                process_namespace=manager.namespace,
+                values=mine.values,
+                program=mine.type or UNTYPED,
+                place=it.place,
             )
 
 

@@ -14,16 +14,15 @@ from contextlib import suppress
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import BoundNode, expand, resolve_bound
+from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.description.readback.xml import root_of
-from multibot_rewrite.knowledge.conditions import chosen_type
 from multibot_rewrite.knowledge.declared import is_known
-from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
 from multibot_rewrite.producers.launch.controls import interfaces_of
 from multibot_rewrite.producers.launch.deciding import as_heard, asks_who_listens
+from multibot_rewrite.producers.launch.domain_bridges import bridged_domains
 from multibot_rewrite.producers.launch.findings import STOOD_IN
 from multibot_rewrite.producers.launch.launched import Launched, models_in_simulator, sensors_of
 from multibot_rewrite.producers.launch.model_caveats import NOT_KNOWN, NOT_WHOLE, of_simulator
@@ -42,7 +41,7 @@ from multibot_rewrite.producers.launch.node_transforms import (
     publishes_a_tree,
     tree_of,
 )
-from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, RunningNode
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote
 from multibot_rewrite.producers.launch.running import (
     CLOCK_TYPE,
     DESCRIPTION,
@@ -54,11 +53,12 @@ from multibot_rewrite.producers.launch.running import (
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_on
 from multibot_rewrite.producers.transforms import lookups_of
+from multibot_rewrite.spelling.of_runs import ends_of, with_names
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
-    ACTION,
     PUBLISHES,
-    SERVICE,
+    RUNS,
     SIM_TIME,
     SUBSCRIBES,
     TOPIC,
@@ -99,7 +99,9 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     parts, refused = _parts(nodes, inside)
     of_plugins = sent_by_plugins(models.found)
     parts = [it._replace(edges=(*it.edges, *of_plugins.get(it.name, ()))) for it in parts]
-    more = (*_caveats((*graph.notes, *notes), nodes), *_of_bridges(nodes, inside))
+    bridged = bridged_domains(nodes)
+    every_note = (*graph.notes, *notes, *bridged.notes)
+    more = (*_caveats(every_note, nodes), *_of_bridges(nodes, inside))
     lost = of_simulator(graph, models)
     caveats = (*_stood_in(graph), *_refused(refused), *more, *lost)
     system = System(
@@ -114,13 +116,13 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
         interfaces=tuple(interfaces_of(nodes, published, graph)),
     )
     simulated = models_in_simulator(models, known.release)
-    found = Launched(graph, nodes, spawned, models, simulated, system, known.release)
+    found = Launched(graph, nodes, spawned, models, simulated, system, known.release, bridged)
     heard = [*_heard(nodes, sensors_of(simulated))]
     heard += _measured(parts, frames_of_plugins(models.found))
     return found._replace(system=system._replace(heard=tuple(heard)))
 
 
-def _parts(nodes: Sequence[RunningNode], inside: Sent) -> tuple[list[_Part], list[str]]:
+def _parts(nodes: Sequence[Run], inside: Sent) -> tuple[list[_Part], list[str]]:
     """What each node adds, and the nodes that rcl refuses. Some listen only where somebody listens to
     them: they are asked again until no topic has a new subscriber."""
     parts, refused = [], []
@@ -130,7 +132,7 @@ def _parts(nodes: Sequence[RunningNode], inside: Sent) -> tuple[list[_Part], lis
         except UsageError as error:
             refused.append(f"{it.full_name} ({it.place}: {error})")
             parts.append(_Part(it.full_name, (), ()))
-    lazy = [at for at, it in enumerate(nodes) if it.facts and asks_who_listens(it.facts)]
+    lazy = [at for at, it in enumerate(nodes) if asks_who_listens(it.fact)]
     lazy = [at for at in lazy if parts[at].endpoints]
     heard: Collection[str] = ()
     while lazy and heard != (now := frozenset(_read(parts))):
@@ -145,12 +147,12 @@ def _read(parts: Iterable[_Part]) -> Iterator[str]:
     yield from (it.name for part in parts for it in part.endpoints if it.role == SUBSCRIBES)
 
 
-def _listened_to(it: RunningNode, heard: Collection[str]) -> RunningNode:
+def _listened_to(it: Run, heard: Collection[str]) -> Run:
     bound = bound_of(it.name, it.namespace, it.rules)
-    return it._replace(facts=as_heard(it.facts, heard, bound) if it.facts else None)
+    return it._replace(fact=as_heard(it.fact, heard, bound))
 
 
-def _heard(nodes: Iterable[RunningNode], sensors: Sequence[SensorFrame]) -> Iterator[Heard]:
+def _heard(nodes: Iterable[Run], sensors: Sequence[SensorFrame]) -> Iterator[Heard]:
     """The frames of what bridges bring from sensors in the simulator."""
     for it in nodes:
         for end, inside in bridged_by(it):
@@ -170,16 +172,16 @@ def _measured(parts: Iterable[_Part], frames: Mapping[str, str]) -> Iterator[Hea
             yield Heard(end.name, frames[end.node])
 
 
-def _lookups(it: RunningNode) -> Iterator[Lookup]:
+def _lookups(it: Run) -> Iterator[Lookup]:
     """What a node asks of tf by its parameters, with what it puts before its frames."""
-    for asked in lookups_of(it.full_name, it.facts, it.values) if it.facts else ():
+    for asked in lookups_of(it.full_name, it.fact, it.values):
         yield asked._replace(frame=f"{prefix_of(it)}{asked.frame}")
 
 
-def _addresses(it: RunningNode, known: Knowledge, models: Models) -> Iterator[Address]:
+def _addresses(it: Run, known: Knowledge, models: Models) -> Iterator[Address]:
     """What a node has alone: by its parameters, and by the hardware of its description, if that is no
     model in a simulator."""
-    node = known.parameters.nodes.get(it.facts.known) if it.facts else None
+    node = known.parameters.nodes.get(it.fact.known)
     params = node.params if node else {}
     # One file is often given to all nodes; what these read is known, but for that of their plugins.
     whole = is_known(it.program.partition("/")[0])
@@ -191,10 +193,10 @@ def _addresses(it: RunningNode, known: Knowledge, models: Models) -> Iterator[Ad
         yield from of_hardware(root, it.full_name, it.place)
 
 
-def _nodes(running: Iterable[RunningNode], parts: Iterable[_Part]) -> Iterator[Node]:
+def _nodes(running: Iterable[Run], parts: Iterable[_Part]) -> Iterator[Node]:
     """The nodes, each with those that its code makes beside it (``Endpoint.by``)."""
     for it, part in zip(running, parts, strict=True):
-        known = it.facts.kind if it.facts else ""
+        known = it.fact.kind
         yield Node(part.name, it.process, place=it.place, known=known)
         own = dict.fromkeys(end.node for end in part.endpoints if end.node != part.name)
         yield from (Node(name, it.process, place=it.place, known=known) for name in own)
@@ -211,7 +213,7 @@ def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
         yield Caveat(REFUSED, True, text)
 
 
-def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Iterator[Caveat]:
+def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Caveat]:
     # What several nodes lack is said once, where the first one does.
     first: dict[str, Place] = {}
     for note in (it for it in notes if not it.fails):
@@ -232,26 +234,26 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Itera
         yield Caveat(NO_TREE, True, text)
 
 
-def _of_bridges(nodes: Sequence[RunningNode], inside: Sent) -> Iterator[Caveat]:
+def _of_bridges(nodes: Sequence[Run], inside: Sent) -> Iterator[Caveat]:
     bridges = [it.full_name for it in nodes if not {*_tf_topics(it)} <= inside.keys()]
     if bridges:
         text = f"the transforms that the simulator sends are not known: {shorten(bridges)}"
         yield Caveat(NOT_KNOWN, True, text)
 
 
-def _tf_topics(it: RunningNode) -> Iterator[str]:
+def _tf_topics(it: Run) -> Iterator[str]:
     """The topics in the simulator that a bridge passes on as transforms."""
     for end, inside in bridged_by(it):
         if (end.role, end.type) == (PUBLISHES, TF_TYPE):
             yield inside
 
 
-def _part(it: RunningNode, inside: Sent) -> _Part:
+def _part(it: Run, inside: Sent) -> _Part:
     bound = bound_of(it.name, it.namespace, it.rules)
     name = f"{bound.namespace.rstrip('/')}/{bound.node}"
-    helper = bound_of(it.name, it.process_namespace, it.process_rules)
-    own = _endpoints(it, name, bound, helper)
-    ends = [*own, *_bridged(it, name, bound)]
+    bound_of(it.name, it.process_namespace, it.process_rules)
+    own = () if is_bridge(it) else ends_of(with_names(it))
+    ends = [*(end for end in own if end.sure == RUNS), *_bridged(it, name, bound)]
     if it.value(SIM_TIME) is True and all(end.name != CLOCK for end in ends):
         ends.append(End(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
     return _Part(
@@ -259,42 +261,7 @@ def _part(it: RunningNode, inside: Sent) -> _Part:
     )
 
 
-def _endpoints(it: RunningNode, name: str, bound: BoundNode, helper: BoundNode) -> Iterator[End]:
-    for end in it.facts.endpoints if it.facts and not is_bridge(it) else ():
-        if not end.when and end.name and "<" not in end.name:
-            full = _full(it, end, helper if end.helper else bound)
-            type_ = chosen_type(end.types, it.value) or end.type
-            who = f"{name}{end.by}"
-            yield End(
-                end.kind, end.role, full, type_, "", who, None, it.process, code_name=end.name
-            )
-
-
-def _full(it: RunningNode, end: Endpoint, bound: BoundNode) -> str:
-    """The name that an endpoint has; that of one beside another is made of the other's
-    (image_transport camera_common.cpp getCameraInfoTopic)."""
-    if not end.beside:
-        return _resolved(end._replace(name=_below_namespace_above(it, end)), bound)
-    above = resolve_bound(end.beside, end.kind, bound).rpartition("/")[0]
-    return f"{above}/{end.name.rpartition('/')[2]}"
-
-
-def _below_namespace_above(it: RunningNode, end: Endpoint) -> str:
-    """The name of an endpoint that its node resolves in the namespace above its own, else its name."""
-    if not end.above or str(it.value(end.parameter) or "").startswith("/"):
-        return end.name
-    return expand(end.name.lstrip("/"), it.namespace.rpartition("/")[0] or "/", "")
-
-
-def _resolved(end: Endpoint, bound: BoundNode) -> str:
-    """An action is services and topics with names of their own; a rule for its name reaches none."""
-    if end.kind == ACTION:
-        part = resolve_bound(f"{end.name}/_action/send_goal", SERVICE, bound)
-        return part.removesuffix("/_action/send_goal")
-    return resolve_bound(end.name, end.kind, bound)
-
-
-def _bridged(it: RunningNode, name: str, bound: BoundNode) -> Iterator[End]:
+def _bridged(it: Run, name: str, bound: BoundNode) -> Iterator[End]:
     for end, _ in bridged_by(it):
         full = resolve_bound(end.name, end.kind, bound)
         yield End(end.kind, end.role, full, end.type, "", name, None, it.process)
@@ -317,7 +284,7 @@ def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
         yield edge._replace(topic=topic, publishers=unique(who), several=len(who) > 1)
 
 
-def _clocks(nodes: Iterable[RunningNode], notes: Iterable[LaunchNote]) -> Iterator[Parameter]:
+def _clocks(nodes: Iterable[Run], notes: Iterable[LaunchNote]) -> Iterator[Parameter]:
     """Simulated time by parameter; the default is false (rclcpp time_source.cpp), where all parameters
     are known; a value that only a run tells is untold. What sends transforms that hold for ever needs
     no time, and a bridge passes on the time that is in the data."""
@@ -336,6 +303,6 @@ def _clocks(nodes: Iterable[RunningNode], notes: Iterable[LaunchNote]) -> Iterat
             continue
         if untold:
             yield Parameter(it.full_name, SIM_TIME, UNTOLD)
-        elif it.facts is not None and it.facts.known not in ("", STATIC):
+        elif it.fact.known not in ("", STATIC):
             text = parameter_text(given is True)
             yield Parameter(it.full_name, SIM_TIME, text)

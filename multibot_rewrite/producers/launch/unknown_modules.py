@@ -11,9 +11,7 @@ from types import ModuleType
 from typing import Any, cast
 
 from multibot_rewrite.producers.launch.door import of_launch
-
-# For all names that something unknown may have.
-ANY_NAME = "*"
+from multibot_rewrite.system.parameters import ANY_NAME
 
 
 def add_unknown(name: str) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
-from multibot_rewrite.system.json_values import FARTHEST
+from multibot_rewrite.system.record_values import FARTHEST
 from multibot_rewrite.system.records import (
     EXPECTED,
     PUBLISHES,

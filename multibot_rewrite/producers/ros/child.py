@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from queue import SimpleQueue
-from typing import IO, cast
+from typing import IO
 
 from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.model import Unusable
@@ -27,9 +27,10 @@ from multibot_rewrite.producers.ros.request import (
     Request,
     to_text,
 )
-from multibot_rewrite.system.json import from_json, record_from
+from multibot_rewrite.system.json import from_json
 from multibot_rewrite.system.parameters import Answer
 from multibot_rewrite.system.questions import Question
+from multibot_rewrite.system.record_values import record_from
 from multibot_rewrite.system.records import UNKNOWN_NODE, ZENOH, Caveat, System
 
 INSTALL = (
@@ -169,8 +170,9 @@ def ask(
     with running(ASK, order, environ, seconds + SLACK_SECONDS) as child:
         data = child.next_message()
     assert data is not None
+    states: tuple[Answer, ...]
     states = record_from(tuple[Answer, ...], json.loads(data), "the answers of nodes")
-    return cast(tuple[Answer, ...], states)
+    return states
 
 
 @contextmanager

@@ -27,7 +27,7 @@ from multibot_rewrite.producers.rosgraph.messages import (
 from multibot_rewrite.producers.rosgraph.messages import (
     Node as NodeMessage,
 )
-from multibot_rewrite.system.json import record_from
+from multibot_rewrite.system.record_values import record_from
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,

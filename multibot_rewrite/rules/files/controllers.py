@@ -29,9 +29,9 @@ from multibot_rewrite.producers.evidence.moveit import (
     managers,
     names_of,
 )
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in, shown
 from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
 

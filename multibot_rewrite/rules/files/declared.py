@@ -12,7 +12,6 @@ from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
-from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.companions.params.sections import MANAGER, PARAMETERS
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.declared import (
@@ -29,6 +28,7 @@ from multibot_rewrite.rules.files.plugin_names import older_nodes
 from multibot_rewrite.rules.files.plugins import RENAMED
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.system.parameters import Value
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
 _EVERYWHERE = lazy_compile(

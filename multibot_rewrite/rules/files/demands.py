@@ -16,7 +16,6 @@ from multibot_rewrite.base.nearest import differ_in_numbers, slip_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.declared import DEMANDED
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -24,6 +23,7 @@ from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.rules.files.parameter_facts import of_release
 from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, filled, sections
+from multibot_rewrite.system.parameters import Value
 
 # What keeps a node from coming up in each release.
 _STOPS = ("instead", "period")

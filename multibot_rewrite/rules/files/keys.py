@@ -16,9 +16,9 @@ from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import ParamSection, flattened, is_for
 from multibot_rewrite.companions.yaml_text import line_of
-from multibot_rewrite.producers.evidence.records import Given
 from multibot_rewrite.rules.files.given import did_you_mean_at, given_in, is_in
 from multibot_rewrite.rules.files.records import Remark, remark, remark_at
+from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Place
 
 

@@ -13,8 +13,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.companions.params.rcl_parameters import Value
 from multibot_rewrite.knowledge.declared import Declared, declared_by, is_known
+from multibot_rewrite.system.parameters import Value
 
 DWB = "dwb_core::DWBLocalPlanner"
 MPPI = "nav2_mppi_controller::MPPIController"

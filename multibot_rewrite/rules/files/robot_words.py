@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.conventions import PARTS, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.lazy import lazy_compile
@@ -75,7 +75,7 @@ def _in_site(file: NamedFile, site: Site, declared: frozenset[str]) -> tuple[str
         return None
     if file.kind == RVIZ and name.count("/") < 3:
         return None
-    robot = next((it for it in sorted(file.robots) if f"/{it}/" in name), "")
+    robot = next((it for it in sorted(file.robots) if f"/{it}/" in name and _tells(it, name)), "")
     if not robot and site.kind not in GRAPH:
         robot = _glued(site.text, file.robots, declared)
     return (site.text, robot) if robot else None
@@ -95,11 +95,18 @@ def in_value(text: str, words: Collection[str], declared: frozenset[str]) -> tup
 def _at_an_end(token: str, words: Iterable[str]) -> str:
     """The robot that a name begins or ends with, or that is its model; empty for none."""
     name = token.strip("/")
-    ends = ((f"{it}/", f"/{it}", f"model/{it}/") for it in sorted(words))
+    told = (it for it in sorted(words) if _tells(it, name))
+    ends = ((f"{it}/", f"/{it}", f"model/{it}/") for it in told)
     for start, end, model in ends:
         if name.startswith(start) or name.endswith(end) or model in f"{name}/":
             return end[1:]
     return ""
+
+
+def _tells(word: str, name: str) -> bool:
+    """Does a robot's word that is a segment of a name tell of the robot? A word for parts of any robot
+    does where it is there twice: camera/image is a topic of every camera."""
+    return word not in PARTS or f"/{word}/{word}/" in f"/{name.strip('/')}/"
 
 
 def _glued(token: str, words: Iterable[str], declared: frozenset[str]) -> str:

@@ -17,7 +17,7 @@ from multibot_rewrite.companions.kinds import MOVEIT
 from multibot_rewrite.companions.moveit.file_kind import find_kind, parameter_above
 from multibot_rewrite.companions.moveit.rewrite import node_of
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.params.rcl_parameters import Value, value_of
+from multibot_rewrite.companions.params.rcl_parameters import value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
     RawSection,
@@ -29,6 +29,7 @@ from multibot_rewrite.knowledge.declared import EVERY_NODE, Declared, declared_b
 from multibot_rewrite.knowledge.parameters import KnownNode, built_in_nodes
 from multibot_rewrite.rules.files.parameter_facts import facts_of_node
 from multibot_rewrite.rules.files.plugins import plugins_in
+from multibot_rewrite.system.parameters import Value
 
 ASKED = "asked"
 _FLOAT = "tag:yaml.org,2002:float"

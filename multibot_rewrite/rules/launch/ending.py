@@ -16,8 +16,8 @@ from multibot_rewrite.base.rosnames import check_node_name
 from multibot_rewrite.producers.launch.bridges import refused_rows
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.programs import programs
-from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.rules.launch.declaration import at, launch_rule
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
 _NUMBERS = frozenset({"-x", "-y", "-z", "-R", "-P", "-Y"})
@@ -47,9 +47,9 @@ def ends(launched: Launched) -> Iterator[Finding]:
             yield from _described(node)
 
 
-def _described(it: RunningNode) -> Iterator[Finding]:
+def _described(it: Run) -> Iterator[Finding]:
     """An empty text is the output of a program that is not run here (producers/launch/commands.py)."""
-    is_one = it.facts is not None and it.facts.known == STATE_PUBLISHER
+    is_one = it.fact.known == STATE_PUBLISHER
     if not is_one or it.arguments or it.is_untold("robot_description"):
         return
     given = it.value("robot_description")

@@ -11,16 +11,16 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.producers.launch.launched import Launched
-from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.rules.launch.declaration import at, launch_rule
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 _KINDS = ("joint_state_publisher", "joint_state_publisher_gui")
 
 
-def read_by_joints(launched: Launched) -> Iterator[tuple[RunningNode, str]]:
+def read_by_joints(launched: Launched) -> Iterator[tuple[Run, str]]:
     """What each joint_state_publisher subscribes to."""
-    known = {it.full_name: it for it in launched.nodes if it.facts and it.facts.kind in _KINDS}
+    known = {it.full_name: it for it in launched.nodes if it.fact.kind in _KINDS}
     for end in launched.system.ends:
         if end.role == SUBSCRIBES and end.node in known:
             yield known[end.node], end.name

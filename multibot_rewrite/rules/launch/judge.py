@@ -3,27 +3,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.model import InputError
-from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.producers.launch.models import Model
 from multibot_rewrite.producers.launch.running import DESCRIPTION
-from multibot_rewrite.rules.launch import ending, joints, models, rows, started, words, world
+from multibot_rewrite.rules.launch import ending, joints, models, rows, started, world
+from multibot_rewrite.rules.launch import words as rules_of_words
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
     interface_not_exported,
 )
 from multibot_rewrite.rules.system.planned_nodes import missing_node
 from multibot_rewrite.rules.system.tf_pieces import is_sure, tf_tree_in_pieces
+from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import System
 
 CLAIMS = (interface_not_exported.code, interface_claimed_twice.code)
 _LEFT = "no node of its stack or file is started here: name the launch file that does, too"
-MODULES = (ending, joints, models, rows, started, words, world)
+MODULES = (ending, joints, models, rows, started, rules_of_words, world)
 
 
 def _rules() -> Iterator[Rule]:
@@ -47,8 +49,8 @@ def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
 
 
 def _is_moved(it: Finding, launched: Launched, seen: Index) -> bool:
-    """May a plugin of the model move the robot whose frames a finding names? Of a robot that is spawned
-    from another text than it publishes any such model may be the one."""
+    """Does a plugin of the model move the robot whose frames a finding names? Of a robot that is
+    spawned from another text than it publishes any such model may be the one."""
     models = [one for one in launched.models.found if one.spawned]
     edges = (one for one in seen.system.edges if not {one.parent, one.child}.isdisjoint(it.names))
     senders = [name for one in edges for name in one.publishers]
@@ -58,39 +60,52 @@ def _is_moved(it: Finding, launched: Launched, seen: Index) -> bool:
     own = {text for name in senders if (text := published.get(name))}
     found = [one for one in models if one.text in own]
     others = [one for one in models if not own or one.text not in published.values()]
-    return any(has_plugin(one.text.encode()) for one in found or others)
+    return any(_moves(one, launched, seen) for one in found or others)
+
+
+def _moves(model: Model, launched: Launched, seen: Index) -> bool:
+    """Has a model a plugin that is known to move it: one that takes velocities, sends odometry or has
+    controllers? A sensor does not; of a plugin that is not known nobody can say."""
+    nodes = model.reading.nodes
+    inside = (one for it in launched.simulated if it.text == model.text for one in it.topics)
+    orders = [(f"/{one.ros.lstrip('/')}", one.ros_type) for one in inside]
+    orders += [(end.full, end.type) for it in nodes for end in it.endpoints]
+    if any(it.manager or it.sends for it in nodes):
+        return True
+    return any(words.moves(seen.plain(name), type_) for name, type_ in orders)
 
 
 def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:
     """What is missing by a plan: a stack or parameter file of which the launch file starts no node for
     any robot is left to another one, as a vendor's bringup starts its own nodes."""
-    there = {it.name for it in seen.nodes}
-    begun = {it.stack or it.place.file for it in plan.nodes if it.name in there}
-    left = {it.name for it in plan.nodes if (it.stack or it.place.file) not in {*begun, ""}}
+    sources = {it.name: it.stack or it.place.file for it in plan.nodes}
+    begun = {"", *(sources.get(it.name, "") for it in seen.nodes)}
     for it in found:
-        is_left = it.code == missing_node.code and it.node in left
+        is_left = it.code == missing_node.code and _source(it.node, sources) not in begun
         yield it._replace(level=INCONCLUSIVE, hint=_LEFT) if is_left else it
 
 
-def has_plugin(description: bytes) -> bool:
-    """Has a description a plugin, which may move the robot in a simulator? Raises nothing."""
-    try:
-        return next(read_xml(description, "").iter("plugin"), None) is not None
-    except InputError:
-        return False
+def _source(node: str, sources: Mapping[str, str]) -> str:
+    """Return the stack or file of a planned node. One that a node makes for itself has that of its
+    maker, with whose name its own begins: /move_group_private_*."""
+    if source := sources.get(node, ""):
+        return source
+    makers = (it for it in sources if it != node and node.startswith(it))
+    return sources.get(max(makers, key=len, default=""), "")
 
 
-def placed(it: Finding, launched: Launched) -> Finding:
-    """A finding about a system where the launch file starts the node that it is about."""
-    if it.file:
-        return it
+def placed(findings: Iterable[Finding], launched: Launched) -> Iterator[Finding]:
+    """Yield findings about a system where the launch file starts the nodes that they are about."""
     nodes = {node.full_name: node.place for node in launched.nodes}
-    about = [it.node, *_ends(it, launched.system), *_of_robot(it.robot, nodes)]
-    place = next((nodes[name] for name in about if name in nodes), None)
-    if place is None or not place.file:
-        return it
-    hint = f"{it.hint}; started at {place}" if it.hint else f"started at {place}"
-    return it._replace(file=place.file, line=place.line, column=place.column or 1, hint=hint)
+    for it in findings:
+        about = chain((it.node,), _ends(it, launched.system), _of_robot(it.robot, nodes))
+        place = None if it.file else next((nodes[name] for name in about if name in nodes), None)
+        if place is None or not place.file:
+            yield it
+            continue
+        hint = f"{it.hint}; started at {place}" if it.hint else f"started at {place}"
+        line, column = place.line, place.column or 1
+        yield it._replace(file=place.file, line=line, column=column, hint=hint)
 
 
 def _ends(it: Finding, system: System) -> Iterator[str]:

@@ -7,6 +7,7 @@ src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import combinations
@@ -66,11 +67,16 @@ def _place_of(it: InSimulator) -> Iterator[tuple[float, ...]]:
 def shared_topic(launched: Launched) -> Iterator[Finding]:
     """Once for two models; transforms of all robots may have one topic."""
     models = launched.simulated
-    for one, other in combinations(models, 2):
-        if one.name == other.name:
-            continue
-        both = [it for it in _names(other) if it in set(_names(one))]
-        if both:
+    having: dict[str, list[int]] = defaultdict(list)
+    shared: dict[tuple[int, int], list[str]] = defaultdict(list)
+    for number, model in enumerate(models):
+        for name in dict.fromkeys(_names(model)):
+            for before in having[name]:
+                shared[before, number].append(name)
+            having[name].append(number)
+    for (first, second), both in sorted(shared.items()):
+        one, other = models[first], models[second]
+        if one.name != other.name:
             message = f"{other.name} and {one.name} both have gz topic {shorten(both)}"
             hint = f"give each description topics of its own; see {one.place}"
             yield at(shared_topic, other.place, message, hint, names=tuple(both))

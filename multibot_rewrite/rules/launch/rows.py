@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 
@@ -12,12 +13,12 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.producers.launch.bridges import bridged_by
 from multibot_rewrite.producers.launch.launched import Launched
-from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.running import bound_of
 from multibot_rewrite.rules.launch.declaration import (
     at,
     launch_rule,
 )
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 
 
@@ -27,7 +28,7 @@ class _Row(NamedTuple):
     ros: str
     gz: str
     inwards: bool
-    node: RunningNode
+    node: Run
 
 
 def _rows(launched: Launched) -> Iterator[_Row]:
@@ -56,8 +57,11 @@ def to_another_robot(launched: Launched) -> Iterator[Finding]:
     """By the names of the models, where they are in the names of their topics."""
     models = launched.simulated
     called = {it.name: {it.name, *it.words.get("-topic", "").split("/")} - {""} for it in models}
-    owners = {f"/{one.gz.lstrip('/')}": it.name for it in models for one in it.topics}
-    names = set(owners.values())
+    sent = {(f"/{one.gz.lstrip('/')}", it.name) for it in models for one in it.topics}
+    of_several = Counter(topic for topic, _ in sent)
+    # A topic that models share, such as one tf for all, is of none of them.
+    owners = {topic: name for topic, name in sent if of_several[topic] == 1}
+    names = {it.name for it in models if it.topics}
     rows = [it for it in _rows(launched) if owners.get(it.gz) and len(names) > 1]
     spaces = {word for it in launched.nodes for word in it.namespace.split("/") if word}
     usual = {_plain(it, owners[it.gz]) for it in rows if owners[it.gz] in it.ros.split("/")}

@@ -17,10 +17,8 @@ from multibot_rewrite.base.rosnames import expand, resolve_bound
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
-from multibot_rewrite.producers.evidence.records import GivenNode
 from multibot_rewrite.producers.launch import spawner_managers
 from multibot_rewrite.producers.launch.launched import Launched
-from multibot_rewrite.producers.launch.records import RunningNode
 from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_of
 from multibot_rewrite.rules.launch.declaration import (
     LAUNCH,
@@ -28,9 +26,13 @@ from multibot_rewrite.rules.launch.declaration import (
     launch_rule,
 )
 from multibot_rewrite.rules.launch.joints import read_by_joints
+from multibot_rewrite.spelling.records import GivenNode, Run
 from multibot_rewrite.system.records import SERVICE
 
-_START = "start ros2_control_node there, or load gz_ros2_control in the description"
+START_MANAGER = (
+    "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
+    "that starts it beside this one"
+)
 _CHANGE, _BOND = "/change_state", "bond"
 _UNSURE = "a node that is not known may; see what is incomplete"
 _ELSEWHERE = "name the launch file that does beside this one, if there is one"
@@ -69,7 +71,7 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
         if near := nearest(manager, there) or next(iter(there), ""):
             yield at(no_manager, mine[0].place, message, f"did you mean {near}?")
         elif described and _is_known(launched):
-            yield at(no_manager, mine[0].place, message, _START)
+            yield at(no_manager, mine[0].place, message, START_MANAGER)
         else:
             hint = _ELSEWHERE if _is_known(launched) else _UNSURE
             yield at(no_manager, mine[0].place, message, hint, level=INCONCLUSIVE)
@@ -80,8 +82,8 @@ no_manager = spawner_managers.NO_MANAGER._replace(
 )
 
 
-def _is(it: RunningNode, known: str) -> bool:
-    return it.facts is not None and it.facts.known == known
+def _is(it: Run, known: str) -> bool:
+    return it.fact.known == known
 
 
 def _is_known(launched: Launched) -> bool:
@@ -141,8 +143,8 @@ def no_joints(launched: Launched) -> Iterator[Finding]:
         return
     spawned = {(it.full_name, it.place) for it in launched.spawned}
     for it in launched.nodes:
-        facts = it.facts
-        if (it.full_name, it.place) not in spawned or facts is None or not facts.claims:
+        facts = it.fact
+        if (it.full_name, it.place) not in spawned or not facts.claims:
             continue
         if it.program == UNTYPED:
             continue
@@ -169,14 +171,14 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
     known = all(isinstance(it.value("node_names"), list) for it in managers)
     started = {it.full_name: it for it in launched.nodes}
     for it in launched.nodes if managers and known else ():
-        kind = it.facts.kind if it.facts else ""
+        kind = it.fact.kind
         if is_managed(kind) and not _activates_itself(it) and it.full_name not in listed:
             message = f"{it.full_name} is in the list of no lifecycle manager"
             hint = f"add it to node_names of {managers[0].full_name}"
             yield at(not_listed, it.place, message, hint)
     for name, manager in listed.items() if _is_known(launched) else ():
-        facts = started[name].facts if name in started else None
-        if facts and keeps_no_bond(facts) and manager.value("bond_timeout") != 0:
+        runs = started.get(name)
+        if runs and keeps_no_bond(runs.fact) and manager.value("bond_timeout") != 0:
             yield at(not_listed, manager.place, *said_of_bond(manager.full_name, name))
         if name not in started:
             near = nearest(name, started)
@@ -209,11 +211,11 @@ def is_managed(kind: str) -> bool:
     return kind in NAV2 and kind not in _SELF
 
 
-def _activates_itself(it: RunningNode) -> bool:
+def _activates_itself(it: Run) -> bool:
     return it.value("autostart_node") is True
 
 
-def _listed(it: RunningNode) -> Iterator[str]:
+def _listed(it: Run) -> Iterator[str]:
     """The nodes whose services a manager calls, which its rules may say
     (nav2_lifecycle_manager, lifecycle_service_client.cpp)."""
     names = it.value("node_names")

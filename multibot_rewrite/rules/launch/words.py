@@ -19,13 +19,14 @@ from multibot_rewrite.description.sources.packages import packages_below, source
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
-from multibot_rewrite.producers.launch.records import LaunchedNode, RunningNode
+from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.rules.launch.declaration import (
     LAUNCH,
     at,
     launch_rule,
 )
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table_checks import RULE_WITHOUT_NAME
 
 _ANGLES = ("--roll", "--pitch", "--yaw")
@@ -38,14 +39,14 @@ _TURN = 2 * pi
 def implausible(launched: Launched) -> Iterator[Finding]:
     """Each fault of each publisher."""
     for it in launched.nodes:
-        if it.facts is None or it.facts.known != STATIC:
+        if it.fact.known != STATIC:
             continue
         for message, hint in _faults(it):
             yield at(implausible, it.place, f"{it.full_name}: {message}", hint)
 
 
-def _faults(it: RunningNode) -> Iterator[tuple[str, str]]:
-    given = {one.parameter: one.default for one in it.facts.frames} if it.facts else {}
+def _faults(it: Run) -> Iterator[tuple[str, str]]:
+    given = {one.parameter: one.default for one in it.fact.frames}
     parent, child = (given.get(key, "") for key in ("frame_id", "child_frame_id"))
     if parent and parent == child:
         yield f"sends a transform from {parent} to itself", "name two different frames"
@@ -90,7 +91,7 @@ def _matches_nothing(launched: Launched) -> Iterator[Finding]:
     harm whose name, or what it makes of it, a parameter of the node has already."""
     for it in launched.nodes:
         above = f"{it.full_name.rpartition('/')[0]}/"
-        known = it.facts.endpoints if it.facts else ()
+        known = it.fact.endpoints
         names = [end.name.removeprefix(above).lstrip("/~") for end in known]
         for old, new in it.rules:
             bare = old.lstrip("/~")
@@ -148,7 +149,7 @@ def _is_ours(path: str) -> bool:
     return os.path.isdir(folder) and folder not in _TEMPORARY
 
 
-def _files(it: RunningNode) -> Iterator[str]:
+def _files(it: Run) -> Iterator[str]:
     values = (str(it.values[name].value) for name in _NAMED if name in it.values)
     yield from (path for path in values if os.path.isabs(path) and _is_ours(path))
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping, Set
 from fnmatch import translate
 from math import inf
 
@@ -13,10 +13,10 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.system.index import Index, nodes_of
+from multibot_rewrite.system.index import Index, nodes_of, once
 from multibot_rewrite.system.parameters import parameter_text
-from multibot_rewrite.system.records import SIM_TIME, TOPIC, without_clock
-from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
+from multibot_rewrite.system.records import PUBLISHES, SIM_TIME, TOPIC, without_clock
+from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 # They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
 _TIMED = (
@@ -28,6 +28,7 @@ _TIMED = (
 _IS_TIMED = lazy_compile("|".join(map(translate, _TIMED)))
 
 _TYPE = "rosgraph_msgs/msg/Clock"
+_SENT = (TOPIC, PUBLISHES, CLOCK)
 
 
 @system_rule("MG501", "no-clock", ERROR, absence=True)
@@ -57,7 +58,7 @@ def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
     ends = seen.by_name.get((TOPIC, CLOCK))
     found: dict[str, list[str]] = defaultdict(list)
     for node in nodes_of(ends.subscribers) if ends else ():
-        if not is_viewer(node) and not is_tool(node):
+        if not is_viewer(node) and not seen.is_tool(node):
             found[seen.robot(node)].append(node)
     return found
 
@@ -76,11 +77,20 @@ def two_clocks(seen: Index) -> Iterator[Finding]:
 
 def _times(seen: Index, node: str) -> int:
     """How many nodes of a name publish the clock; all of them where their processes are not known."""
-    processes = {it.process for it in seen.system.nodes if it.name == node}
+    processes = _processes(seen)[node]
     if "" in processes or len(processes) < seen.nodes.get(node, 0):
         return seen.nodes.get(node, 0)
-    ends = seen.by_name[TOPIC, CLOCK].publishers
-    return len({it.process for it in ends if it.node == node} & processes)
+    ends = (it for it in seen.by_node[node] if (it.kind, it.role, it.name) == _SENT)
+    return len({it.process for it in ends} & processes)
+
+
+@once
+def _processes(seen: Index) -> Mapping[str, Set[str]]:
+    """The processes of all nodes of a name."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for it in seen.system.nodes:
+        found[it.name].add(it.process)
+    return found
 
 
 @system_rule("MG504", "clock-stands-or-goes-back", ERROR, absence=True)
@@ -115,13 +125,16 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
     untold = without_clock(seen.system)
     asked = {node for node in seen.nodes if _is_timed(node) and node not in untold}
     timed = asked - planned_clocks(seen).keys()
-    for robot in dict.fromkeys(map(seen.robot, sorted(timed))):
-        own = [node for node in sorted(timed) if seen.robot(node) == robot]
+    first, their = min(simulated), {*map(seen.robot, simulated)}
+    by_robot: dict[str, list[str]] = defaultdict(list)
+    for node in sorted(timed):
+        by_robot[seen.robot(node)].append(node)
+    for robot, own in by_robot.items():
         others = [node for node in own if node not in simulated]
-        if others and robot in map(seen.robot, simulated):
-            yield _mixed(robot, others, sorted(simulated & set(own)) or sorted(simulated))
+        if others and robot in their:
+            yield _mixed(robot, others, next((it for it in own if it in simulated), first))
         elif others and robot:
-            yield _real_beside_simulated(robot, others, simulated)
+            yield _real_beside_simulated(robot, others, first)
 
 
 def planned_clocks(seen: Index) -> dict[str, str]:
@@ -153,14 +166,14 @@ def _is_timed(node: str) -> bool:
     return not is_viewer(node) and bool(_IS_TIMED.fullmatch(last_word(node)))
 
 
-def _mixed(robot: str, others: list[str], simulated: list[str]) -> Finding:
-    message = f"not on simulated time, as {simulated[0]} is: {shorten(others)}"
+def _mixed(robot: str, others: list[str], simulated: str) -> Finding:
+    message = f"not on simulated time, as {simulated} is: {shorten(others)}"
     cause = "set use_sim_time: true for all nodes of the robot"
     return clocks_mixed.finding(message, cause, robot=robot, node=others[0], names=(CLOCK,))
 
 
-def _real_beside_simulated(robot: str, others: list[str], simulated: Iterable[str]) -> Finding:
-    message = f"{robot} is on the machine's time, {min(simulated)} on simulated time"
+def _real_beside_simulated(robot: str, others: list[str], simulated: str) -> Finding:
+    message = f"{robot} is on the machine's time, {simulated} on simulated time"
     cause = f"a real robot beside a simulation? Else set use_sim_time: true for {robot}"
     return clocks_mixed.finding(
         message, cause, level=WARNING, robot=robot, node=others[0], names=(CLOCK,)

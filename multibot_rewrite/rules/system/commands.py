@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import (
     EVERYBODYS,
@@ -20,9 +20,9 @@ from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.matching import STAMPED
 from multibot_rewrite.rules.system.names import ABSENT, nobody_in
 from multibot_rewrite.rules.system.sharing import own_namespace
-from multibot_rewrite.rules.system.slips import alike
+from multibot_rewrite.rules.system.slips import Spelled, alike
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, robots_of
+from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, RUNS, SUBSCRIBES, TOPIC, End
 from multibot_rewrite.system.tool_nodes import is_hidden, is_tool, is_viewer, last_word
 
@@ -59,15 +59,19 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
 def command_to_nobody(seen: Index) -> Iterator[Finding]:
     """Where the other name has no sender, its reader is the finding, but for the drive beside a
     twist_mux: what it chooses is meant for the drive. What RViz offers is a note."""
-    obeyed = defaultdict(list)
+    obeyed, plainly = defaultdict(list), defaultdict(list)
     unread = {name: it for name, it in seen.orders.items() if it.publishers and not _obeyed(it)}
     for (kind, name), ends in seen.by_name.items() if unread else ():
         if kind == TOPIC and ends.publishers and _obeyed(ends):
             obeyed[ends.type].append(name)
+            plainly[ends.type, seen.plain(name)].append(name)
+    spelled: dict[str, Spelled] = {}
     for name, ends in unread.items():
         same = obeyed[ends.type]
-        robots = [it for it in same if seen.plain(it) == name]
-        meant = next(iter(robots), "") or alike(name, same, ends.type) or _of_a_mux(seen, ends)
+        robots = plainly[ends.type, name]
+        spelled[ends.type] = spelled.get(ends.type) or Spelled(same)
+        near = next(iter(robots), "") or alike(name, spelled[ends.type], ends.type)
+        meant = near or _of_a_mux(seen, ends)
         meant = meant or _of_a_person(seen, ends, same)
         if meant:
             yield _unread(seen, ends, meant, len(robots))
@@ -87,15 +91,11 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
     of_nav2 = kinds == {_VELOCITY} and any(team(it) != it for it in nodes_of(ends.publishers))
     if not (chosen or of_nav2):
         return ""
-    moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
-    # Who sends velocities of its own is no drive.
-    senders = {node for it in moving for node in nodes_of(it.publishers)}
-    asked = (it for it in moving if it.publishers or not is_from_outside(it.name))
-    relays = senders.intersection(node for it in asked for node in nodes_of(it.subscribers))
+    senders, relays, moving = _moving(seen)
     drives = [
         it
-        for it in moving
-        if seen.robot(it.name) == robot and kinds & _kinds(it)
+        for it in moving.get(robot, ())
+        if kinds & _kinds(it)
         if not senders.issuperset(nodes_of(at_work(it.subscribers)))
         # What a drive gets by way of another node may be meant, and what is chosen for it as well.
         if relays.isdisjoint(nodes_of(it.publishers))
@@ -104,6 +104,29 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
         if chosen or it.publishers or not any(map(_waits_for_sure, it.subscribers))
     ]
     return min(drives, key=lambda it: bool(it.publishers)).name if drives else ""
+
+
+@once
+def _moving(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends]]]:
+    """Who sends velocities, and so is no drive; who reads them, too; the velocities of each robot."""
+    moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
+    senders = {it.node for ends in moving for it in ends.publishers}
+    asked = (it for it in moving if it.publishers or not is_from_outside(it.name))
+    relays = senders.intersection(it.node for ends in asked for it in ends.subscribers)
+    found: dict[str, list[Ends]] = defaultdict(list)
+    for it in moving:
+        found[seen.robot(it.name)].append(it)
+    return senders, relays, found
+
+
+@once
+def _goals(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
+    """The orders that somebody obeys, by type and robot."""
+    found: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for it in seen.orders.values():
+        if _obeyed(it):
+            found[it.type, seen.robot(it.name)].append(it.name)
+    return found
 
 
 def _waits_for_sure(end: End) -> bool:
@@ -123,11 +146,10 @@ def _of_a_person(seen: Index, ends: Ends, same: Sequence[str]) -> str:
         if not any(_BY_HAND.search(it) for it in nodes_of(ends.publishers)):
             return ""
         # What one node of Nav2 hands to the next is no drive's.
-        same = [it for it in same if not _is_in_a_chain(seen.by_name[TOPIC, it])]
+        own = [it for it in same if seen.robot(it) == robot]
+        own = [it for it in own if not _is_in_a_chain(seen.by_name[TOPIC, it])]
     else:
-        obeyed = (it for it in seen.orders.values() if it.type == ends.type and _obeyed(it))
-        same = [it.name for it in obeyed]
-    own = [it for it in same if seen.robot(it) == robot]
+        own = [*_goals(seen).get((ends.type, robot), ())]
     return own[0] if len(own) == 1 else ""
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -12,7 +12,7 @@ from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import DOES
 from multibot_rewrite.rules.system.planned_nodes import is_absent
-from multibot_rewrite.system.index import Index, ends_of
+from multibot_rewrite.system.index import Index, ends_of, once
 from multibot_rewrite.system.records import SERVES, SERVICE, TOPIC, Topic
 
 # How the nodes of ros_gz_bridge are called.
@@ -102,8 +102,18 @@ def _not_carried(
 
 
 def _bridges_there(plan: Index, seen: Index, robot: str) -> str:
-    bridges = [it for it in seen.nodes if it.rpartition("/")[2].endswith(_BRIDGES)]
-    own = [it for it in bridges if plan.robot(it) == robot] or bridges
+    bridges = _bridges(plan, seen)
+    own = bridges.get(robot) or [it for of_one in bridges.values() for it in of_one]
     if not own:
         return "no ros_gz_bridge is in the graph: start one with the robot's bridge.yaml"
     return f"add the row to the file of {shorten(own)}"
+
+
+@once
+def _bridges(plan: Index, seen: Index) -> Mapping[str, Sequence[str]]:
+    """The bridges that run, by their robot."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for it in seen.nodes:
+        if it.rpartition("/")[2].endswith(_BRIDGES):
+            found[plan.robot(it)].append(it)
+    return found

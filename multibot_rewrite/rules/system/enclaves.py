@@ -16,13 +16,21 @@ from multibot_rewrite.system.index import Index
 @system_rule("MG112", "enclave-of-another-robot", ERROR, drawn="cross-talk")
 def enclave_of_another_robot(seen: Index) -> Iterator[Finding]:
     """By the robots' names in the path of the enclave."""
+    robots = {*seen.robots}
     for name, enclave in dict.fromkeys((it.name, it.enclave) for it in seen.system.nodes):
         robot = seen.robot(name) if enclave else ""
         if not robot or _is_of(enclave, robot):
             continue
-        if other := next((it for it in seen.robots if _is_of(enclave, it)), ""):
+        if other := min((it for it in _parts(enclave) if it in robots), default=""):
             message = f"{name} is in the enclave {enclave}, which is of {other}"
             yield enclave_of_another_robot.finding(message, _start(robot), robot=robot, node=name)
+
+
+def _parts(enclave: str) -> Iterator[str]:
+    """The words of a path one after the other, as many as a robot's name may have."""
+    words = enclave.strip("/").split("/")
+    for start in range(len(words)):
+        yield from ("/".join(words[start:end]) for end in range(start + 1, len(words) + 1))
 
 
 def _is_of(enclave: str, robot: str) -> bool:

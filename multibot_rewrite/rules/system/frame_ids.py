@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cache, partial
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -13,7 +13,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import where
-from multibot_rewrite.system.index import Index, Tree, robots_of, sent_on
+from multibot_rewrite.system.index import Index, Tree, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
 from multibot_rewrite.system.records import NOWHERE, Edge, Heard, Place
 
@@ -66,18 +66,16 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
 @system_rule("MG412", "frame-id-unknown", ERROR, absence=True)
 def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     """Where no transform was received at all nothing is known; others say that."""
-    frames = {tree.topic: frames_in(tree.edges) for tree in seen.trees}
-    heard_by = cache(
-        lambda robot: {it for tree in trees_of(seen, robot) for it in frames[tree.topic]}
-    )
+    frames = _by_topic(seen)
     yield from _nameless(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
-        heard = heard_by(robot)
-        if not heard or frame in heard or _is_of_another(seen, frame, robot, messages):
+        heard = [frames[it.topic] for it in trees_of(seen, robot) if it.edges]
+        there = not heard or any(frame in it.get(seen.frame_robot(frame), ()) for it in heard)
+        if there or _is_of_another(seen, frame, robot, messages):
             continue
-        own = [it for it in heard if seen.frame_robot(it) in ("", robot)]
+        own = sorted({it for tree in heard for who in ("", robot) for it in tree.get(who, ())})
         meant = _meant(seen, frame, own)
-        elsewhere = [topic for topic, it in frames.items() if frame in it]
+        elsewhere = _where(seen).get(frame, ())
         topics = shorten([it.topic for it in messages])
         yield frame_id_unknown.finding(
             f"{messages[0].field} of {topics} is {frame}, which is in no transform of"
@@ -114,14 +112,56 @@ def _robot_of_joint(seen: Index, joint: str) -> str:
     """The robot whose name a joint has, as its frames have it, or as its own messages do."""
     if found := seen.frame_robot(joint):
         return found
-    named = (
+    named = [
         it
-        for it in seen.robots
-        for mark in SEPARATORS
-        if joint.startswith(f"{it}{mark}") or joint.endswith(f"{mark}{it}")
-    )
-    own = {seen.robot(it.topic) for it in seen.system.heard if joint in it.joints}
-    return next((it for it in named if it in own), "")
+        for it in _that_send(seen).get(joint, ())
+        if any(joint.startswith(f"{it}{m}") or joint.endswith(f"{m}{it}") for m in SEPARATORS)
+    ]
+    return min(filter(None, named), default="")
+
+
+@once
+def _that_send(seen: Index) -> Mapping[str, Set[str]]:
+    """The robots on whose topics each joint is."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for it in seen.system.heard:
+        for joint in it.joints:
+            found[joint].add(seen.robot(it.topic))
+    return found
+
+
+@once
+def _by_topic(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
+    """The frames of each tree, by their robot."""
+    found: dict[str, dict[str, set[str]]] = {}
+    for tree in seen.trees:
+        own = found.setdefault(tree.topic, defaultdict(set))
+        for it in frames_in(tree.edges):
+            own[seen.frame_robot(it)].add(it)
+    return found
+
+
+@once
+def _where(seen: Index) -> Mapping[str, Sequence[str]]:
+    """The topics that each frame is on."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for tree in seen.trees:
+        for it in frames_in(tree.edges):
+            found[it].append(tree.topic)
+    return found
+
+
+@once
+def _senders_of(seen: Index) -> Mapping[str, str]:
+    """The node that sends a frame, of the first tree in which one alone does."""
+    edges = [it for tree in seen.trees for it in tree.edges if len(it.publishers) == 1]
+    return {it.child: it.publishers[0] for it in reversed(edges)}
+
+
+@once
+def _nodes_by_robot(seen: Index) -> Mapping[tuple[str, str], str]:
+    """The first node of a robot and name without the robot's."""
+    return {(seen.robot(it), seen.plain(it)): it for it in reversed([*seen.nodes])}
 
 
 def _nameless(seen: Index) -> Iterator[Finding]:
@@ -162,11 +202,9 @@ def _remedy(senders: Sequence[str], meant: Sequence[str]) -> str:
 
 def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -> str:
     """Which node of another robot sends it, and what this robot has of that kind; else where it is."""
-    edges = (edge for tree in seen.trees for edge in tree.edges if edge.child == frame)
-    there = next((it.publishers[0] for it in edges if len(it.publishers) == 1), "")
+    there = _senders_of(seen).get(frame, "")
     if there and robot and seen.robot(there):
-        wanted = robot, seen.plain(there)
-        mine = next((it for it in seen.nodes if (seen.robot(it), seen.plain(it)) == wanted), "")
+        mine = _nodes_by_robot(seen).get((robot, seen.plain(there)), "")
         remedy = f"see the log of {mine}" if mine else f"start such a node for {robot}"
         return f"{there} sends it on its own tf: {remedy}"
     if elsewhere:
@@ -181,7 +219,7 @@ def _meant(seen: Index, frame: str, own: Sequence[str]) -> list[str]:
 
 
 def _alike(frame: str, own: Sequence[str]) -> list[str]:
-    found = nearest(frame, sorted(own), MISTYPED)
+    found = nearest(frame, own, MISTYPED)
     return [found] if found else []
 
 
@@ -226,12 +264,18 @@ def trees_of(seen: Index, robot: str) -> list[Tree]:
     """The trees that a robot gets: on its own topic, on one of all robots, where its nodes are."""
     if not robot:
         return list(seen.trees)
-    return [
-        it
-        for it in seen.trees
-        if seen.robot(it.topic) in ("", robot)
-        or robot in robots_of(seen, (*it.senders, *it.listeners))
-    ]
+    found = _trees_by_robot(seen)
+    return [seen.trees[it] for it in sorted({*found.get("", ()), *found.get(robot, ())})]
+
+
+@once
+def _trees_by_robot(seen: Index) -> Mapping[str, Set[int]]:
+    """The places of the trees on a robot's own topic or at its nodes; of those of all by ""."""
+    found: dict[str, set[int]] = defaultdict(set)
+    for at, it in enumerate(seen.trees):
+        for robot in (seen.robot(it.topic), *robots_of(seen, (*it.senders, *it.listeners))):
+            found[robot].add(at)
+    return found
 
 
 def frames_in(edges: Iterable[Edge]) -> set[str]:

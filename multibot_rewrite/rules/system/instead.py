@@ -6,13 +6,13 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import chooses, is_from_outside, team
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import Ends, Index, at_work, ends_of, once
+from multibot_rewrite.system.index import Ends, Index, at_work, ends_of, once, spaces
 from multibot_rewrite.system.records import CALLS, RUNS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
@@ -135,7 +135,9 @@ def _data(seen: Index, end: End) -> Ends | None:
     # One that merges need not have all; what is not the robot's own may be of nobody's.
     if _has_another(seen, end) or seen.robot(end.name) != seen.robot(end.node):
         return None
-    given = [it for it in _sent(seen).get(kind, ()) if _is_offered(seen, it, end)] if kind else []
+    mine = seen.robot(end.node) or seen.robot(end.name)
+    sent = _sent(seen).get((kind, mine), ()) if kind else ()
+    given = [it for it in sent if _is_offered(seen, it, end)]
     # A second camera that is off is no other name of the first one.
     given = [it for it in given if _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)]
     unread = [it for it in given if not at_work(it.subscribers)]
@@ -149,13 +151,17 @@ def _data(seen: Index, end: End) -> Ends | None:
 
 def _has_another(seen: Index, end: End) -> bool:
     """Does its node read something else of that type, which is sent?"""
-    return any(
-        it.role == SUBSCRIBES
-        and (it.type, it.kind) == (end.type, end.kind)
-        and it.name != end.name
-        and seen.by_name[it.kind, it.name].publishers
-        for it in seen.by_node[end.node]
-    )
+    return bool(_read(seen).get((end.node, end.kind, end.type), set()) - {end.name})
+
+
+@once
+def _read(seen: Index) -> Mapping[tuple[str, str, str], Set[str]]:
+    """What a node reads of a kind and type, and somebody sends."""
+    found: dict[tuple[str, str, str], set[str]] = defaultdict(set)
+    for ends in seen.by_name.values():
+        for it in ends.subscribers if ends.publishers else ():
+            found[it.node, it.kind, it.type].add(it.name)
+    return found
 
 
 def _only(given: Sequence[Ends]) -> Ends | None:
@@ -179,12 +185,13 @@ def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
 
 
 @once
-def _sent(seen: Index) -> Mapping[str, Sequence[Ends]]:
-    """The topics with a publisher, by the kind of their data."""
-    found: dict[str, list[Ends]] = defaultdict(list)
+def _sent(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
+    """The topics with a publisher, by the kind of their data and the robots of these."""
+    found: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     for it in seen.topics:
-        if it.publishers and (kind := words.kind_of_data(it.name, it.type)):
-            found[kind].append(it)
+        kind = words.kind_of_data(it.name, it.type) if it.publishers else ""
+        for robot in {seen.robot(one.node) for one in it.publishers} if kind else ():
+            found[kind, robot].append(it)
     return found
 
 
@@ -192,7 +199,7 @@ def _served(seen: Index, end: End) -> Iterator[Ends]:
     """Services and actions of its type that nobody calls, in its robot; of a type that many have, with
     its last word."""
     robot, last = seen.robot(end.node), last_word(end.name)
-    for it in _servers(seen).get((end.kind, end.type), ()):
+    for it in _servers(seen).get((end.kind, end.type, robot), ()):
         own = any(one.node != end.node and seen.robot(one.node) == robot for one in it.servers)
         common = end.type.startswith(COMMON)
         same = last == last_word(it.name) or _words(seen, it.name) == _words(seen, end.name)
@@ -202,11 +209,22 @@ def _served(seen: Index, end: End) -> Iterator[Ends]:
 
 
 @once
-def _servers(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
-    found: dict[tuple[str, str], list[Ends]] = defaultdict(list)
+def _servers(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
+    """What is served, by its kind, its type and the robots of its servers."""
+    found: dict[tuple[str, str, str], list[Ends]] = defaultdict(list)
     for it in seen.by_name.values():
-        if it.servers:
-            found[it.kind, it.type].append(it)
+        for robot in {seen.robot(one.node) for one in it.servers}:
+            found[it.kind, it.type, robot].append(it)
+    return found
+
+
+@once
+def _nobodys(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
+    """What is served under a name without a robot, by its kind, its type and its last word."""
+    found: dict[tuple[str, str, str], list[Ends]] = defaultdict(list)
+    for it in seen.by_name.values():
+        if it.servers and not seen.robot(it.name):
+            found[it.kind, it.type, last_word(it.name)].append(it)
     return found
 
 
@@ -220,16 +238,13 @@ def _nearest(end: End, given: Sequence[Ends]) -> Ends | None:
 def in_other_namespace(seen: Index, end: End) -> str:
     """What a robot without a name serves, where the client has a namespace too many or lacks one that
     has no node; empty for none."""
-    for it in _servers(seen).get((end.kind, end.type), ()) if not seen.robot(end.name) else ():
+    known = _nobodys(seen).get((end.kind, end.type, last_word(end.name)), ())
+    for it in () if seen.robot(end.name) else known:
         short, long = sorted((it.name, end.name), key=len)
         space = long.removesuffix(short)
-        if space != long and not seen.robot(it.name) and not _is_lived_in(seen, space):
+        if space != long and space not in spaces(seen) and space not in seen.nodes:
             return it.name
     return ""
-
-
-def _is_lived_in(seen: Index, space: str) -> bool:
-    return space in seen.nodes or any(it.startswith(f"{space}/") for it in seen.nodes)
 
 
 def listed_in_vain(seen: Index, end: End) -> str:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
@@ -15,7 +15,7 @@ from multibot_rewrite.rules.system.states import ACTIVE
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import Index, Tree
+from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.records import OFF, SUBSCRIBES, TOPIC, End
 
 _MAP = "map"
@@ -82,7 +82,12 @@ def _is_of(seen: Index, frame: str, robot: str) -> bool:
 
 
 def _is_told_not_to(seen: Index, node: str) -> bool:
-    return any(it.sure == OFF and node in it.publishers for it in seen.system.edges)
+    return node in _told_not_to(seen)
+
+
+@once
+def _told_not_to(seen: Index) -> Set[str]:
+    return {node for it in seen.system.edges if it.sure == OFF for node in it.publishers}
 
 
 def _lost(seen: Index, tree: Tree, node: str, body: _Body) -> Finding:

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses, is_from_outside, team
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
@@ -18,8 +19,17 @@ from multibot_rewrite.rules.system.instead import (
     listed_in_vain,
     sent_instead,
 )
-from multibot_rewrite.rules.system.slips import alike
-from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
+from multibot_rewrite.rules.system.slips import NONE, Spelled, alike
+from multibot_rewrite.system.index import (
+    TF,
+    Ends,
+    Index,
+    at_work,
+    nodes_of,
+    once,
+    robots_of,
+    spaces,
+)
 from multibot_rewrite.system.records import (
     ACTION,
     RUNS,
@@ -85,31 +95,53 @@ def _published_instead(
     robot, owner = seen.robot(end.node), seen.robot(end.name)
     if not owner and robot:
         # Its own robot has it: whether or not others read it as well.
-        own = [it for it in published if seen.robot(it) == robot and seen.plain(it) == end.name]
+        own = (it for it in _by_plain(seen).get((robot, end.name), ()) if it in published)
         return next((it for it in own if published[it].type == end.type), "")
     if not owner and (mine := _of_a_robot_without(seen, end, published)):
         return mine
-    same = [
-        it.name
-        for it in _published(seen).get(end.type, ())
-        if it.name in published and nodes_of(it.publishers) != (end.node,)
-    ]
-    below = _without_own_name(end)
-    hidden = (it for it in same if it == below or _hides(published[it], end.name))
-    unheard_one = next((it for it in hidden if it in unheard), "")
-    if unheard_one:
-        return unheard_one
-    bare = (it for it in same if owner and not seen.robot(it) and it == seen.plain(end.name))
-    unread = (it for it in bare if it in unheard)
-    return next(unread, "") or alike(end.name, same, end.type)
+
+    def is_of_another(it: str) -> bool:
+        return it in published and nodes_of(published[it].publishers) != (end.node,)
+
+    bare = seen.plain(end.name)
+    hidden = [_without_own_name(end), *_hiding(seen, end.name)]
+    hidden += [bare] if owner and not seen.robot(bare) else []
+    same = (it for it in hidden if it in unheard and unheard[it].type == end.type)
+    if found := next(filter(is_of_another, same), ""):
+        return found
+    return alike(end.name, _spelled(seen).get(end.type, NONE), end.type, is_of_another)
+
+
+@once
+def _spelled(seen: Index) -> Mapping[str, Spelled]:
+    """The published topics by their type, to be found by a name that is nearly theirs."""
+    return {type_: Spelled(it.name for it in own) for type_, own in _published(seen).items()}
 
 
 def _of_a_robot_without(seen: Index, end: End, published: Mapping[str, Ends]) -> str:
     """The topic of the one robot that lacks a node of this name, which runs without a namespace."""
-    there = {seen.robot(it) for it in seen.nodes if seen.plain(it) == end.node}
-    without = [it for it in seen.robots if it not in there]
-    name = f"/{without[0]}{end.name}" if len(without) == 1 and len(there) > 1 else ""
+    there = _with_node(seen).get(end.node, set())
+    without = [it for it in seen.robots if it not in there] if len(there) > 1 else []
+    name = f"/{without[0]}{end.name}" if len(without) == 1 else ""
     return name if name in published and published[name].type == end.type else ""
+
+
+@once
+def _with_node(seen: Index) -> Mapping[str, Set[str]]:
+    """The robots that have a node, by its name without theirs."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for it in seen.nodes:
+        found[seen.plain(it)].add(seen.robot(it))
+    return found
+
+
+@once
+def _by_plain(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
+    """The published topics of each robot, by their name without it."""
+    found: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for it in (one for own in _published(seen).values() for one in own):
+        found[seen.robot(it.name), seen.plain(it.name)].append(it.name)
+    return found
 
 
 @once
@@ -132,11 +164,23 @@ def _written_out(node: str, name: str) -> Iterator[str]:
             yield name.removeprefix(space)
 
 
-def _hides(ends: Ends, meant: str) -> bool:
-    """Is it the other name below its publisher's own name, or with its namespace twice?"""
+def _hiding(seen: Index, meant: str) -> Iterator[str]:
+    """What the name may be called below its publisher's own name, or with its namespace twice."""
     space, _, last = meant.rpartition("/")
-    own = (f"{space}/{last_word(node)}/{last}" for node in nodes_of(ends.publishers))
-    return ends.name in own or _is_doubled(ends.name, meant)
+    yield from _below_senders(seen).get((space, last), ())
+    yield from (meant[:at] + meant for at in range(1, len(meant)) if meant[at] == "/")
+
+
+@once
+def _below_senders(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
+    """Topics that have their publisher's own name before the last word, by what is around it."""
+    found: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for it in (one for own in _published(seen).values() for one in own):
+        above, _, last = it.name.rpartition("/")
+        space, _, word = above.rpartition("/")
+        if word in {last_word(one.node) for one in it.publishers}:
+            found[space, last].append(it.name)
+    return found
 
 
 def _without_own_name(end: End) -> str:
@@ -180,17 +224,40 @@ def _missed_topic(
 @system_rule("MG304", "server-names-miss", ERROR, absence=True)
 def server_names_miss(seen: Index) -> Iterator[Finding]:
     """A service that is nowhere to be found may be optional: it is no finding."""
-    served: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for (kind, name), ends in seen.by_name.items():
-        if ends.servers:
-            served[kind, ends.type].append(name)
     for ends in seen.by_name.values():
         if ends.kind != TOPIC and not ends.servers:
             for end in _each_node(ends.clients):
-                yield from _unserved(seen, end, served[end.kind, end.type])
+                yield from _unserved(seen, end, _served(seen).get((end.kind, end.type), _NOBODY))
 
 
-def _unserved(seen: Index, end: End, served: Sequence[str]) -> Iterator[Finding]:
+class _Served(NamedTuple):
+    """What is served of a kind and type: all names, and those by their name without a robot's."""
+
+    names: Mapping[str, Ends]
+    plain: Mapping[str, Sequence[str]]
+    spelled: Spelled
+
+
+_NOBODY = _Served({}, {}, NONE)
+
+
+@once
+def _served(seen: Index) -> Mapping[tuple[str, str], _Served]:
+    found: dict[tuple[str, str], dict[str, Ends]] = defaultdict(dict)
+    for (kind, name), ends in seen.by_name.items():
+        if ends.servers:
+            found[kind, ends.type][name] = ends
+    return {key: _Served(it, _plainly(seen, it), Spelled(it)) for key, it in found.items()}
+
+
+def _plainly(seen: Index, names: Iterable[str]) -> Mapping[str, Sequence[str]]:
+    found: dict[str, list[str]] = defaultdict(list)
+    for it in names:
+        found[seen.plain(it)].append(it)
+    return found
+
+
+def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
     near = _served_instead(seen, end, served) or in_other_namespace(seen, end)
     lost = f"{'sends goals to' if end.kind == ACTION else 'calls'} {end.name}, which no node serves"
     listed = "" if near else listed_in_vain(seen, end)
@@ -206,7 +273,9 @@ def _unserved(seen: Index, end: End, served: Sequence[str]) -> Iterator[Finding]
             " node_names",
             robot=seen.robot(end.node), node=end.node, names=(end.name,), **where([end]),
         )  # fmt: skip
-    elif not (listed or is_viewer(end.node)) and (absent := nobody_in(seen, end.name, served)):
+    elif not (listed or is_viewer(end.node)) and (
+        absent := nobody_in(seen, end.name, served.names)
+    ):
         yield server_names_miss.finding(
             f"{lost}; {absent}", ABSENT, level=WARNING, node=end.node, names=(end.name,)
         )
@@ -248,28 +317,37 @@ def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> 
     )  # fmt: skip
 
 
-def _served_instead(seen: Index, end: End, served: Sequence[str]) -> str:
+def _served_instead(seen: Index, end: End, served: _Served) -> str:
     robot, owner = seen.robot(end.node), seen.robot(end.name)
-    same = [it for it in served if seen.plain(it) == seen.plain(end.name)]
+    same = served.plain.get(seen.plain(end.name), ())
     # Another robot's is no answer to a robot that lacks it.
     near = [it for it in same if not owner or not seen.robot(it)]
     own = [it for it in near if seen.robot(it) == robot]
-    captured: Callable[[str], bool] = served.__contains__
-    above = next(filter(captured, _written_out(end.node, end.name)), "")
-    return next(iter(own), "") or next(iter(near), "") or above or alike(end.name, served, end.type)
+    above = (it for it in _written_out(end.node, end.name) if it in served.names)
+    first = (next(iter(it), "") for it in (own, near, above))
+    return next(filter(None, first), "") or alike(end.name, served.spelled, end.type)
 
 
-def nobody_in(seen: Index, name: str, known: Iterable[str]) -> str:
+def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
     """Words for a name in a namespace without any node, where robots have it in theirs; else ""."""
     if seen.robot(name):
         return ""
-    ends = {seen.plain(it): it for it in known if seen.robot(it)}
-    rests = (at for at in range(2, len(name)) if name[at] == "/")
-    for at in rests:
-        other, space = ends.get(name[at:]), name[:at]
-        if other and not any(it.name.startswith(f"{space}/") for it in seen.system.nodes):
+    for at in (at for at in range(2, len(name)) if name[at] == "/"):
+        alike_, space = _of_robots(seen).get(name[at:], ()), name[:at]
+        other = next((it for it in reversed(alike_) if it in known), "")
+        if other and space not in spaces(seen):
             return f"no node is in {space}, and {seen.robot(other)} has {other}"
     return ""
+
+
+@once
+def _of_robots(seen: Index) -> Mapping[str, Sequence[str]]:
+    """The names of robots, by their name without a robot's."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for _, name in seen.by_name:
+        if seen.robot(name):
+            found[seen.plain(name)].append(name)
+    return found
 
 
 @system_rule("MG305", "service-of-two-nodes", ERROR, meant=(SERVES,))

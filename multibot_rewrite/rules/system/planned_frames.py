@@ -20,7 +20,7 @@ from multibot_rewrite.rules.system.tf_causes import (
     where_set,
     why_not_received,
 )
-from multibot_rewrite.rules.system.tf_trees import frames_in, home_of, robots_on
+from multibot_rewrite.rules.system.tf_trees import frames_in, home_of, robots_on, taken_elsewhere
 from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.ownership import SEPARATORS
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, Robot
@@ -143,7 +143,8 @@ def misnamed(plan: Index, seen: Index) -> Set[str]:
         sent = {edge.child for edge in tree.edges}
         if any(it.meant and it.meant not in sent and it.frame in sent for it in found):
             strays.add(robot.name)
-    for tree in seen.trees:
+    elsewhere = taken_elsewhere(plan)
+    for tree in (it for it in seen.trees if it.topic not in elsewhere):
         children = (plan.of_frames.exact.get(edge.child, "") for edge in tree.edges)
         strays |= {it for it in children if it and it not in home_of(plan, tree)}
     return strays

@@ -11,8 +11,8 @@ from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, why_other_name
 from multibot_rewrite.rules.system.planned import matches, unplanned_nodes
-from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.reach import hidden_from_here, why_not_seen
+from multibot_rewrite.system.index import Index, once
+from multibot_rewrite.system.reach import Machines, hidden_from_here, machines, why_not_seen
 from multibot_rewrite.system.records import SERVES, Robot, alternatives
 
 
@@ -121,9 +121,16 @@ def missing_robot(plan: Index, seen: Index) -> Iterator[Finding]:
                 f"none of the {len(plan.own[robot.name])} nodes of {robot.name} is in the graph"
             )
             cause = _why_absent(plan, seen, robot)
-            hidden = not _matches(plan, seen, robot) and hidden_from_here(seen.system)
+            hidden = not _matches(plan, seen, robot) and hidden_from_here(
+                seen.system, _machines(seen)
+            )
             level = INCONCLUSIVE if hidden else ERROR
             yield missing_robot.finding(message, **cause._asdict(), robot=robot.name, level=level)
+
+
+@once
+def _machines(seen: Index) -> Machines:
+    return machines(seen.system)
 
 
 def _matches(plan: Index, seen: Index, robot: Robot) -> list[tuple[str, str]]:
@@ -135,7 +142,7 @@ def _matches(plan: Index, seen: Index, robot: Robot) -> list[tuple[str, str]]:
 def _why_absent(plan: Index, seen: Index, robot: Robot) -> Cause:
     matches = _matches(plan, seen, robot)
     if not matches:
-        return Cause(why_not_seen(seen.system, robot.name))
+        return Cause(why_not_seen(seen.system, robot.name, _machines(seen)))
     cause = why_other_name(plan, *matches[0])
     same = f"; the same for {len(matches) - 1} more of its nodes" if len(matches) > 1 else ""
     return cause._replace(hint=cause.hint + same)

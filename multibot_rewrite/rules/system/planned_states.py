@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.rules.declaration import planned_rule
-from multibot_rewrite.system.index import Index
+from multibot_rewrite.system.index import Index, once
 from multibot_rewrite.system.parameters import parameter_value
 from multibot_rewrite.system.reach import machines
 from multibot_rewrite.system.records import SIM_TIME, UNTOLD, Parameter
@@ -87,17 +87,22 @@ def _at(it: Parameter) -> str:
 
 def _whose(plan: Index, node: str, found: Sequence[Difference]) -> str:
     """The robot whose node of that name is planned to have these values."""
-    whose = plan.of_names
-    robot = plan.robot_of.get(node, "")
-    plain = whose.without_robot(node, robot)
-    wanted = {(it.name, value) for it, value in found}
-    for other, planned in _by_node(plan.system.parameters).items():
-        theirs = plan.robot_of.get(other, "")
-        if not theirs or whose.without_robot(other, theirs) != plain:
-            continue
-        if wanted <= {(it.name, it.value) for it in planned}:
-            return theirs
-    return ""
+    plain, having = plan.of_names.without_robot(node, plan.robot_of.get(node, "")), _having(plan)
+    wanted = [having.get((plain, it.name, value), {}) for it, value in found]
+    # What few have first: most have most values.
+    few, *others = sorted(wanted, key=len)
+    return next((it for it in few if all(it in having for having in others)), "")
+
+
+@once
+def _having(plan: Index) -> Mapping[tuple[str, str, str], Mapping[str, None]]:
+    """The robots, in their order, whose node of a plain name is planned to have a parameter so."""
+    found: dict[tuple[str, str, str], dict[str, None]] = defaultdict(dict)
+    for it in plan.system.parameters:
+        if robot := plan.robot_of.get(it.node, ""):
+            plain = plan.of_names.without_robot(it.node, robot)
+            found[plain, it.name, it.value][robot] = None
+    return found
 
 
 @planned_rule("MG133", "host-not-planned", ERROR)

@@ -4,7 +4,8 @@ description or parameters. A transform itself does not say who sends it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten
@@ -12,14 +13,22 @@ from multibot_rewrite.rules.system.causes import Cause, caused
 from multibot_rewrite.rules.system.tf_trees import home_of, loose_odometry, no_odometry
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import TF, Index, Sent, ends_of
+from multibot_rewrite.system.index import TF, Index, Sent, ends_of, once
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, Robot
 from multibot_rewrite.system.tf_copies import tree_topic
 
 
 def sent_by_robot(plan: Index, robot: Robot) -> list[Sent]:
     """What one robot's nodes send by the plan."""
-    return [it for it in plan.sent if plan.robot_of.get(it.node) == robot.name]
+    return [*_sent_by_robot(plan).get(robot.name, ())]
+
+
+@once
+def _sent_by_robot(plan: Index) -> Mapping[str, Sequence[Sent]]:
+    found: dict[str, list[Sent]] = defaultdict(list)
+    for it in plan.sent:
+        found[plan.robot_of.get(it.node, "")].append(it)
+    return found
 
 
 def state_publisher(plan: Index, robot: Robot) -> str:
@@ -151,11 +160,21 @@ def _not_sent(plan: Index, seen: Index, robot: Robot, planned: Sent) -> Cause:
 def foreign(plan: Index, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
     """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
     topic of its own, else what several nodes send."""
+    found = _named(plan, seen).get(tree_topic(robot.tf_topic), ())
+    return (it for it in found if it[0] != robot.name)
+
+
+@once
+def _named(plan: Index, seen: Index) -> Mapping[str, Sequence[tuple[str, Edge]]]:
+    """The transforms with a robot's name on one robot's tf topic, or that several nodes send on one of
+    all, by their topic and each with that robot."""
+    found: dict[str, list[tuple[str, Edge]]] = defaultdict(list)
     for tree in seen.trees:
-        for edge in tree.edges if tree.topic == tree_topic(robot.tf_topic) else ():
-            other = plan.frame_robot(edge.child)
-            if other not in ("", robot.name) and (len(home_of(plan, tree)) == 1 or edge.several):
-                yield other, edge
+        is_of_one = len(home_of(plan, tree)) == 1
+        for edge in (it for it in tree.edges if is_of_one or it.several):
+            if other := plan.frame_robot(edge.child):
+                found[tree.topic].append((other, edge))
+    return found
 
 
 def _no_odometry(seen: Index, robot: Robot, roots: Sequence[str]) -> str:
@@ -163,7 +182,7 @@ def _no_odometry(seen: Index, robot: Robot, roots: Sequence[str]) -> str:
     for odom, root in loose_odometry(seen) if len(roots) == 2 else ():
         if root in roots and seen.frame_robot(odom) in ("", robot.name):
             (other,) = {*roots} - {root}
-            return no_odometry(odom, other)
+            return no_odometry(seen, robot.name, odom, other)
     return ""
 
 

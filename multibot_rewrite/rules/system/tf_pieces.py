@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from functools import cache
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -21,6 +22,7 @@ from multibot_rewrite.rules.system.tf_trees import (
     no_odometry,
     root_of,
     roots_by_robot,
+    sent_elsewhere,
 )
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.records import NOWHERE, OFF, UNKNOWN_NODES, Edge
@@ -28,6 +30,8 @@ from multibot_rewrite.system.tf_copies import tree_topic
 from multibot_rewrite.system.tool_nodes import last_word
 
 _STATE_PUBLISHER = "robot_state_publisher"
+# So many pairs of frames of a robot are compared.
+_COMPARED = 20_000
 
 
 @system_rule("MG406", "tf-tree-in-pieces", ERROR, absence=True)
@@ -70,9 +74,12 @@ def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
         return
     frames = unique(it for edge in tree.edges for it in (edge.parent, edge.child))
     plain = {it: seen.plain_frame(it) for it in frames}
+    bases: dict[str, list[str]] = defaultdict(list)
+    for it in (it for it in frames if plain[it] in BODY_FRAMES):
+        bases[seen.frame_robot(it)].append(it)
     for odom in (it for it in frames if plain[it] == "odom"):
         robot = seen.frame_robot(odom)
-        own = [it for it in frames if plain[it] in BODY_FRAMES and seen.frame_robot(it) == robot]
+        own = bases[robot]
         roots = {root_of(it, above) for it in own}
         # In a circle there is no root.
         if not own or root_of(odom, above) in {*roots, *above}:
@@ -80,7 +87,7 @@ def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
         found = next(iter(roots))
         robot = robot or only(robots_of(seen, tree.senders))
         message = in_pieces(robot, tree.topic, sorted({root_of(odom, above), found}))
-        cause = no_odometry(odom, found)
+        cause = no_odometry(seen, robot, odom, found)
         yield tf_tree_in_pieces.finding(message, cause, robot=robot, names=(odom, own[0], found))
 
 
@@ -89,34 +96,40 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
     is sent and has nothing below it, while a root is called nearly so."""
     for tree in seen.trees:
         children, parents = ({getattr(it, end) for it in tree.edges} for end in ("child", "parent"))
-        sent, roots = _near(seen, children), _near(seen, parents - children)
+        near_sent, near_root = _near(seen, children), _near(seen, parents - children)
+        above = above_each(tree)
         for it in tree.edges:
             usual = seen.plain_frame(it.parent) in (*USUAL_FRAMES, *SENT_FRAMES)
             bare = it.parent not in children and not usual
-            near = _meant(it.parent, sent(it.parent) - {it.child}) if bare else ""
+            near = near_sent(it.parent, it.child) if bare else ""
             if near:
                 why = f"{it.child} is sent below {it.parent}, and nothing sends {it.parent}"
-                yield _slipped(
-                    seen, tree, it, near, (it.parent, root_of(near, above_each(tree))), why
-                )
+                yield _slipped(seen, tree, it, near, (it.parent, root_of(near, above)), why)
             leaf = it.child not in parents and not is_of_description(seen, it)
-            near = _meant(it.child, roots(it.child) - {it.parent}) if leaf else ""
+            near = near_root(it.child, it.parent) if leaf else ""
             if near:
                 why = f"{it.child} is sent below {it.parent}, and has nothing below it"
-                yield _slipped(
-                    seen, tree, it, near, (root_of(it.child, above_each(tree)), near), why
-                )
+                yield _slipped(seen, tree, it, near, (root_of(it.child, above), near), why)
 
 
-def _near(seen: Index, frames: Collection[str]) -> Callable[[str], set[str]]:
-    """Of some frames those that another one can be meant for: of its robot, or of none."""
+def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
+    """Of some frames the one that another one may be meant for, but for one that it is not: of its
+    robot, or of none; of very many frames of a robot the last ones are not held against others."""
     own: dict[str, set[str]] = defaultdict(set)
     for it in frames:
         own[seen.frame_robot(it)].add(it)
+    left: dict[str, int] = defaultdict(lambda: _COMPARED)
 
-    def near(frame: str) -> set[str]:
+    @cache
+    def nearest_of(frame: str, but: str = "") -> str:
         robot = seen.frame_robot(frame)
-        return own[robot] | own[""] if robot else set(frames)
+        known = (own[robot] | own[""] if robot else {*frames}) - {but}
+        left[robot] -= len(known)
+        return _meant(frame, known) if left[robot] > 0 else ""
+
+    def near(frame: str, but: str) -> str:
+        found = nearest_of(frame)
+        return nearest_of(frame, but) if found == but else found
 
     return near
 
@@ -206,11 +219,14 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
 
 def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
     """Is a tree in pieces in which all is that a launch file starts? Of a robot that is not ``moved``
-    by a plugin in a simulator a driver that is started apart may send the odometry; pieces without the
-    usual frames may be meant."""
-    odometry = any({*found.names} & {*it} for it in loose_odometry(seen))
-    alone = (*told_not_to(seen), *_by_frames(seen))
-    return (moved or not odometry) and any(it.robot == found.robot for it in alone)
+    by a plugin in a simulator a driver that is started apart may send the odometry, and what is sent on
+    another topic of the robot somebody may bring to its tree; pieces without the usual frames may be
+    meant."""
+    loose = [it for it in loose_odometry(seen) if {*found.names} & {*it}]
+    lacking = [(odom, it) for odom, root in loose for it in found.names if it not in (odom, root)]
+    if (loose and not moved) or any(sent_elsewhere(seen, found.robot, *it) for it in lacking):
+        return False
+    return any(it.robot == found.robot for it in (*told_not_to(seen), *_by_frames(seen)))
 
 
 def is_of_description(seen: Index, edge: Edge) -> bool:

@@ -16,6 +16,7 @@ from multibot_rewrite.system.tf_copies import static_topic
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 TF = "tf"
+_BRIDGE = "_bridge"
 _REMAP = "/tf:=tf and /tf_static:=tf_static"
 
 
@@ -129,10 +130,15 @@ def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whol
 
 
 def _is_beside(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], topic: str) -> bool:
-    """Is it in the robot's namespace, and do only nodes send there that send to its tree as well? So
-    does a bridge that has a row for the poses of a simulator."""
+    """Is it in the robot's namespace, and do only nodes send there that send to its tree as well, or
+    bridges of a simulator? A row of these names the topic, so it is meant."""
     at_home = topics.get(_home(seen, robot, topics), ())
-    return seen.robot(topic) == robot and {*at_home}.issuperset(topics[topic])
+    others = (it for it in topics[topic] if it not in at_home)
+    return seen.robot(topic) == robot and all(_is_bridge(seen, it) for it in others)
+
+
+def _is_bridge(seen: Index, node: str) -> bool:
+    return _BRIDGE in last_word(node) or seen.node[node].known == f"ros_gz{_BRIDGE}"
 
 
 def _is_meant(seen: Index, node: str, role: str, topic: str) -> bool:

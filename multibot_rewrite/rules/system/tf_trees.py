@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from multibot_rewrite.base.chains import chain_ends
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.system.index import Index, Tree, once
-from multibot_rewrite.system.records import Edge, Robot
+from multibot_rewrite.system.records import OFF, PUBLISHES, Edge, Robot
 from multibot_rewrite.system.tf_copies import tree_topic
 
 
@@ -25,6 +25,13 @@ def homes(plan: Index) -> Mapping[str, Sequence[str]]:
 def home_of(plan: Index, tree: Tree) -> Sequence[str]:
     """The robots whose tf topic this is by the layout."""
     return homes(plan).get(tree.topic, ())
+
+
+@once
+def taken_elsewhere(plan: Index) -> Set[str]:
+    """The topics of rows of bridges but for the tf of robots: whoever wrote them meant it."""
+    rows = {it.name for it in plan.system.topics if PUBLISHES in it.bridge}
+    return rows - homes(plan).keys()
 
 
 def robots_on(plan: Index, tree: Tree) -> Sequence[str]:
@@ -70,9 +77,18 @@ def frames_in(tree: Tree) -> Iterator[str]:
     return iter(dict.fromkeys(name for edge in tree.edges for name in (edge.child, edge.parent)))
 
 
-def no_odometry(odom: str, root: str) -> str:
-    """The cause of a tree in pieces: nothing is sent below an odometry frame."""
+def no_odometry(seen: Index, robot: str, odom: str, root: str) -> str:
+    """The cause of a tree in pieces: nothing is sent below an odometry frame, or elsewhere."""
+    if other := sent_elsewhere(seen, robot, odom, root):
+        return f"{other.publishers[0]} sends {odom} -> {root} on {other.topic}: bring it to tf, too"
     return f"no node sends {odom} -> {root}: is odometry started, are its frames the same?"
+
+
+def sent_elsewhere(seen: Index, robot: str, odom: str, root: str) -> Edge | None:
+    """Return the transform that a tree lacks where it is on another topic of the robot."""
+    sent = (it for it in seen.system.edges if (it.parent, it.child) == (odom, root))
+    own = (it for it in sent if it.sure != OFF and it.publishers)
+    return next((it for it in own if seen.robot(it.topic) == robot), None)
 
 
 def loose_odometry(seen: Index) -> Iterator[tuple[str, str]]:

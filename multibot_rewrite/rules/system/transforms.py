@@ -25,17 +25,27 @@ _STATIC = "static_transform_publisher"
 def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
     """The cause names the nodes that may have sent it."""
     for tree in seen.trees:
+        edges = _by_child(tree)
         for child, parents in _parents(tree).items():
             if len(parents) < 2:
                 continue
             both = and_then(sorted(parents))
             message = f"frame {child} has {len(parents)} parents on {tree.topic}: {both}"
-            own = [it for it in tree.edges if it.child == child]
+            own = edges[child]
             robot = seen.frame_robot(child) or only(robots_of(seen, _senders(tree, own)))
-            cause = _who_sends(seen, tree, [(it, child) for it in sorted(parents)]) + see(own)
+            senders = _senders(tree, own)
+            cause = _who_sends(seen, tree, [(it, child) for it in sorted(parents)], senders)
+            cause += see(own)
             yield frame_with_two_parents.finding(
                 message, cause, robot=robot, names=(child,), **where(own)
             )
+
+
+def _by_child(tree: Tree) -> dict[str, list[Edge]]:
+    found: dict[str, list[Edge]] = defaultdict(list)
+    for edge in tree.edges:
+        found[edge.child].append(edge)
+    return found
 
 
 def _parents(tree: Tree) -> dict[str, set[str]]:
@@ -50,10 +60,12 @@ def _senders(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
     return unique(node for it in edges for node in it.publishers) or tree.senders
 
 
-def _who_sends(seen: Index, tree: Tree, edges: Sequence[tuple[str, str]]) -> str:
-    """The nodes that may have sent these: who is known to first, then those of the frame's robot."""
+def _who_sends(
+    seen: Index, tree: Tree, edges: Sequence[tuple[str, str]], senders: Sequence[str]
+) -> str:
+    """Which of the senders may have sent these: who is known to first, then those of the frame's
+    robot."""
     frame = edges[0][1]
-    senders = _senders(tree, (it for it in tree.edges if it.child == frame))
     robots = robots_of(seen, senders)
     owner = seen.frame_robot(frame) or seen.robot(tree.topic)
     planned = [(node, it) for it in edges for node in seen.senders.get(it, ())]
@@ -90,10 +102,12 @@ def collide(seen: Index, tree: Tree) -> str:
     robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
     if bare and not seen.robot(tree.topic) and _may_meet(seen, tree):
-        named = {(seen.frame_robot(it.child), seen.plain_frame(it.child)) for it in tree.edges}
-        nameless = [it for it in robots if any((it, frame) not in named for frame in bare)]
+        named: dict[str, set[str]] = defaultdict(set)
+        for it in tree.edges:
+            named[seen.frame_robot(it.child)].add(seen.plain_frame(it.child))
+        nameless = [it for it in robots if len(named.get(it, bare - bare) & bare) < len(bare)]
         of_all = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
-        without = {robot for robot in robots if robot not in {it for it, _ in named}}
+        without = {robot for robot in robots if robot not in named}
         who = nameless or robots
         # In a recording nobody is known to have sent them.
         if who and (len(without) > 1 or (not without and of_all & bare)):
@@ -117,8 +131,8 @@ def _may_meet(seen: Index, tree: Tree) -> bool:
 
 def _twice(seen: Index, senders: Iterable[str]) -> list[str]:
     """Senders of which two run, as where two robots have no namespace."""
-    running = [node.name for node in seen.system.nodes]
-    return [it for it in senders if running.count(it) > 1 and "robot_state" in last_word(it)]
+    several = (it for it in senders if seen.nodes.get(it, 0) > 1)
+    return [it for it in several if "robot_state" in last_word(it)]
 
 
 def _bare_frames(seen: Index, tree: Tree) -> list[str]:
@@ -143,14 +157,16 @@ def _either(tree: Tree, robots: Sequence[str]) -> str:
 def tf_cycle(seen: Index) -> Iterator[Finding]:
     """Each circle once."""
     for tree in seen.trees:
+        edges = _by_child(tree)
         for circle in _circles(_parents(tree)):
+            around = [*pairwise((*circle, circle[0]))]
             way = " -> ".join((*circle, circle[0]))
             message = f"the transforms on {tree.topic} go round in a circle: {way}"
             robots = unique(filter(None, (seen.frame_robot(it) for it in circle)))
             robot = only(robots) or only(robots_of(seen, tree.senders))
             yield tf_cycle.finding(
                 message,
-                _who_sends(seen, tree, [*pairwise((*circle, circle[0]))]),
+                _who_sends(seen, tree, around, _senders(tree, edges[around[0][1]])),
                 robot=robot,
                 names=circle,
             )
@@ -158,31 +174,37 @@ def tf_cycle(seen: Index) -> Iterator[Finding]:
 
 def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
     """Circles that have no frame in common, each from the parent to the child."""
-    left = {child: set(above) for child, above in parents.items()}
-    while left := _that_end_nowhere(left):
-        way = [min(left)]
-        while way[-1] not in way[:-1]:
-            way.append(min(left[way[-1]]))
-        circle = way[way.index(way[-1]) : -1]
-        yield tuple(reversed(circle))
-        left = {child: above for child, above in left.items() if child not in circle}
-
-
-def _that_end_nowhere(parents: Mapping[str, set[str]]) -> dict[str, set[str]]:
-    """The frames above which no way ends, each with those of its parents that are such frames."""
-    left = {child: above & parents.keys() for child, above in parents.items()}
+    left = {child: set(above) & parents.keys() for child, above in parents.items()}
     below: dict[str, list[str]] = {}
     for child, above in left.items():
         for parent in above:
             below.setdefault(parent, []).append(child)
-    ended = [child for child, above in left.items() if not above]
-    for parent in ended:  # grows
+    _take_away(left, below, [child for child, above in left.items() if not above])
+    for start in sorted(left):
+        while start in left:
+            frame, way = start, dict[str, int]()
+            while frame not in way:
+                way[frame] = len(way)
+                frame = min(left[frame])
+            circle = [*way][way[frame] :]
+            yield tuple(reversed(circle))
+            _take_away(left, below, circle)
+
+
+def _take_away(
+    left: dict[str, set[str]], below: Mapping[str, Iterable[str]], gone: list[str]
+) -> None:
+    """Take frames away, and those above which no way goes on without them: each way that is ``left``
+    has no end."""
+    out = {*gone}
+    for parent in gone:  # grows
         del left[parent]
         for child in below.get(parent, ()):
-            left[child].discard(parent)
-            if not left[child]:
-                ended.append(child)
-    return left
+            if child not in out:
+                left[child].discard(parent)
+                if not left[child]:
+                    out.add(child)
+                    gone.append(child)
 
 
 @system_rule("MG404", "static-and-moving", ERROR)
@@ -211,8 +233,10 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
         if collide(seen, tree):
             continue
         edges = _sent_twice(tree)
-        for robot in unique(seen.frame_robot(it.child) for it in edges):
-            own = [it for it in edges if seen.frame_robot(it.child) == robot]
+        by_robot: dict[str, list[Edge]] = defaultdict(list)
+        for it in edges:
+            by_robot[seen.frame_robot(it.child)].append(it)
+        for robot, own in by_robot.items():
             listed = shorten(unique(f"{it.parent} -> {it.child}" for it in own))
             message = f"several nodes send {listed} on {tree.topic}"
             senders = _senders(tree, own)

@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
-from multibot_rewrite.base.wording import shorten, unique
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import where
 from multibot_rewrite.rules.system.instead import is_needed, meant
@@ -28,19 +28,20 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
     """All names of a robot are one finding; without those that others have under another name."""
     left = [it for it in open_ends(seen) if not meant(seen, it)]
     left = _without_missed(seen, left) if left else left
-    for robot in unique(seen.robot(it.node) for it in left):
-        names = unique(sorted(it.name for it in left if seen.robot(it.node) == robot))
-        yield from _told(seen, robot, names)
+    by_robot: dict[str, set[str]] = defaultdict(set)
+    for it in left:
+        by_robot[seen.robot(it.node)].add(it.name)
+    for robot, names in by_robot.items():
+        yield from _told(seen, robot, sorted(names))
 
 
 def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
     """That another robot has it from a node of the same system is not for a driver outside of it."""
-    wanted = {seen.plain(it) for it in names} if robot else ()
-    elsewhere = {
-        seen.plain(it): it
-        for it in _given(seen)
-        if seen.plain(it) in wanted and _of_its_kind(seen, it, robot)
-    }
+    elsewhere: dict[str, str] = {}
+    for plain in map(seen.plain, names) if robot else ():
+        given = (it for it in _given(seen).get(plain, ()) if _of_its_kind(seen, it, robot))
+        if other := next(given, ""):
+            elsewhere[plain] = other
     lacked = tuple(it for it in names if seen.plain(it) in elsewhere)
     rest = tuple(it for it in names if it not in lacked)
     if lacked:
@@ -77,10 +78,14 @@ def _frames(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
     return found
 
 
-def _given(seen: Index) -> Iterator[str]:
-    for (_, name), ends in seen.by_name.items():
+@once
+def _given(seen: Index) -> Mapping[str, Sequence[str]]:
+    """What is sent or served by its name without a robot's, the last one first."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for (_, name), ends in reversed([*seen.by_name.items()]):
         if ends.publishers or ends.servers:
-            yield name
+            found[seen.plain(name)].append(name)
+    return found
 
 
 def _without_missed(seen: Index, ends: Iterable[End]) -> list[End]:

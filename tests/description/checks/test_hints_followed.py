@@ -80,7 +80,6 @@ SAWYER = (
     '<gazebo><plugin name="c" filename="libsawyer_gazebo_ros_control.so">'
     "<robotNamespace>/a</robotNamespace></plugin></gazebo>"
 )
-SERVED = ["FKService", "IKService"]
 KOBUKI = '<gazebo><plugin name="k" filename="libgazebo_ros_kobuki.so"/></gazebo>'
 EYE = '<gazebo reference="base"><sensor name="s" type="rgbd_camera"><camera/></sensor></gazebo>'
 
@@ -154,9 +153,9 @@ ROWS = (
         "postfix",
         "humble",
         "MG305",
-        "allow it with --shared /TOPIC",
-        SAWYER,
-        {"shared_topics": [f"ExternalTools/right/PositionKinematicsNode/{it}" for it in SERVED]},
+        "load the plugin for one robot only",
+        "",
+        {},
     ),
     Followed(
         KOBUKI,

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import pytest
+from lxml.etree import fromstring
 
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.description.readback.nodes import wheels_in
 from multibot_rewrite.description.readback.reading import Reading, read
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 
@@ -219,3 +221,28 @@ def test_a_particle_emitter_has_a_topic() -> None:
 def test_rules_in_arguments(arguments: tuple[str, ...], topic: str) -> None:
     inside = "".join(f"<argument>{it}</argument>" for it in arguments)
     assert topic in names(plugin("libgazebo_ros_diff_drive.so", f"<ros>{inside}</ros>"))
+
+
+@pytest.mark.parametrize(
+    ("joint", "wheels"),
+    [
+        ('type="continuous">', True),
+        ('type="revolute"><limit lower="-1e16" upper="1e16"/>', True),
+        ('type="revolute"><axis><limit><lower>-1</lower><upper>1</upper></limit></axis>', True),
+        ('type="revolute"><limit lower="-6.3" upper="6.3"/>', False),
+        ('type="revolute"><limit upper="2" effort="1"/>', False),
+        ('type="revolute"><limit lower="?" upper="6.3"/>', True),
+        ('type="prismatic"><limit lower="0" upper="99"/>', False),
+        ('type="fixed">', False),
+    ],
+)
+@pytest.mark.parametrize(("interface", "may_drive"), [("velocity", True), ("position", False)])
+def test_a_controller_drives_wheels(
+    joint: str, wheels: bool, interface: str, may_drive: bool
+) -> None:
+    """An arm may be commanded by velocities, too: its joints end after some turns."""
+    root = fromstring(
+        f'<robot name="r"><joint name="j" {joint}</joint><ros2_control name="s" type="system">'
+        f'<joint name="j"><command_interface name="{interface}"/></joint></ros2_control></robot>'
+    )
+    assert wheels_in(root) == (wheels and may_drive)

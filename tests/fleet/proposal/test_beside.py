@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.companions import companions_of
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.searching import Found
@@ -126,3 +127,86 @@ def test_files_of_nodes_that_are_not_started(
     made = companions_of(looked(tmp_path), found, "jazzy")
     assert bool(made.files.get("params")) == (not why)
     assert made.left.get(file, "").startswith(why)
+
+
+LIDAR_VIEW = "Visualization Manager:\n  Class: ''\n  Displays: []\n"
+EXPLORE = "/**:\n  ros__parameters: {costmap_topic: map}\n"
+PACKAGE = "<package><name>{}</name><export><build_type>ament_cmake</build_type></export></package>"
+ROBOT = (
+    '<robot name="{0}"><link name="{0}_a"/><link name="{0}_b"/><joint name="{0}_j" type="continuous">'
+    '<parent link="{0}_a"/><child link="{0}_b"/></joint></robot>'
+)
+NODE = """\
+import os
+from launch import LaunchDescription
+from launch_ros.actions import Node
+from ament_index_python.packages import get_package_share_directory
+def generate_launch_description():
+    file = os.path.join(get_package_share_directory("{0}"), "config", "{1}")
+    return LaunchDescription([Node(package="{0}", executable="{2}", parameters=[file])])
+"""
+
+
+def workspace(folder: Path, files: dict[str, str]) -> Path:
+    """A folder of packages, each file in one of them."""
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        (folder / name.split("/")[0] / "package.xml").write_text(PACKAGE.format(name.split("/")[0]))
+    return folder
+
+
+@pytest.mark.parametrize("is_named", [False, True])
+def test_an_rviz_config_of_a_vendors_package_is_not_the_robots(
+    is_named: bool, tmp_path: Path
+) -> None:
+    """It shows no link of the robot, and its package does not name that of the robot."""
+    launch = "# of rover_description\nrover.urdf" if is_named else "# of its own\n"
+    files = {
+        "rover_description/urdf/rover.urdf": ROBOT.format("rover"),
+        "lidar_driver/rviz/lidar.rviz": LIDAR_VIEW,
+        "lidar_driver/launch/view.launch.py": launch,
+    }
+    text = written(workspace(tmp_path, files))
+    assert ("rviz: lidar_driver/rviz/lidar.rviz" in text) == is_named
+
+
+def test_a_file_for_any_node_that_a_vendor_gives_to_its_own_is_not_the_robots(
+    tmp_path: Path,
+) -> None:
+    """With it every node of the robot would have the parameters of one."""
+    files = {
+        "rover_description/urdf/rover.urdf": ROBOT.format("rover"),
+        "explore_lite/config/params.yaml": EXPLORE,
+        "explore_lite/launch/explore.launch.py": NODE.format(
+            "explore_lite", "params.yaml", "explore"
+        ),
+    }
+    assert "explore_lite/config" not in written(workspace(tmp_path, files))
+
+
+@pytest.mark.parametrize("names", ["gripper", "ranger"])
+def test_what_another_robot_is_made_with_is_behind_it(names: str, tmp_path: Path) -> None:
+    """Both are launched and called after their packages; one package depends on the other."""
+    part = f"{names}_description"
+    files = {
+        f"{part}/urdf/{names}.urdf": ROBOT.format(names),
+        f"{part}/launch/view.launch.py": f"{names}.urdf",
+        "zz_robot_description/urdf/zz_robot.urdf": ROBOT.format("zz"),
+        "zz_robot_description/launch/view.launch.py": "zz_robot.urdf",
+    }
+    workspace(tmp_path, files)
+    manifest = tmp_path / "zz_robot_description" / "package.xml"
+    manifest.write_text(
+        manifest.read_text().replace("<export>", f"<exec_depend>{part}</exec_depend><export>")
+    )
+    assert "description: zz_robot_description/urdf/zz_robot.urdf" in written(tmp_path)
+
+
+def written(folder: Path) -> str:
+    """The fleet file that init writes for a folder."""
+    file = folder / "fleet.yaml"
+    assert main(["init", str(folder), "-n", "2", "--yes", "--force", "-o", str(file), "-q"]) == 0
+    lines = file.read_text().splitlines()
+    return "\n".join(it for it in lines if not it.startswith("#"))

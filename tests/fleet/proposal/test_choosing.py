@@ -18,7 +18,7 @@ from multibot_rewrite.fleet.proposal.fitting import fitting
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, GivenNode
 from multibot_rewrite.system.records import NOWHERE
 
 

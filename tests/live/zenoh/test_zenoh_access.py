@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from paths import ROBOTS
-from plans import PlannedRobot, planned
+from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.base.conventions import SENT_BY_ANY_NODE
 from multibot_rewrite.cli.multibot import main
@@ -21,7 +21,6 @@ from multibot_rewrite.fleet.outputs.zenoh_access import (
 )
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, configurations
 from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan import planned_end
 from multibot_rewrite.system.records import Domain, End, Node, System
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.producers.evidence.alternatives import alternatives
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, GivenNode
 from multibot_rewrite.system.records import Place
 
 HERE = Place("c.yaml", 3)

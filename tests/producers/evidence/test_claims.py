@@ -12,7 +12,7 @@ from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.evidence.claims import Claimed, claimed, claimed_twice, claims_of
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import Given
+from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Place
 
 HERE = Place("c.yaml", 1)

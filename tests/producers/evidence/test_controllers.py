@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 from lxml import etree
+from named_ends import named_ends
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.yaml_text import read_yaml
@@ -270,13 +271,13 @@ MANAGED = "stack: ros2_control\ncompanions: {params: [controllers.yaml]}\n"
 def test_nodes_that_hardware_makes(tmp_path: Path) -> None:
     """franka_hardware_interface.cpp: service_server and action_server, in the manager's process."""
     table = nodes_with(tmp_path, FRANKA, "both", MANAGED)
-    names = {it.name for it in table.names if it.robot == "left"}
+    names = {it.name for it in named_ends(table) if it.robot == "left"}
     assert {"/left/service_server/set_load", "/left/action_server/error_recovery"} <= names
     mock = nodes_with(tmp_path, MOCK, "both", MANAGED)
-    assert "service_server" not in {it.node for it in mock.nodes}
+    assert "service_server" not in {it.node for it in mock.runs}
     # Without a controller manager nothing loads the hardware.
     alone = nodes_with(tmp_path, FRANKA, "both")
-    assert "service_server" not in {it.node for it in alone.nodes}
+    assert "service_server" not in {it.node for it in alone.runs}
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.nodes import nodes_of
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.records import GivenNode
+from multibot_rewrite.spelling.records import GivenNode
 
 
 def given(text: str, file: str = "params.yaml") -> list[GivenNode]:
@@ -51,7 +51,7 @@ def test_a_filter_reads_what_its_parameters_name() -> None:
     assert "cmd_vel" not in names(node, "subscribes")
     assert [it[:2] for it in node.sends] == [("odom_frame", "base_link_frame")]
     assert {it.parameter: it.default for it in node.frames}["base_link_frame"] == "base_footprint"
-    assert node.origin == "params.yaml:1"
+    assert str(node.origin) == "params.yaml:1"
 
 
 def test_a_filter_in_the_map_sends_another_transform() -> None:
@@ -143,7 +143,7 @@ def test_controllers_are_those_that_the_files_declare() -> None:
     by_name = {it.name: it for it in found.nodes}
     assert "diff_drive_controller" not in by_name
     drive = by_name["platform_velocity_controller"]
-    assert (drive.host, drive.origin, drive.sends) == ("controller_manager", "c.yaml:6", ())
+    assert (drive.host, str(drive.origin), drive.sends) == ("controller_manager", "c.yaml:6", ())
     assert "~/odom" in names(drive, "publishes")
     assert by_name["arm"].package == "acme"
     assert [(it.code, it.line) for it in found.findings] == [("MF802", 7)]

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from plans import ends_of
 
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
@@ -44,9 +45,8 @@ def text(outputs: Outputs, path: str) -> str:
 
 def test_a_relay_has_the_topics_of_its_lists_with_their_types(tmp_path: Path) -> None:
     outputs = made(tmp_path, "tf-per-robot")
-    plan = yaml.safe_load(text(outputs, "plan.yaml"))
-    ends = plan["robots"]["robot2"]["nodes"]["/robot2/create3_repub"]
-    assert {tuple(it[:4]) for it in ends} == {
+    ends = ends_of(outputs.planned, "/robot2/create3_repub")
+    assert {(it.role, it.kind, it.name, it.type) for it in ends} == {
         ("publishes", "topic", "/robot2/odom", "nav_msgs/msg/Odometry"),
         ("publishes", "topic", "/robot2/tf", "tf2_msgs/msg/TFMessage"),
         ("subscribes", "topic", "/robot2/cmd_vel", "geometry_msgs/msg/Twist"),
@@ -62,14 +62,13 @@ def test_a_relay_has_the_topics_of_its_lists_with_their_types(tmp_path: Path) ->
 
 def test_without_lists_it_carries_nothing(tmp_path: Path) -> None:
     empty = "create3_repub: {ros__parameters: {robot_namespace: /own}}\n"
-    plan = yaml.safe_load(text(made(tmp_path, "tf-per-robot", empty), "plan.yaml"))
-    assert plan["robots"]["robot1"]["nodes"]["/robot1/create3_repub"] == []
+    plan = made(tmp_path, "tf-per-robot", empty).planned
+    assert ends_of(plan, "/robot1/create3_repub") == []
 
 
 def test_in_one_tf_its_tf_is_that_of_all(tmp_path: Path) -> None:
-    table = text(made(tmp_path, "frames-per-robot"), "plan.yaml")
-    ends = yaml.safe_load(table)["robots"]["robot1"]["nodes"]["/robot1/create3_repub"]
-    assert "/tf" in {it[2] for it in ends}
+    plan = made(tmp_path, "frames-per-robot").planned
+    assert "/tf" in {it.name for it in ends_of(plan, "/robot1/create3_repub")}
 
 
 @pytest.mark.parametrize("wrong", ['["odom"]', '["odom", "tf", "tf2_msgs/msg/TFMessage"]'])
@@ -77,6 +76,5 @@ def test_a_name_without_a_type_has_none(wrong: str, tmp_path: Path) -> None:
     params = REPUBLISHER.replace(
         '["odom", "nav_msgs/msg/Odometry", "tf", "tf2_msgs/msg/TFMessage"]', wrong
     )
-    plan = yaml.safe_load(text(made(tmp_path, "tf-per-robot", params), "plan.yaml"))
-    ends = plan["robots"]["robot1"]["nodes"]["/robot1/create3_repub"]
-    assert {it[2]: it[3] for it in ends}["/robot1/odom"] == ""
+    ends = ends_of(made(tmp_path, "tf-per-robot", params).planned, "/robot1/create3_repub")
+    assert {it.name: it.type for it in ends}["/robot1/odom"] == ""

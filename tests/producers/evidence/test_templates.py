@@ -7,7 +7,7 @@ import pytest
 
 from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.producers.evidence.claims import claimed
-from multibot_rewrite.producers.evidence.records import Given
+from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Place
 
 JOINTS, KINDS = Place("c.yaml", 3), Place("c.yaml", 4)

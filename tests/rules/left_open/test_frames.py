@@ -15,9 +15,9 @@ from multibot_rewrite.fleet.checks.written_system import DRIVERS
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.transforms import edge, edges_off, joint_edges
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
+from multibot_rewrite.spelling.records import Given, GivenNode
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import NOWHERE, Edge, Place, System, edge_of

@@ -14,12 +14,12 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.evidence.hardware import exported
-from multibot_rewrite.producers.evidence.records import Given, GivenNode
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.rules.files.controllers import undeclared_controller
 from multibot_rewrite.rules.files.given import Beside
 from multibot_rewrite.rules.files.records import Remark
 from multibot_rewrite.rules.system.interfaces import Missing, missing
+from multibot_rewrite.spelling.records import Given, GivenNode
 from multibot_rewrite.system.records import Interface, Place
 
 SYSTEM = """<robot name="r">

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Transforms of a robot: what sends them, and which nodes would send one a second time."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Sequence
+
+from multibot_rewrite.base.conventions import BODY_FRAMES
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.description.rewriters.own_defaults import MODEL, default_of, frame_sites
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
+from multibot_rewrite.fleet.outputs.output_file import own_yaml
+from multibot_rewrite.fleet.robots.fitting.node_topics import controllers, plugins, usual_values
+from multibot_rewrite.fleet.robots.member import Member
+from multibot_rewrite.knowledge.conditions import parse_condition
+from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.ends import bridge_rows
+from multibot_rewrite.producers.evidence.filling import sent_with
+from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
+from multibot_rewrite.spelling.records import Given
+from multibot_rewrite.spelling.transforms import sent_by
+from multibot_rewrite.system.records import NOWHERE, SUBSCRIBES, Edge, edge_of
+from multibot_rewrite.system.tool_nodes import last_word
+
+# The layout in which a description keeps its frames.
+_NAMING = make_naming("tf-per-robot")
+_TF = "tf"
+
+
+def sent_by_plugins(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
+    """Return the transforms that plugins of the description send to tf; none of a real robot."""
+    if spec.simulator == REAL:
+        return ()
+    elsewhere = _led_elsewhere(spec)
+    found = (edge for topic, edge in _sent_by_systems(member) if topic not in elsewhere)
+    return (*found, *(it for node in plugins(member) for it in sent_by(node, "")))
+
+
+def is_led_elsewhere(member: Member, spec: RobotSpec) -> bool:
+    """Has a bridge file of the robot the transform of its drive on another topic than tf?"""
+    elsewhere = _led_elsewhere(spec)
+    return bool(elsewhere) and any(topic in elsewhere for topic, _ in _sent_by_systems(member))
+
+
+def _sent_by_systems(member: Member) -> Iterator[tuple[str, Edge]]:
+    """Yield the transforms of the simulator's systems, each with the last word of its topic there."""
+    for host, section in collect(member.source, member.tree).served:
+        sites = frame_sites(host, section, _NAMING)
+        frames = [text_at(host, it.path) or default_of(host, it.default, _NAMING) for it in sites]
+        if len(frames) == 2:
+            parent, child = (it.removeprefix(MODEL) for it in frames)
+            yield last_word(text_at(host, TF_ELEMENT) or _TF), edge_of(parent, child)
+
+
+def _led_elsewhere(spec: RobotSpec) -> set[str]:
+    """Return the last words of the simulator's topics with transforms that bridge files of the robot
+    have on no tf."""
+    led: dict[str, set[str]] = defaultdict(set)
+    for path in spec.companions.get("bridge", ()):
+        for it in bridge_rows(own_yaml(spec, path)):
+            if it.end.type == TF_TYPE and it.end.role != SUBSCRIBES:
+                led[last_word(it.inside)].add(last_word(it.end.name))
+    return {inside for inside, names in led.items() if _TF not in names}
+
+
+def sent_by_controllers(nodes: Iterable[NodeFacts]) -> Iterator[Edge]:
+    """Yield the transforms of the controllers that surely run."""
+    yield from (it for node in controllers(nodes) for it in sent_by(node, ""))
+
+
+def without_second_senders(
+    nodes: Sequence[NodeFacts], free: Collection[str], sent: Sequence[Edge]
+) -> Iterator[NodeFacts]:
+    """Yield the nodes, free ones with their transforms off where another one sends them: two would
+    take the frame from each other."""
+    bodies = {*BODY_FRAMES, *(it.child for it in sent)}
+    taken = {_place(it, bodies) for it in (*sent, *_in_files(nodes, free))}
+    for node in nodes:
+        own = {_place(it, bodies) for it in sent_by(node, "")}
+        switch = _switch_of(node) if node.name in free and not own.isdisjoint(taken) else ""
+        yield (node._replace(sends=(), usual=(*node.usual, (switch, False))) if switch else node)
+        taken |= set() if switch else own
+
+
+def _in_files(nodes: Iterable[NodeFacts], free: Collection[str]) -> Iterator[Edge]:
+    yield from (it for node in nodes if node.name not in free for it in sent_by(node, ""))
+
+
+def sends_too(nodes: Iterable[NodeFacts], free: Collection[str], sent: Sequence[Edge]) -> bool:
+    """Does a node that surely runs and is not ``free`` send a transform that plugins have ``sent``?"""
+    bodies = {*BODY_FRAMES, *(it.child for it in sent)}
+    sure = (it for it in nodes if not it.when)
+    own = {_place(it, bodies) for it in _in_files(sure, free)}
+    return any(_place(it, bodies) in own for it in sent)
+
+
+def _place(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:
+    """Return what a transform places, and where: a robot has one place, whichever of its frames has
+    it."""
+    return edge.parent, "" if edge.child in bodies else edge.child
+
+
+def _switch_of(node: NodeFacts) -> str:
+    """Return the parameter that, alone, switches all transforms of a node off; empty for none."""
+    asked = (one for it in node.sends for terms in parse_condition(it.condition) for one in terms)
+    values = usual_values(node)
+    for name in dict.fromkeys(it.parameter for it in asked):
+        off = {**values, name: Given(False, NOWHERE)}
+        if not any(sent_with(node, off)):
+            return name
+    return ""

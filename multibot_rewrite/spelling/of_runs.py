@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A node as it runs -> its ends, with the names that rcl makes of its rules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.base.rosnames import (
+    BoundNode,
+    RemapRule,
+    bind,
+    expand,
+    parse_remap,
+    resolve_bound,
+)
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.spelling.records import Rule, Run
+from multibot_rewrite.system.records import ACTION, MAY, RUNS, SERVICE, End, Sure
+
+_PART = "/_action/send_goal"
+
+
+def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
+    """The rules as rcl reads them."""
+    found = (parse_remap(f"{source}:={target}") for source, target in rules)
+    return tuple(rule for rule in found if rule is not None)
+
+
+def with_names(run: Run) -> Run:
+    """The run with the names of its ends; those that are made at run time have none."""
+    own = bind(run.name, run.namespace, parsed(run.rules))
+    bare = bind(run.name, run.namespace, ())
+    space = run.process_namespace
+    helper = bind(run.name, space, parsed(run.process_rules)) if space else own
+    ends = (it for it in run.fact.endpoints if it.name and "<" not in it.name)
+    return run._replace(
+        names=tuple(
+            (it, _name_of(run, it, bare if _is_fixed(it) else helper if it.helper else own))
+            for it in ends
+        )
+    )
+
+
+def _is_fixed(end: Endpoint) -> bool:
+    return bool(end.fixed) and not end.beside
+
+
+def _name_of(run: Run, end: Endpoint, bound: BoundNode) -> str:
+    """The name that an end has; that of one beside another is made of the other's
+    (image_transport camera_common.cpp getCameraInfoTopic)."""
+    if end.beside:
+        above = resolve_bound(end.beside, end.kind, bound).rpartition("/")[0]
+        return f"{above}/{end.name.rpartition('/')[2]}"
+    name = _below_namespace_above(run, end)
+    if end.kind == ACTION:
+        # It is services and topics with names of their own; a rule for its name reaches none.
+        return resolve_bound(f"{name}{_PART}", SERVICE, bound).removesuffix(_PART)
+    return resolve_bound(name, end.kind, bound)
+
+
+def _below_namespace_above(run: Run, end: Endpoint) -> str:
+    """The name of an end that its node resolves in the namespace above its own, else its name."""
+    if not end.above or str(run.value(end.parameter) or "").startswith("/"):
+        return end.name
+    return expand(end.name.lstrip("/"), run.namespace.rpartition("/")[0] or "/", "")
+
+
+def ends_of(run: Run) -> Iterator[End]:
+    """The ends of a node; those under a condition may be there."""
+    for end, name in run.names:
+        given = run.values.get(end.parameter)
+        yield End(
+            end.kind,
+            end.role,
+            name,
+            end.type,
+            "",
+            f"{run.full_name}{end.by}",
+            None,
+            run.process,
+            end.name,
+            end.also,
+            Sure(MAY.word, end.when) if end.when else RUNS,
+            given.place if given else run.place,
+        )

@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Records as plain values of JSON and YAML, without what is as usual, and back with checks. Pure."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Collection, Mapping
+from functools import cache, partial
+from operator import attrgetter
+from types import NoneType
+from typing import Any, TypeVar, cast, get_args, get_origin, get_type_hints
+
+from multibot_rewrite.base.findings.finding import LEVELS, Finding
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.system.records import (
+    CALIBRATION,
+    CHANGING,
+    COMPUTER,
+    DEVICE,
+    EXPECTED,
+    KINDS,
+    MAY,
+    OFF,
+    OWN,
+    QUIET,
+    ROLES,
+    RUNS,
+    TIMEOUT,
+    UNKNOWN,
+    Address,
+    Controller,
+    Edge,
+    End,
+    Environment,
+    Heard,
+    Lookup,
+    Node,
+    Parameter,
+    Place,
+    Qos,
+    Robot,
+    Sure,
+    System,
+    Topic,
+    place_of,
+)
+
+Reader = Callable[[Any], Any]
+_TYPE_NAMES = {str: "text", int: "a whole number", bool: "true or false"}
+# NaN is not below it, and every whole number below it fits into a float.
+_LARGEST = 1e300
+# What no robot reaches, in metres. NaN is not below it, either.
+FARTHEST = 1e12
+# Of a field that is a list, what its items may be.
+ALLOWED_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
+    (End, "kind"): KINDS,
+    (End, "role"): ROLES,
+    (Topic, "bridge"): ROLES,
+    (Address, "kind"): (DEVICE, CALIBRATION, COMPUTER, OWN),
+    (Sure, "word"): tuple(it.word for it in (RUNS, MAY, UNKNOWN, OFF)),
+    (Environment, "settled"): (EXPECTED, QUIET, TIMEOUT, CHANGING),
+    (Finding, "level"): LEVELS,
+    (System, "release"): ("", *RELEASES),
+}
+FULL_NAMES = {
+    (Node, "name"),
+    (End, "name"),
+    (End, "node"),
+    (Heard, "topic"),
+    (Lookup, "node"),
+    (Address, "node"),
+    (Parameter, "node"),
+    (Controller, "manager"),
+    (Robot, "tf_topic"),
+    (Topic, "name"),
+}
+_NUMBERS = {(Edge, "transform"), (Heard, "pose")}
+# The transforms of a plan say who sends them and not on which topic.
+MAYBE_FULL_NAMES: Mapping[type, str] = {Edge: "topic"}
+# What fixes a file is for the program that found it.
+LEFT_OUT: Mapping[type, str] = {Finding: "edits"}
+# Records that a text says whole, as far as it does: how it is made, and read.
+SHORT: Mapping[type, tuple[Callable[[Any], str], Callable[[str], Any]]] = {
+    Place: (str, place_of),
+    Sure: (attrgetter("word"), Sure),
+}
+# What a file may have below a record.
+BELOW: Mapping[type, tuple[str, ...]] = {Robot: ("nodes",), Node: ("ends", "parameters")}
+Read = TypeVar("Read")
+# The type of a field whose pairs are a mapping in a file: policies of Qos whose value is a word.
+POLICIES = tuple[tuple[str, str], ...]
+POLICY_NAMES = ("history", "reliability", "durability", "liveliness")
+
+
+class WrongValue(Exception):
+    """A wrong value; ``keys`` is the path to it, the innermost key first."""
+
+    def __init__(self, reason: str, *keys: str) -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.keys = list(keys)
+
+
+def unexpected(expected: str, value: object) -> WrongValue:
+    """That something else was expected."""
+    return WrongValue(f"expected {expected}, not {shown(value)}")
+
+
+def read_plain(expected: type, value: object) -> object:
+    """A text, whole number or truth value."""
+    # Not isinstance: True is an int as well.
+    if type(value) is not expected:
+        raise unexpected(_TYPE_NAMES[expected], value)
+    return value
+
+
+def read_word(words: tuple[str, ...], value: object) -> object:
+    """One of these words."""
+    if value not in words:
+        raise unexpected(f"one of {', '.join(words)}", value)
+    return value
+
+
+def read_policies(policies: Collection[str], value: object) -> object:
+    """Return policies with their words, which may be written in small letters."""
+    if not isinstance(value, dict):
+        raise unexpected("a mapping, as {durability: transient_local}", value)
+    for policy, word in value.items():
+        if policy not in policies or not isinstance(word, str):
+            what = f"write words of {', '.join(policies)}, as {{durability: transient_local}}"
+            raise WrongValue(what, f".{policy}")
+    return tuple((policy, word.upper()) for policy, word in value.items())
+
+
+def read_nothing(value: object) -> object:
+    """Raise WrongValue for what no file has."""
+    raise WrongValue("not a key of a file; leave it out")
+
+
+def read_full_name(value: object) -> object:
+    """A name with a slash in front."""
+    if not isinstance(value, str) or not value.startswith("/"):
+        raise unexpected("a full name that starts with /", value)
+    return value
+
+
+def read_seconds(value: object) -> object:
+    """A time; null is no limit."""
+    if value is None:
+        return math.inf
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
+        raise unexpected("a number or null", value)
+    return float(value)
+
+
+def read_transform(value: object) -> object:
+    """Three numbers and four, or nothing; null is one that is none (NaN)."""
+    numbers = read_list(read_seconds, value)
+    if len(numbers) not in (0, 7) or not all(
+        abs(it) < FARTHEST or it == math.inf for it in numbers
+    ):
+        raise unexpected("7 numbers: x, y, z and a quaternion x, y, z, w", value)
+    return numbers
+
+
+def read_list(reader: Reader, value: Any) -> tuple[Any, ...]:
+    """A list of what ``reader`` reads."""
+    # An empty tuple is the default of a key that is left out.
+    if not isinstance(value, list) and value != ():
+        raise unexpected("a list", value)
+    result = []
+    try:
+        for item in value:
+            result.append(reader(item))
+    except WrongValue as wrong:
+        wrong.keys.append(f"[{len(result)}]")
+        raise
+    return tuple(result)
+
+
+def shown(value: object) -> str:
+    """The value in a message."""
+    text = json.dumps(value, ensure_ascii=False, default=str, skipkeys=True)
+    return text if len(text) <= 40 else f"{text[:39]}…"
+
+
+def plain_value(value: object) -> Any:
+    """Return a record as JSON has it, without what is as usual; a plain value is returned as it is."""
+    if isinstance(value, tuple):
+        fields = getattr(value, "_fields", None)
+        if fields is None:
+            pairs = value and type(value[0]) is tuple
+            return dict(value) if pairs else [plain_value(item) for item in value]
+        kind = type(value)
+        if kind in SHORT:
+            text = SHORT[kind][0](value)
+            if SHORT[kind][1](text) == value:
+                return text
+        usual, left_out = cast(Any, kind)._field_defaults, LEFT_OUT.get(kind)
+        named = zip(fields, value, strict=True)
+        unusual = (it for it in named if usual.get(it[0], ...) != it[1])
+        return {name: plain_value(it) for name, it in unusual if name != left_out}
+    if isinstance(value, float) and math.isinf(value):
+        return None
+    return value
+
+
+def record_from(kind: type, value: object, file: str) -> Any:
+    """Return a value as the record ``kind``; raises InputError with file, key and what is wrong."""
+    return in_file(reader(kind), value, file)
+
+
+def in_file(read: Callable[[Any], Read], value: object, file: str) -> Read:
+    """Return what is read of a value; raises InputError with file, key and what is wrong."""
+    try:
+        return read(value)
+    except WrongValue as wrong:
+        key = "".join(reversed(wrong.keys)).lstrip(".")
+        raise InputError(f"{file}: {key}: {wrong.reason}") from None
+
+
+# Each reader is made once: a snapshot of 1,000 robots has half a million values.
+@cache
+def reader(expected: Any) -> Reader:
+    """Return a function that reads a JSON value as the type ``expected``, or raises WrongValue."""
+    options = get_args(expected)
+    if expected == POLICIES:
+        return partial(read_policies, POLICY_NAMES)
+    if NoneType in options:
+        inner = reader(options[0])
+        return lambda value: None if value is None else inner(value)
+    if get_origin(expected) is tuple:
+        return partial(read_list, reader(options[0]))
+    if hasattr(expected, "_fields"):
+        hints = get_type_hints(expected)
+        readers = {name: _field_reader(expected, name, hint) for name, hint in hints.items()}
+        needed = [it for it in hints if is_needed(expected, it)]
+        whole = partial(_read_record, expected, readers, needed)
+        return partial(_read_short, expected, whole) if expected in SHORT else whole
+    return read_seconds if expected is float else partial(read_plain, expected)
+
+
+def _field_reader(kind: Any, name: str, hint: Any) -> Reader:
+    words = ALLOWED_WORDS.get((kind, name))
+    if words:
+        one = partial(read_word, words)
+        return partial(read_list, one) if get_origin(hint) is tuple else one
+    if (kind, name) in _NUMBERS:
+        return read_transform
+    if MAYBE_FULL_NAMES.get(kind) == name:
+        return lambda value: value if value == "" else read_full_name(value)
+    if LEFT_OUT.get(kind) == name:
+        return read_nothing
+    return read_full_name if (kind, name) in FULL_NAMES else reader(hint)
+
+
+def _read_short(kind: type, whole: Reader, value: object) -> object:
+    return whole(SHORT[kind][1](value)._asdict() if isinstance(value, str) else value)
+
+
+def is_needed(kind: Any, name: str) -> bool:
+    """Must a file have the field: has it no default, or one that is no full name where it has to be?"""
+    usual = kind._field_defaults
+    return name not in usual or (usual[name] == "" and (kind, name) in FULL_NAMES)
+
+
+def _read_record(
+    kind: Any, readers: Mapping[str, Reader], needed: Collection[str], value: object
+) -> object:
+    if type(value) is kind:
+        return value
+    if type(value) in (Node, End, Qos):
+        value = cast(Any, value)._asdict()
+    if not isinstance(value, dict):
+        raise unexpected("an object", value)
+    fields: dict[str, object] = {}
+    name = ""
+    try:
+        for name, given in value.items():
+            fields[name] = readers[name](given)
+    except WrongValue as wrong:
+        wrong.keys.append(f".{name}")
+        raise
+    except KeyError:
+        keys = ", ".join((*readers, *BELOW.get(kind, ())))
+        raise WrongValue(f"unknown key; the keys are {keys}", f".{name}") from None
+    for name in needed:
+        if name not in fields:
+            raise WrongValue("missing; it is needed", f".{name}")
+    return kind(**fields)
