@@ -20,7 +20,14 @@ from multibot_rewrite.rules.system.tf_causes import (
     where_set,
     why_not_received,
 )
-from multibot_rewrite.rules.system.tf_trees import frames_in, home_of, robots_on, taken_elsewhere
+from multibot_rewrite.rules.system.tf_trees import (
+    by_child,
+    frames_by_topic,
+    frames_in,
+    home_of,
+    robots_on,
+    taken_elsewhere,
+)
 from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.ownership import SEPARATORS
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, Robot
@@ -77,7 +84,7 @@ def undeclared_frame(plan: Index, seen: Index) -> Iterator[Finding]:
     """A frame that a driver adds below its sensor's link is none. It is an error where it is there in
     place of a planned one."""
     for tree, robot, found in _of_each(plan, seen):
-        children = {edge.child: edge for edge in tree.edges}
+        children = by_child(seen)[tree.topic]
         others = [
             it
             for it in found
@@ -88,7 +95,8 @@ def undeclared_frame(plan: Index, seen: Index) -> Iterator[Finding]:
             names, meant = [it.frame for it in others], others[0].meant
             verb, them = ("is", "it") if len(names) == 1 else ("are", "them")
             cause = f"did you mean {meant}? Otherwise" if meant else "a sensor's own frame? Then"
-            instead = any(it.meant and it.meant not in {*frames_in(tree)} for it in others)
+            there = frames_by_topic(seen)[tree.topic]
+            instead = any(it.meant and it.meant not in there for it in others)
             yield undeclared_frame.finding(
                 f"{_frames(names)} {verb} not in the description of {robot.name}",
                 f"{cause} add {them} to other_frames of the plan",
@@ -140,7 +148,7 @@ def misnamed(plan: Index, seen: Index) -> Set[str]:
     """The robots of which frames are sent under other names, or on another tf topic than theirs."""
     strays = set()
     for tree, robot, found in _of_each(plan, seen):
-        sent = {edge.child for edge in tree.edges}
+        sent = by_child(seen)[tree.topic]
         if any(it.meant and it.meant not in sent and it.frame in sent for it in found):
             strays.add(robot.name)
     elsewhere = taken_elsewhere(plan)
@@ -158,23 +166,25 @@ def _of_each(plan: Index, seen: Index) -> Iterator[tuple[Tree, Robot, Sequence[S
 
 @once
 def _strays(plan: Index, seen: Index) -> Sequence[tuple[Tree, Strays]]:
-    return [(tree, _strays_of(plan, tree)) for tree in seen.trees]
+    there = frames_by_topic(seen)
+    return [(tree, _strays_of(plan, tree, there[tree.topic])) for tree in seen.trees]
 
 
-def _strays_of(plan: Index, tree: Tree) -> Strays:
+def _strays_of(plan: Index, tree: Tree, present: Set[str]) -> Strays:
     """The frames of a tree that belong to a robot by name or topic, and are not planned."""
     found: dict[str, list[Stray]] = defaultdict(list)
     names: dict[str, list[str]] = defaultdict(list)
     # A moving frame on a robot's own topic may be anything that it detects.
-    own, robots = home_of(plan, tree), robots_on(plan, tree)
-    present, fixed = {*frames_in(tree)}, {it.child for it in tree.edges if it.static}
+    own, robots = home_of(plan, tree), {*robots_on(plan, tree)}
+    fixed = {it.child for it in tree.edges if it.static}
     for name in (it for it in frames_in(tree) if it not in _known(plan)):
         robot = plan.frame_robot(name)
-        plain = {one: _planned(plan, one).get(name, "") for one in robots if not robot}
-        bare = [one for one, it in plain.items() if it and (it == name or it not in present)]
+        meant = _meant_by(plan).get(name, {}) if not robot else {}
+        plain = {one: it for one, it in meant.items() if one in robots}
+        bare = [one for one, it in plain.items() if it == name or it not in present]
         if len(bare) == 1:
             found[bare[0]].append(Stray(name, plain[bare[0]], bare=True))
-        elif not any(plain.values()):
+        elif not plain:
             home = own[0] if len(own) == 1 else _behind_prefix(plan, name)
             names[robot or home].append(name)
     for robot, strange in names.items():
@@ -205,6 +215,16 @@ def _planned_frames(plan: Index) -> Mapping[str, Mapping[str, str]]:
         # One of a layout without the names may hold the robot's.
         is_plain = any(it == frame for it, frame in plain.items())
         found[robot.name] = {it: it for it in robot.frames} if is_plain else plain
+    return found
+
+
+@once
+def _meant_by(plan: Index) -> Mapping[str, Mapping[str, str]]:
+    """By name without the robot's: the frame of each robot that has it."""
+    found: dict[str, dict[str, str]] = defaultdict(dict)
+    for robot, frames in _planned_frames(plan).items():
+        for plain, frame in frames.items():
+            found[plain][robot] = frame
     return found
 
 
@@ -251,14 +271,15 @@ def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
     senders = _senders(plan) if seen.system.edges else {}
     heard: dict[str, set[str]] = defaultdict(set)
     for tree, strays in _strays(plan, seen):
-        nobodys: list[str] = []
+        nobodys: set[str] = set()
         for name in frames_in(tree):
             # On another topic it has a finding of its own.
             owner = plan.of_frames.exact.get(name, "")
-            (heard[owner].add if owner else nobodys.append)(name)
+            (heard[owner].add if owner else nobodys.add)(name)
         for owner in {*home_of(plan, tree), *robots_on(plan, tree)} if nobodys else ():
             plain = _planned(plan, owner)
-            heard[owner].update(it for name in nobodys for it in (name, plain.get(name, "")))
+            heard[owner] |= nobodys & plan.frames_of[owner]
+            heard[owner].update(plain[it] for it in plain.keys() & nobodys)
         for owner, found in strays.items():
             heard[owner].update(it.meant for it in found)
     for robot in plan.system.robots:

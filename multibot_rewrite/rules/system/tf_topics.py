@@ -9,6 +9,7 @@ from collections.abc import Container, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.system.tf_trees import by_child
 from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system.index import Index, Tree
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, incomplete
@@ -105,7 +106,7 @@ def _frames_beside(
         for robot in (it for it in found if it in senders or it in seen.home):
             home = _home(seen, robot, senders.get(robot, {}))
             own = trees.get(home, Tree(home, (), (), ()))
-            children = {it.child for it in own.edges}
+            children = by_child(seen).get(home, {})
             whole = len(found[robot]) > 1
             odd = [it for it in found[robot] if not _is_copy(seen, own, children, it, whole)]
             if not odd or home == tree.topic or tree.topic in senders.get(robot, ()):

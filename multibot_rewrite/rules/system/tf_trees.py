@@ -77,6 +77,18 @@ def frames_in(tree: Tree) -> Iterator[str]:
     return iter(dict.fromkeys(name for edge in tree.edges for name in (edge.child, edge.parent)))
 
 
+@once
+def by_child(seen: Index) -> Mapping[str, Mapping[str, Edge]]:
+    """By tf topic and child: a transform."""
+    return {tree.topic: {edge.child: edge for edge in tree.edges} for tree in seen.trees}
+
+
+@once
+def frames_by_topic(seen: Index) -> Mapping[str, Set[str]]:
+    """By tf topic: every frame there."""
+    return {tree.topic: {*frames_in(tree)} for tree in seen.trees}
+
+
 def no_odometry(seen: Index, robot: str, odom: str, root: str) -> str:
     """The cause of a tree in pieces: nothing is sent below an odometry frame, or elsewhere."""
     if other := sent_elsewhere(seen, robot, odom, root):
