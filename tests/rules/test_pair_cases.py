@@ -467,3 +467,31 @@ def test_the_only_name_of_its_type_is_the_one_in_its_place() -> None:
     )
     assert (found.code, found.names) == ("MG102", ("/robot1/x",))
     assert "it publishes /y/other of that type" in found.hint
+
+
+TF = "tf2_msgs/msg/TFMessage"
+ELSEWHERE = f"""\
+planned: frames of robot1 on /robot1/tf: robot1/foot, robot1/wheel, robot1/mast, robot1/laser
+as planned: /robot1/robot_state_publisher publishes /robot1/tf {TF}
+running: transform robot1/foot -> robot1/wheel on /robot1/tf
+running: transform robot1/mast -> robot1/laser on /robot1/tf
+running: /ros_gz_bridge publishes /gz/tf {TF}
+running: transform robot1/foot -> robot1/mast on /gz/tf
+"""
+
+
+@pytest.mark.parametrize("topic", ["/gz/tf", "/gz/others"])
+def test_frames_on_another_topic_are_meant_where_a_row_brings_them_there(topic: str) -> None:
+    """Where nothing says who sent them, a plan alone tells where they belong."""
+    row = f"planned: topic {topic} over a bridge that publishes {TF}"
+    found = [it.names for it in check(*read_example(ELSEWHERE + row)) if it.code == "MG405"]
+    odd = [("robot1/mast", "/gz/tf", "/robot1/tf")]
+    assert found == ([] if topic == "/gz/tf" else odd)
+
+
+def test_a_tree_lacks_what_a_row_brings_elsewhere() -> None:
+    """What is on another topic because of a slip is a finding of its own, this is not."""
+    row = f"planned: topic /gz/tf over a bridge that publishes {TF}"
+    for text, codes in ((row, {"MG406"}), ("planned: shared topic /x", {"MG405"})):
+        found = check(*read_example(ELSEWHERE + text))
+        assert {it.code for it in found} & {"MG405", "MG406"} == codes

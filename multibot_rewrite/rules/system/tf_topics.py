@@ -9,7 +9,7 @@ from collections.abc import Container, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.system.tf_trees import by_child
+from multibot_rewrite.rules.system.tf_trees import by_child, taken_elsewhere
 from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system.index import Index, Tree
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, incomplete
@@ -96,7 +96,9 @@ def _frames_beside(
     frames of which no sender is known only a plan says where they belong."""
     level = WARNING if incomplete(seen.system) else ERROR
     trees = {it.topic: it for it in seen.trees}
-    for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
+    elsewhere = taken_elsewhere(seen.expected) if seen.expected else ()
+    called_tf = (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF)
+    for tree in (it for it in called_tf if it.topic not in elsewhere):
         found: dict[str, list[Edge]] = defaultdict(list)
         for it in tree.edges if not seen.robot(tree.topic) else ():
             robot = seen.frame_robot(it.child)
