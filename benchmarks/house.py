@@ -33,11 +33,30 @@ KINDS = ("code", "blank", "imports", "docstrings", "words", "data", "comments")
 # What declares a rule: its words and examples are the arguments.
 DECLARING = {"declare", "rule", "danger_rule", "graph_rule", "srdf_rule"}
 ROVER, GRAPHS = "fixtures/robots/rover.urdf", "fixtures/graphs"
+# What has several records, and all that it was and is. In NAMESAKES a name means something else.
+SHAPES = {
+    "an end": (
+        *("WiredTopic", "ReadEndpoint", "RuntimeName", "Endpoint", "EndpointName", "End", "Ends"),
+        *("StubEndpoint", "DrawnEdge"),
+    ),
+    "a node": (
+        *("NodeFacts", "KnownNode", "NodeParameters", "ReadNode", "NodeTable", "Home", "GivenNode"),
+        *("LaunchedNode", "RunningNode", "Start", "Component", "StubNode", "Node", "Run", "Fact"),
+    ),
+    "a finding": ("Problem", "Fault", "Remark", "LaunchNote", "Caveat", "Finding"),
+}
+NAMESAKES = (
+    *("description/checks/sdf_frames.py", "lint/catalogue.py", "producers/rosgraph/messages.py"),
+    "producers/launch/stand_in/ros.py",
+)
+# A test that imports so many modules besides commands and public names knows how the house is built.
+SEVERAL = 3
 # What a user asks for.
 COMMANDS = {
     "rewrite": ("urdf_postfix", ROVER, "robot1", "robot2", "-o", "{}/{{robot}}.urdf"),
     "lint": ("urdf_lint", ROVER),
     "check": ("multibot", "check", f"{GRAPHS}/plan.yaml", "--from", f"{GRAPHS}/healthy.json"),
+    "plan": ("multibot", "plan", "examples/two_robots_nav2/fleet.yaml", "-o", "{}/plan.yaml"),
     "build": ("multibot", "build", "examples/two_robots_nav2/fleet.yaml", "-o", "{}/fleet"),
 }
 BESIDE = "the public names (`__init__.py`), the version"
@@ -179,6 +198,52 @@ def referred_once(every: list[Module], functions: Iterable[ast.FunctionDef]) -> 
     return sum(words[it.name] == 1 for it in functions)
 
 
+def shapes(every: list[Module]) -> dict[str, list[str]]:
+    """The records of a thing that has several, each with its module."""
+    places = [
+        (node.name, it.file)
+        for it in every
+        for node in ast.walk(it.tree)
+        if isinstance(node, ast.ClassDef) and it.file not in NAMESAKES
+    ]
+    return {
+        what: [f"{name} ({file})" for name, file in places if name in names]
+        for what, names in SHAPES.items()
+    }
+
+
+def serialisers(every: list[Module]) -> list[str]:
+    """The modules that make a System of bytes."""
+    return [it.file for it in every if any(map(_reads_system, ast.walk(it.tree)))]
+
+
+def _reads_system(node: ast.AST) -> bool:
+    if not isinstance(node, ast.FunctionDef) or node.returns is None:
+        return False
+    given = [_name(it.annotation) for it in node.args.args if it.annotation]
+    return "bytes" in given and _name(node.returns) == "System"
+
+
+def importing_rows(checkout: Path, every: list[Module]) -> Iterator[tuple[str, int, int]]:
+    """Test files and their lines, by what they import of the package."""
+    files = {it.file: it.tree for it in every}
+    public = {"__init__.py", "version.py", *imported(files["__init__.py"], files)}
+    found: dict[str, list[int]] = defaultdict(list)
+    for path in (checkout / "tests").rglob("test_*.py"):
+        text = path.read_text()
+        inner = imported(ast.parse(text), files) - public
+        count = sum(not it.startswith("cli/") for it in inner)
+        found[_knows(count)].append(text.count("\n"))
+    for word, lines in sorted(found.items()):
+        yield word, len(lines), sum(lines)
+
+
+def _knows(count: int) -> str:
+    if count >= SEVERAL:
+        return f"{SEVERAL} inner modules or more"
+    return "1 or 2 inner modules" if count else "commands and public names alone"
+
+
 def figures(every: list[Module]) -> dict[str, str]:
     """The figures of the house, without those of its rooms and of what runs."""
     nodes = [node for it in every for node in ast.walk(it.tree)]
@@ -203,6 +268,8 @@ def figures(every: list[Module]) -> dict[str, str]:
         "names of classes that stand twice": f"{sum(it > 1 for it in classes.values()):,}",
         f"pairs of {EQUAL} equal lines": f"{equal_pairs(every):,}",
         "codes of findings": f"{len(codes):,}",
+        **{f"shapes of {what}": f"{len(it)}" for what, it in shapes(every).items()},
+        "serialisers of a System": f"{len(serialisers(every))}",
     }
 
 
@@ -220,11 +287,11 @@ def room_rows(every: list[Module]) -> Iterator[tuple[str, Counter[str]]]:
 
 
 def functions_run(checkout: Path) -> dict[str, str]:
-    """How many functions of the package run for each command, in how many modules."""
+    """How many functions of the package run for each command, in how many modules; records made."""
     with tempfile.TemporaryDirectory() as folder:
         asked = {name: [it.format(folder) for it in words] for name, words in COMMANDS.items()}
         return {
-            f"functions (modules) that run for {name}": _run(checkout, words, folder)
+            f"functions (modules, records) that run for {name}": _run(checkout, words, folder)
             for name, words in asked.items()
         }
 
@@ -253,7 +320,9 @@ def run_counted(command: str, *words: str) -> None:
     code = module.main(list(words))
     sys.setprofile(None)
     ours = {it for it in seen if f"/{PACKAGE}/" in it.co_filename and it.co_name[0] != "<"}
-    print("RAN", f"{len(ours):,} ({len({it.co_filename for it in ours})})", file=sys.stderr)
+    entered = len({it.co_filename for it in ours})
+    made = sum(it.__module__.startswith(PACKAGE) for it in tuple.__subclasses__())
+    print("RAN", f"{len(ours):,} ({entered}, {made})", file=sys.stderr)
     sys.exit(code)
 
 
@@ -322,7 +391,12 @@ def main(words: list[str]) -> None:
     every = modules(options.checkout)
     rooms = rooms_table(options.checkout, every)
     made = {"rooms": rooms, "figures": figures_table(options.checkout, every)}
-    print(*made.values(), kinds_table(every), sep="\n\n")
+    tests = table(
+        ("test files that import", "files", "lines"), importing_rows(options.checkout, every)
+    )
+    several = [f"{what}: {', '.join(it)}" for what, it in shapes(every).items()]
+    several += [f"a System is read by: {', '.join(serialisers(every))}"]
+    print(*made.values(), kinds_table(every), tests, *several, sep="\n\n")
     if options.write:
         for word, text in made.items():
             write(options.checkout / "docs" / "architecture.md", word, text)

@@ -14,13 +14,7 @@ from pathlib import Path
 
 from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.cli.walk import find_files
-from multibot_rewrite.description.reports.survey import MentionPlace, Survey, Tally, add, survey
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
-from multibot_rewrite.description.sources.whole import read_whole
-from multibot_rewrite.description.steps.collect import collect
-from multibot_rewrite.description.steps.document import read_document
+from tools.survey import MentionPlace, Survey, Tally, surveyed
 
 
 class Reason(NamedTuple):
@@ -77,23 +71,11 @@ def _holds(reason: Reason, mention: MentionPlace) -> bool:
     return fnmatchcase(mention.path, reason.path.replace("[", "[[]").replace("?", "[?]"))
 
 
-def surveyed(paths: Sequence[str]) -> Survey:
-    """What is known of all files below the paths; those that cannot be read are left out."""
-    tree, found = builtin_tree((), NEWEST_LTS), []
-    for path in find_files(paths, (".urdf", ".sdf"), everything=True).files:
-        try:
-            read = read_whole(path, {}, False)
-            found.append(survey(collect(read_document(read.data, read.file), tree), tree))
-        except InputError:
-            continue
-    return add(found)
-
-
 def main(words: Sequence[str]) -> int:
     """Print what is left; returns the exit code."""
     try:
         reasons = read_reasons(Path(words[0]).read_text("utf-8-sig"), words[0])
-        found = explain(surveyed(words[1:]), reasons)
+        found = explain(surveyed(words[1:])[0], reasons)
     except (MultibotError, OSError, IndexError) as error:
         print(f"unclaimed: {error}", file=sys.stderr)
         return 2

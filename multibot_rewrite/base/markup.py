@@ -12,8 +12,6 @@ COMMENT = rb"<!--(?s:.*?)(?:-->|\Z)"
 SILENT = COMMENT + rb"|<!\[CDATA\[(?s:.*?)(?:\]\]>|\Z)|<\?(?s:.*?)(?:\?>|\Z)"
 # Inside a start tag, behind its name: no value of an attribute holds a "<".
 ATTRIBUTES = rb"(?:[^<>\"']|\"[^\"<]*\"|'[^'<]*')*"
-# A string of Python between double quotes.
-STRING = r'(?<!\\)"(?:[^"\\]|\\.)*"'
 # Inside an expression ${...} of xacro, and inside a substitution $(...).
 IN_EXPRESSION = r"(?:[^$}]|\$(?!\{))*"
 IN_SUBSTITUTION = r"(?:[^$)]|\$(?!\())*"

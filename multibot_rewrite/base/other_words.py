@@ -13,7 +13,7 @@ from types import MappingProxyType
 COMMANDS: Mapping[str, str] = MappingProxyType(
     {
         "arguments": "multibot inspect FILE.xacro",
-        "coverage": "multibot inspect PATH...",
+        "coverage": "urdf-lint PATH...",
         "vocabulary": "multibot inspect [NAME]",
         "explain": "multibot inspect CODE",
         "learn": "multibot snapshot --form nodes",

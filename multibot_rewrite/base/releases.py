@@ -92,11 +92,6 @@ def unusual_release(given: str, environment: Mapping[str, str]) -> str:
     return f"{VARIABLE} is {found!r}, which {what}: {other}name another release with --distro"
 
 
-def release_of(told: str, text: bytes) -> str:
-    """The release that was told, else the newest that has what a description loads."""
-    return told or (OF_OLD if evidence(text) else NEWEST_LTS)
-
-
 def evidence(text: bytes) -> str:
     """What says that a description is for ``OF_OLD`` or earlier: the name of a library; empty for one
     that may be for any release."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot inspect``: what is known of findings, plugins, descriptions, a xacro's arguments."""
+"""``multibot inspect``: what is known of findings, plugins, a xacro's arguments."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.codes import near_name
 from multibot_rewrite.base.model import Site, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.cli import coverage, explain
+from multibot_rewrite.cli import explain, xacro_arguments
 from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
@@ -38,7 +38,7 @@ _FILES = (".urdf", ".sdf", ".srdf", ".xacro", ".xml")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Look up a code or name, look at files, or draft what is missing; returns the exit code."""
+    """Look up a code or name, try a xacro's arguments, or draft what is missing; returns the code."""
     if options.suggest is not None:
         return draft(options)
     words = plain_words(options)
@@ -46,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
     if not paths and explain.are_codes(words):
         return explain.run(options, words)
     if len(words) > 1 or xacro_args(options) or paths:
-        return coverage.run(options)
+        return xacro_arguments.run(options, words)
     return show(options, next(iter(words), None))
 
 
@@ -93,7 +93,7 @@ def _unknown(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> UsageEr
         return UsageError(f"{name!r} {where}; name one of them with --distro")
     near = near_names(vocabulary, name, types) or [near_name(name, rules())]
     hint = f"the nearest known: {', '.join(near)}" if any(near) else "multibot inspect lists all"
-    what = "plugin, class, element, sensor type, rule, file or folder"
+    what = "plugin, class, element, sensor type, rule or file"
     return UsageError(f"{name!r} is not known: no {what} has this name; {hint}")
 
 

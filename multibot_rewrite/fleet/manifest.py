@@ -18,7 +18,6 @@ from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
 # The manifest of a build in progress that replaces files one by one.
 NOTE = ".manifest.next.json"
-NOTHING: Mapping[str, str] = {}
 
 
 class OutputChanges(NamedTuple):

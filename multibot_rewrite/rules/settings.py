@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from multibot_rewrite.description.sources.known_arguments import KnownArguments
 
 ALL = ("M",)
-TARGETS = ("usd", "mjcf")
+TARGETS = ("mjcf",)
 TIME_LIMIT = 60.0
 EVERY_FILE = "*"
 # A system that Gazebo does not find, and links and joints that sdformat leaves out: in a simulator
@@ -45,7 +45,7 @@ class Settings(NamedTuple):
     off in files that the pattern ``matches``. Each of ``arguments`` is one more expansion of a
     xacro file, in addition to the default one. ``robots`` will share a system, renamed by
     ``naming``; without robots the rules that depend on them find nothing. ``targets`` are other
-    formats in which the names must be valid (``TARGETS``). ``roots`` are folders in which
+    formats that the description is converted to (``TARGETS``). ``roots`` are folders in which
     ``package://NAME`` is looked up. ``urdf`` is the description that SRDF files belong to, where it
     is not the one with the same robot name; ``urdfs`` are the names and paths of robots that are
     linted together with them. ``included`` are xacro files that are linted through those which

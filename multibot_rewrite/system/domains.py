@@ -41,9 +41,10 @@ def by_domain(plan: System) -> dict[int, System]:
 def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
     """One view of nodes in several domains, taken apart: a node is in the domain that the plan has it
     in, else in that of its robot by its name, or by those of all its ends; any other one in that of all
-    robots."""
+    robots, or in the first one where nothing is planned in that."""
     numbers, robot = domain_of(plan), whose_by_plan(plan).robot
     planned = {it.name: it.robot for it in plan.nodes}
+    in_use = {numbers[it] for it in planned.values()}
     theirs: dict[str, list[str]] = defaultdict(list)
     for it in seen.ends:
         theirs[it.node].append(robot(it.name))
@@ -51,10 +52,11 @@ def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
     def domain(node: str) -> int:
         if node in planned:
             return numbers[planned[node]]
-        return numbers[robot(node) or only(unique(filter(None, theirs[node])))]
+        number = numbers[robot(node) or only(unique(filter(None, theirs[node])))]
+        return number if number in in_use else min(in_use)
 
     own = {it.name: domain(it.name) for it in seen.nodes}
-    return {at: _of_nodes(seen, own, at) for at in sorted({*own.values(), *numbers.values()})}
+    return {at: _of_nodes(seen, own, at) for at in sorted(in_use)}
 
 
 def _of_nodes(system: System, own: Mapping[str, int], at: int) -> System:

@@ -210,8 +210,6 @@ def test_versions_and_what_is_shared() -> None:
 )  # fmt: skip
 def test_what_tells_of_gazebo_classic(text: bytes, found: str) -> None:
     assert releases.evidence(text) == found
-    assert releases.release_of("", text) == ("humble" if found else "lyrical")
-    assert releases.release_of("jazzy", text) == "jazzy"
 
 
 # ---------------------------------------------------------------- findings

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import signal
 import sys
 from pathlib import Path
@@ -18,7 +17,6 @@ from multibot_rewrite.base.model import InputError, ProofError, Unusable, UsageE
 from multibot_rewrite.cli import (
     adopt,
     build,
-    coverage,
     inspect,
     learn,
     live,
@@ -30,12 +28,12 @@ from multibot_rewrite.cli import (
     rewrite_file,
     snapshot,
     unplanned,
+    xacro_arguments,
 )
 from multibot_rewrite.cli import fleet as commands_of_fleets
 from multibot_rewrite.cli.options import Command, Example, OptionGroup, argument, choice, switch
 from multibot_rewrite.cli.ros2_verb import MultibotCommand
 from multibot_rewrite.cli.tables import Grid, render
-from multibot_rewrite.description.reports.survey import Loaded, MentionPlace, Survey, Tally
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
 from multibot_rewrite.description.rewriters.lookup import look_up
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
@@ -148,7 +146,7 @@ def test_arguments_of_a_xacro() -> None:
         ),
         ("late",),
     )
-    parts = render(coverage.xacro_parts(found)).splitlines()
+    parts = render(xacro_arguments.report(found)).splitlines()
     assert [it.split() for it in parts[:4]] == [
         ["argument", "default", "goes", "into", "as", "count", "example"],
         ["name", "robot", "link", "prefix", "_", "3", "of", "4", "r_base"],
@@ -163,83 +161,10 @@ def test_arguments_of_a_xacro() -> None:
 
 def test_a_xacro_without_arguments_is_rewritten() -> None:
     found = XacroArguments("a.xacro", (), ())
-    assert render(coverage.xacro_parts(found)) == (
+    assert render(xacro_arguments.report(found)) == (
         "no argument gives each robot its own names; the rewrite does it:\n"
         "  urdf-postfix a.xacro robot1 robot2 -o 'out/{robot}.urdf'\n"
     )
-
-
-TALLY = Tally(3, 2, "a.urdf:4", "base  link")
-SURVEY = Survey(
-    2,
-    {
-        Loaded("plugin", "liba.so", True): TALLY, Loaded("plugin", "libb.so", False): TALLY,
-        Loaded("plugin", "libc.so", False): TALLY._replace(times=4),
-        Loaded("hardware", "x/Y", True): TALLY._replace(times=1),
-    },
-    {"link": 3, "frame": 5, "joint": 3},
-    {
-        MentionPlace("robot/a", True): TALLY, MentionPlace("robot/b", False): TALLY._replace(times=1),
-        MentionPlace("robot/c", False): TALLY._replace(times=2),
-    },
-)  # fmt: skip
-REPORT = coverage.CoverageReport(
-    SURVEY, [coverage.Unreadable("x.urdf", "x.urdf: no XML")], "jazzy", []
-)
-
-
-def test_how_much_is_known() -> None:
-    """Percentages are rounded down, and the most frequent comes first."""
-    assert render(coverage._parts(REPORT)) == (
-        "2 files read, 1 cannot be read (ROS 2 jazzy)\n  x.urdf: no XML\n\n"
-        "3 of 10 plugins known (30.0 %), 1 of 3 names\n"
-        "count  files  not known  first seen\n"
-        "    4      2  libc.so    a.urdf:4\n"
-        "    3      2  libb.so    a.urdf:4\n\n"
-        "1 of 1 hardware classes known (100.0 %), 1 of 1 names\n\n"
-        "11 values claimed\n  frame 5, joint 3, link 3\n\n"
-        "3 unclaimed and exactly a link or joint\n"
-        "count  files  path     value      first seen\n"
-        "    3      2  robot/a  base link  a.urdf:4\n\n"
-        "3 unclaimed with a link or joint inside\n"
-        "count  files  path     value      first seen\n"
-        "    2      2  robot/c  base link  a.urdf:4\n"
-        "    1      2  robot/b  base link  a.urdf:4\n"
-    )
-    assert (coverage._percentage(3, 2), coverage._percentage(0, 0)) == (66.6, 100.0)
-    assert coverage._percentage(2000, 1999) == 99.9
-
-
-def test_the_same_as_json() -> None:
-    made = json.loads(json.dumps(coverage.as_json(REPORT)))
-    place = {"count": 3, "files": 2, "place": "a.urdf:4"}
-    assert made == {
-        "distro": "jazzy",
-        "files": {"read": 2, "unreadable": [{"file": "x.urdf", "reason": "x.urdf: no XML"}]},
-        "plugins": {
-            "count": 10, "known": 3, "percent": 30.0, "names": 3, "known_names": 1,
-            "unknown": [{"name": "libc.so", **place, "count": 4}, {"name": "libb.so", **place}],
-        },
-        "hardware": {
-            "count": 1, "known": 1, "percent": 100.0, "names": 1, "known_names": 1, "unknown": [],
-        },
-        "claims": {"frame": 5, "joint": 3, "link": 3},
-        "mentions": {
-            "exact": [{"path": "robot/a", **place, "value": "base  link"}],
-            "inside": [
-                {"path": "robot/c", **place, "count": 2, "value": "base  link"},
-                {"path": "robot/b", **place, "count": 1, "value": "base  link"},
-            ],
-        },
-        "spawners": [],
-    }  # fmt: skip
-    assert list(made["claims"]) == ["frame", "joint", "link"]
-
-
-def test_twenty_rows_are_shown() -> None:
-    assert [*coverage._rest(["x"] * 20)] == []
-    assert [*coverage._rest(["x"] * 21)] == ["  and 1 more row; --form json shows all"]
-    assert [*coverage._rest(["x"] * 23)] == ["  and 3 more rows; --form json shows all"]
 
 
 @pytest.mark.parametrize(
@@ -301,7 +226,7 @@ def test_a_section_of_the_vocabulary_as_docs_stacks_md_has_it(tmp_path: Path) ->
         row = ("plugin", "mine", "2", "acme::Mine", "2", "acme/camera 1.0")
         assert [*inspect._list([section])] == [Grid(columns, [row])]
     assert "" in [*inspect._details([section, section])], "an empty line is between two"
-    said = "no plugin, class, element, sensor type, rule, file or folder has this name"
+    said = "no plugin, class, element, sensor type, rule or file has this name"
     for name, hint in (
         ("qqqqqq", "multibot inspect lists all"), ("mines", "the nearest known: mine"),
         ("undeclared-lnk", "the nearest known: undeclared-link"),

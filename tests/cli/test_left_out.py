@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.base import left_out
-from multibot_rewrite.cli import multibot, urdf_lint
+from multibot_rewrite.cli import urdf_lint
 from multibot_rewrite.description.sources import included_by
 from multibot_rewrite.fleet.proposal.searching import search
 from multibot_rewrite.refactor.named_elsewhere import files_below
@@ -126,14 +126,6 @@ def test_without_git_nothing_is_ignored(
 ) -> None:
     monkeypatch.setenv("PATH", str(workspace))
     assert "src/arm/gen/h.urdf" in linted("src")[0]
-
-
-def test_inspect_leaves_the_same_out(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert multibot.main(["inspect", "."]) == 0
-    out, err = capsys.readouterr()
-    assert "left out: 5 folders" in err and "2 files" in out
-    assert multibot.main(["inspect", ".", "--no-default-excludes"]) == 0
-    assert f"{len(FILES)} files" in capsys.readouterr().out
 
 
 def test_the_other_commands_leave_the_same_folders_out(workspace: Path) -> None:

@@ -94,7 +94,7 @@ BESIDE = "urdf-postfix params.yaml robot1 --urdf rover.urdf -o out/p.yaml"
             )
         ),
         ("urdf-lint rover.urdf --ignore MB9999", "--ignore: no rule has the code 'MB9999'"),
-        ("urdf-lint rover.urdf --target foo", "use one of usd, mjcf"),
+        ("urdf-lint rover.urdf --target foo", "use one of mjcf"),
         ("urdf-lint rover.urdf --roots nosuch", "argument --roots: 'nosuch' is no folder"),
         ("multibot plan rover.urdf r1 --roots nosuch", "argument --roots: 'nosuch' is no folder"),
         ("urdf-lint rover.urdf sim:=gz", "NAME:=VALUE is for xacro, rover.urdf is no xacro"),

@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 import json
-import os
-import pty
-import re
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
-from paths import CORPUS, ROBOTS, ROOT
+from paths import ROBOTS, ROOT
 
 import multibot_rewrite
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -25,7 +22,6 @@ from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.lookup import look_up
 from multibot_rewrite.description.rewriters.vocabulary import TYPES, load_vocabulary
 from multibot_rewrite.lint import catalogue
-from tools import unclaimed
 
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
 PAGE = ROOT / "docs" / "stacks.md"
@@ -85,6 +81,7 @@ def plugin(library: str, body: str = "") -> str:
 
 
 ROVER = str(ROBOTS / "rover.urdf")
+ARM = str(ROOT / "fixtures/xacros/arm.urdf.xacro")
 LAUNCH = str(ROOT / "examples/launch_tutorial/three.launch.xml")
 KNOWN = plugin("libgazebo_ros_diff_drive.so")
 ACME = plugin("libacme.so", "<x>hip</x><x>arm</x><list>hip arm</list>")
@@ -120,7 +117,7 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
         ),
         (("--nothing",), "write the command first, for example: multibot check"),
         (("inspect", "a", "--vocabulry", "x"), "--vocabulry; did you mean '--vocabulary'?"),
-        (("coverage", "a"), "there is no command 'coverage'; use multibot inspect PATH..."),
+        (("coverage", "a"), "there is no command 'coverage'; use urdf-lint PATH..."),
         (("rewrite", "a"), "there is no command 'rewrite'; use urdf-postfix INPUT ROBOT..."),
         (("inspect", "x", "--suggest", "a"), "--suggest goes with --vocabulary only"),
         (("inspect", "--form", "json", "--suggest", "a"), "--suggest goes with"),
@@ -136,7 +133,11 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
             "rover.urdf: a description; use multibot init, which makes a fleet file",
         ),
         (("check", LAUNCH), ".launch.xml: a launch file; use multibot check-launch, or"),
-        (("inspect", "."), ".: no *.urdf or *.sdf there; name a file or another folder"),
+        (("inspect", "."), ". is no xacro; urdf-lint . tells what is not known in it"),
+        (("inspect", ROVER), "rover.urdf tells what is not known in it"),
+        (("inspect", ARM, ARM), "the arguments of one xacro file are shown; leave it out"),
+        (("inspect", "name:=a"), "name:=a is an argument of a xacro file; name the file"),
+        (("inspect", ROVER, "name:=a"), "NAME:=VALUE is for xacro"),
     ],
 )
 def test_wrong_use_is_one_line(multibot: Multibot, words: tuple[str, ...], said: str) -> None:
@@ -188,77 +189,9 @@ def test_urdf_postfix_does_not_pay_for_it() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     there = {name for name in done.stdout.split() if name.startswith("multibot_rewrite")}
     assert "multibot_rewrite.cli.urdf_postfix" in there
-    late = (".survey", ".suggest", ".multibot", ".coverage", ".tables", ".lookup")
+    late = (".suggest", ".multibot", ".xacro_arguments", ".tables", ".lookup")
     assert not {name for name in there if name.endswith(late)}
     assert "rich" not in done.stdout.split()
-
-
-# ---------------------------------------------------------------- coverage: which files
-
-
-def files_read(multibot: Multibot, *words: str) -> tuple[int, list[str]]:
-    files = multibot.json("inspect", *words)["files"]
-    return files["read"], [item["file"] for item in files["unreadable"]]
-
-
-def test_folders_are_searched_for_urdf_and_sdf_only(multibot: Multibot, folder: Path) -> None:
-    for name in ("a.urdf", "b/c.URDF", "b/d.sdf", "b/e.srdf", "b/f.xacro", "b/g.xml", "h.urdf.x"):
-        write(folder / name, robot("") if "sdf" not in name else "<sdf><model name='m'/></sdf>")
-    assert files_read(multibot, ".") == (3, [])
-    assert files_read(multibot, "b/f.xacro") == (1, [])
-    assert files_read(multibot, "b/g.xml", ".") == (4, [])
-
-
-def test_a_file_counts_once_however_it_is_reached(multibot: Multibot, folder: Path) -> None:
-    write(folder / "x" / "a.urdf", robot(""))
-    (folder / "x" / "loop").symlink_to("..")
-    (folder / "x" / "self.urdf").symlink_to("self.urdf")
-    (folder / "link.urdf").symlink_to("x/a.urdf")
-    (folder / "other").symlink_to("x")
-    read, unreadable = files_read(multibot, ".", "x/a.urdf", "x", "other")
-    assert (read, len(unreadable)) == (1, 1)
-    assert unreadable[0].endswith("self.urdf")
-
-
-def test_a_pipe_in_a_folder_is_passed_by(multibot: Multibot, folder: Path) -> None:
-    write(folder / "a.urdf", robot(""))
-    os.mkfifo(folder / "b.urdf")
-    assert files_read(multibot, ".") == (1, [])
-
-
-def test_the_order_is_that_of_names(multibot: Multibot, folder: Path) -> None:
-    names = ["b.urdf", "c.urdf", "a/z.urdf", "a/b/y.urdf", "a/c/y.urdf", "d/x.urdf", "e/x.urdf"]
-    for name in sorted(names, key=lambda name: name[::-1]):
-        write(folder / name, "no robot")
-    assert files_read(multibot, ".")[1] == [f"./{name}" for name in names]
-    assert files_read(multibot, "e", "c.urdf")[1] == ["e/x.urdf", "c.urdf"]
-
-
-def test_what_cannot_be_read_is_told_with_its_reason(multibot: Multibot, folder: Path) -> None:
-    write(folder / "a.urdf", robot(""))
-    write(folder / "b.urdf", "<robot>")
-    write(folder / "c.urdf", "<html/>")
-    (folder / "d.urdf").symlink_to("nowhere")
-    result = multibot("inspect", ".")
-    assert result.code == 0
-    assert result.out.startswith("1 file read, 3 cannot be read (ROS 2 lyrical)\n")
-    assert "\n  ./b.urdf:1:8: not well-formed XML" in result.out
-    assert "\n  ./c.urdf:1:1: the root element is <html>" in result.out
-    assert "\n  ./d.urdf: cannot be read: No such file or directory\n" in result.out
-    assert len(files_read(multibot, ".")[1]) == 3
-
-
-def test_nothing_readable_is_an_error(multibot: Multibot, folder: Path) -> None:
-    write(folder / "b.urdf", "")
-    result = multibot("inspect", "b.urdf")
-    assert result.code == 2
-    assert result.err.startswith("multibot: b.urdf: the file is empty")
-    write(folder / "params.yaml", "amcl:\n  ros__parameters: {alpha1: 0.1}\n")
-    assert "params.yaml: a parameter file; rewrite it" in multibot("inspect", "params.yaml").err
-    assert "the other 1 cannot be read, either" in multibot("inspect", "b.urdf", "params.yaml").err
-
-
-# ---------------------------------------------------------------- coverage: what is reported
 
 
 @pytest.fixture
@@ -269,181 +202,13 @@ def two(folder: Path) -> Path:
     return folder
 
 
-REPORT = """\
-2 files read, 0 cannot be read (ROS 2 lyrical)
-
-3 of 5 plugins known (60.0 %), 1 of 2 names
-count files not known first seen
-2 2 libacme.so ./a.urdf:1
-
-0 of 0 hardware classes known (100.0 %), 0 of 0 names
-
-15 values claimed
-link 8, node 3, joint 2, model 2
-
-4 unclaimed and exactly a link or joint
-count files path value first seen
-4 2 robot/gazebo/plugin[libacme.so]/x hip ./a.urdf:1
-
-2 unclaimed with a link or joint inside
-count files path value first seen
-2 2 robot/gazebo/plugin[libacme.so]/list hip arm ./a.urdf:1
-"""
-
-
-def test_the_report(multibot: Multibot, two: Path) -> None:
-    result = multibot("inspect", ".")
-    assert (result.code, result.err) == (0, "")
-    # How many spaces are between columns is not looked at.
-    assert [" ".join(it.split()) for it in result.out.splitlines()] == REPORT.splitlines()
-    assert "\x1b" not in result.out
-
-
-def test_the_json_says_all_of_it(multibot: Multibot, two: Path) -> None:
-    x = "robot/gazebo/plugin[libacme.so]/x"
-    table = multibot.json("inspect", ".")
-    kinds = table.pop("claims")
-    assert kinds["link"] == 8 and kinds["joint"] == 2
-    assert list(kinds) == sorted(kinds)
-    assert table == {
-        "distro": "lyrical",
-        "files": {"read": 2, "unreadable": []},
-        "plugins": {
-            "count": 5,
-            "known": 3,
-            "percent": 60.0,
-            "names": 2,
-            "known_names": 1,
-            "unknown": [{"name": "libacme.so", "count": 2, "files": 2, "place": "./a.urdf:1"}],
-        },
-        "hardware": {
-            "count": 0,
-            "known": 0,
-            "percent": 100.0,
-            "names": 0,
-            "known_names": 0,
-            "unknown": [],
-        },
-        "mentions": {
-            "exact": [{"path": x, "count": 4, "files": 2, "place": "./a.urdf:1", "value": "hip"}],
-            "inside": [
-                {
-                    "path": "robot/gazebo/plugin[libacme.so]/list",
-                    "count": 2,
-                    "files": 2,
-                    "place": "./a.urdf:1",
-                    "value": "hip arm",
-                }
-            ],
-        },
-        "spawners": [],
-    }
-
-
-def test_the_page_describes_the_json(multibot: Multibot, two: Path) -> None:
-    """Every key of the example stands where it stands in the output, and the other way round."""
-    (block,) = re.findall(r"```json\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    write(two / "c.urdf", robot(plugin("libacme.so", "<y>hip</y>")))
-    write(two / "d.urdf", "")
-    assert shape(json.loads(block)) == shape(multibot.json("inspect", "."))
-
-
-def shape(value: Any) -> Any:
-    """The keys of a table and of the first row of its lists; counts and texts left out."""
-    if isinstance(value, list):
-        return [shape(item) for item in value[:1]]
-    if not isinstance(value, dict):
-        return type(value).__name__
-    lists = {"claims": {}, "inside": []}
-    return {key: lists.get(key, shape(item)) for key, item in value.items()}
-
-
-def test_a_file_gets_what_would_be_printed(multibot: Multibot, two: Path) -> None:
-    result = multibot("inspect", "a.urdf", "--form", "json", "-o", "new/out.json")
-    assert result.out == ""
-    assert json.loads((two / "new/out.json").read_text())["files"]["read"] == 1
-
-
-@pytest.mark.parametrize("target", ["a.urdf", "./b.urdf", "more.vocab"])
-def test_json_never_replaces_what_is_read(multibot: Multibot, two: Path, target: str) -> None:
-    write(two / "more.vocab", "")
-    before = (two / target).read_text()
-    words = ("--vocabulary", "more.vocab", "--form", "json", "-o", target)
-    result = multibot("inspect", ".", *words)
-    assert result.code == 2
-    assert f"{target} is a file that is read" in result.err
-    assert (two / target).read_text() == before
-
-
-def test_a_vocabulary_makes_known(multibot: Multibot, two: Path) -> None:
-    write(two / "acme.vocab", "[plugin acme]\nx uses joint link\nlist keep a label\n")
-    table = multibot.json("inspect", ".", "--vocabulary", "acme.vocab")
-    assert table["plugins"]["percent"] == 100.0
-    assert table["mentions"]["exact"] == table["mentions"]["inside"] == []
-
-
 def test_the_vocabulary_of_the_project_counts(multibot: Multibot, two: Path) -> None:
     write(two / "acme.vocab", "[plugin acme]\nx uses joint link\n")
     write(two / "pyproject.toml", '[tool.multibot-rewrite]\nvocabulary = ["acme.vocab"]\n')
-    assert multibot.json("inspect", ".")["plugins"]["percent"] == 100.0
     assert "x     uses  joint link" in multibot("inspect", "libacme.so").out
 
 
-def test_long_tables_are_cut_and_say_so(multibot: Multibot, folder: Path) -> None:
-    write(folder / "a.urdf", robot("".join(plugin(f"libacme{n}.so") for n in range(25))))
-    shown = multibot("inspect", "a.urdf").out
-    assert shown.count("libacme") == 20 and "and 5 more rows; --form json shows all" in shown
-    assert len(multibot.json("inspect", "a.urdf")["plugins"]["unknown"]) == 25
-
-
-def test_no_plugin_is_no_unknown_plugin(multibot: Multibot, folder: Path) -> None:
-    write(folder / "a.urdf", robot(""))
-    assert multibot.json("inspect", "a.urdf")["plugins"]["percent"] == 100
-
-
-@pytest.mark.slow
-def test_almost_all_is_not_shown_as_all(multibot: Multibot, folder: Path) -> None:
-    write(folder / "a.urdf", robot(KNOWN * 2999 + plugin("libacme.so")))
-    assert "(99.9 %)" in multibot("inspect", "a.urdf").out
-
-
 # ---------------------------------------------------------------- what it looks like
-
-
-def on_terminal(folder: Path, *words: str) -> tuple[int, str, str]:
-    """Exit code, standard output, and what a terminal at standard error got."""
-    ours, theirs = pty.openpty()
-    environment = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "CI")}
-    with subprocess.Popen(
-        [*COMMAND, *words],
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=theirs,
-        env={**environment, "TERM": "xterm-256color"},
-    ) as process:
-        os.close(theirs)
-        assert process.stdout is not None
-        out = process.stdout.read().decode()
-        heard = b""
-        while True:
-            try:
-                heard += os.read(ours, 65536)
-            except OSError:
-                break
-    os.close(ours)
-    return process.returncode, out, heard.decode()
-
-
-@pytest.mark.slow
-def test_many_files_have_a_progress_bar_on_a_terminal_only(folder: Path) -> None:
-    for number in range(30):
-        write(folder / f"{number}.urdf", robot(""))
-    code, out, heard = on_terminal(folder, "inspect", ".")
-    assert code == 0
-    assert "reading" in heard and "\x1b" in heard
-    assert "30 files read" in out and "\x1b" not in out
-    quiet = subprocess.run([*COMMAND, "inspect", "."], cwd=folder, capture_output=True, check=True)
-    assert quiet.stderr == b""
 
 
 def test_a_table_fits_a_narrow_terminal_and_loses_nothing() -> None:
@@ -585,10 +350,8 @@ def test_a_suggestion_can_be_used_as_it_is(multibot: Multibot, two: Path) -> Non
     result = multibot("inspect", "--suggest", "a.urdf")
     assert (result.code, result.err) == (0, "")
     write(two / "new.vocab", result.out)
-    table = multibot.json("inspect", ".", "--vocabulary", "new.vocab")
-    assert table["plugins"]["unknown"] == []
-    assert table["mentions"]["exact"] == table["mentions"]["inside"] == []
-    done = rewrite(str(two / "a.urdf"), "r1", vocabulary=["new.vocab"])
+    plain, done = (rewrite(str(two / "a.urdf"), "r1", vocabulary=it) for it in ([], ["new.vocab"]))
+    assert [sum(it.code == "MB901" for it in one.findings) for one in (plain, done)] == [3, 0]
     assert "<x>hip_r1</x><x>arm/r1</x><list>hip_r1 arm/r1</list>" in done.text
 
 
@@ -615,38 +378,8 @@ def test_the_fixture_robots_need_no_suggestion(multibot: Multibot) -> None:
         assert "[" not in multibot("inspect", "--suggest", str(path)).out
 
 
-# ---------------------------------------------------------------- real files
-
-
-@pytest.mark.more
-def test_the_corpus(multibot: Multibot, corpus: dict[str, Path]) -> None:
-    homes = sorted({str(path.parent) for path in corpus.values()})[:12]
-    table = multibot.json("inspect", *homes)
-    files = sum(path.parent.as_posix() in homes for path in corpus.values())
-    assert table["files"]["read"] + len(table["files"]["unreadable"]) == files > 12
-    assert sum(table["claims"].values()) > 1000
-    for part in ("exact", "inside"):
-        counts = [item["count"] for item in table["mentions"][part]]
-        assert counts == sorted(counts, reverse=True)
-
-
 def test_a_bad_vocabulary_stops_it(multibot: Multibot, two: Path) -> None:
     write(two / "bad.vocab", "[plugin acme]\nx uses wheel\n")
-    result = multibot("inspect", ".", "--vocabulary", "bad.vocab")
+    result = multibot("inspect", "libacme.so", "--vocabulary", "bad.vocab")
     assert (result.code, result.out) == (2, "")
     assert result.err.startswith("multibot: bad.vocab:2: unknown kind 'wheel'")
-
-
-@pytest.mark.deep
-def test_the_corpus_is_known_and_its_rest_explained(
-    corpus: dict[str, Path], multibot: Multibot
-) -> None:
-    report = multibot.json("inspect", str(CORPUS / "urdf"))
-    # Some have a rest of xacro in them, and what they include is elsewhere.
-    unreadable = report["files"]["unreadable"]
-    assert report["files"]["read"] + len(unreadable) == len(corpus)
-    assert len(unreadable) < 30
-    assert all("xacro failed" in str(it) for it in unreadable)
-    assert report["plugins"]["percent"] >= LEAST_PLUGINS
-    assert report["hardware"]["percent"] >= LEAST_HARDWARE
-    assert unclaimed.main([str(UNCLAIMED), str(CORPUS / "urdf")]) == 0

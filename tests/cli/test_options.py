@@ -33,6 +33,7 @@ from multibot_rewrite.spelling.table_formats import FORMS
 from multibot_rewrite.system import environment
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
+ARM = str(FIXTURES / "xacros" / "arm.urdf.xacro")
 FLEET = str(ROOT / "examples" / "launch_tutorial" / "fleet.yaml")
 PARAMS = str(ROOT / "examples" / "namespace_and_prefix" / "nav2_params.yaml")
 ALL = {**COMMANDS, **{it.name: it for it in PROGRAMS}}
@@ -265,7 +266,7 @@ def test_an_unknown_layout_is_refused_by_the_library_too() -> None:
         ("urdf-lint", ROVER),
         ("multibot", "plan", ROVER, "r1"),
         ("multibot", "plan", "--form=table", ROVER, "r1"),
-        ("multibot", "inspect", ROVER),
+        ("multibot", "inspect", ARM),
         ("multibot", "inspect", "--suggest", ROVER),
         ("multibot", "inspect", "MB202"),
     ],
@@ -337,7 +338,7 @@ def test_a_vocabulary_reaches_every_command_that_reads_a_description(
     for words in (
         ["plan", ROVER, "r"],
         ["plan", "--form=table", ROVER, "r"],
-        ["inspect", ROVER],
+        ["inspect", ARM],
     ):
         code, _, err = said(capsys, "multibot", *words, "--vocabulary", str(more))
         assert (code, "bad.vocab:2: unknown kind 'wheel'" in err) == (2, True), words

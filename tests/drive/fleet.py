@@ -306,7 +306,7 @@ def bridges_of(given: Reader, nodes: list[Node], resolved: Mapping[Any, str]) ->
 
 def told(file: Path, robots: tuple[str, ...]) -> Mapping[str, str]:
     """Where the launch file tells its reader to send commands, by robot."""
-    lines = re.findall(r"-r cmd_vel:=(\S+)", file.read_text().split('"""')[1])
+    lines = re.findall(r"-r (?:\\\n\s*)?cmd_vel:=(\S+)", file.read_text().split('"""')[1])
     return (
         dict(zip(robots, lines, strict=False))
         if len(lines) == len(robots)

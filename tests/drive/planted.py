@@ -110,7 +110,7 @@ MOVED = [
 ]  # fmt: skip
 NAMED = [
     Spoiled("two_robots_nav2", "robot1/bridge.yaml", 'ros_topic_name: "/robot1/cmd_vel"',
-            'ros_topic_name: "/cmd_vel"', "robot1", "drives", "/robot1/cmd_vel: that moves []"),
+            'ros_topic_name: "/cmd_vel"', "robot1", "drives", "/robot1/cmd_vel: that moves nothing"),
     Spoiled("two_robots_nav2", "robot2/bridge.yaml", 'gz_topic_name: "/robot2/cmd_vel"',
             'gz_topic_name: "/robot1/cmd_vel"', "robot2", "drives", "no topic of ROS reaches"),
     Spoiled("two_robots_nav2", "robot2/hexbase.urdf", "<topic>robot2/cmd_vel", "<topic>robot1/cmd_vel",
@@ -137,7 +137,7 @@ NAMED = [
             "text(f'{name}/hexbase')", "", "starts", "the launch file raises"),
     Spoiled("two_robots_nav2", "fleet.launch.py", "cmd_vel:=/robot1/cmd_vel",
             "cmd_vel:=/robot2/cmd_vel", "robot1", "drives",
-            "to /robot2/cmd_vel: that moves ['robot2']"),
+            "to /robot2/cmd_vel_nav: that moves ['robot2']"),
     Spoiled("mixed_fleet", "base1/nav2_params.yaml", "scan_topic: scan", "scan_topic: laser",
             "base1", "sees", "/base1/laser, which no node sends"),
     Spoiled("two_arms_moveit", "left/controllers.yaml", "arm_controller:\n", "hand:\n",

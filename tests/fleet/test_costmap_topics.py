@@ -11,7 +11,6 @@ import os
 from pathlib import Path
 
 import pytest
-import yaml
 from paths import ROOT
 
 from multibot_rewrite.fleet.build import make_outputs
@@ -52,14 +51,13 @@ def built(folder: Path, layout: str, distro: str, topic: str) -> list[str]:
     plan = plan_fleet(read_fleet(str(fleet), "", os.environ))
     made = make_outputs(plan, OUT)
     assert [str(it) for it in read_back(plan, made, OUT)] == []
-    text = next(it.data for it in made.files if it.path == "plan.yaml").decode()
-    nodes = yaml.safe_load(text)["robots"]["robot1"]["nodes"]
-    (ends,) = (
-        rows
-        for name, rows in nodes.items()
-        if name.endswith("/local_costmap") and "local_costmap/" in name
+    name = next(
+        it.name
+        for it in made.planned.nodes
+        if it.robot == "robot1" and it.name.endswith("local_costmap/local_costmap")
     )
-    return [it[2] for it in ends if it[0] == "subscribes"]
+    ends = (it for it in made.planned.ends if it.node == name)
+    return [it.name for it in ends if it.role == "subscribes"]
 
 
 @pytest.mark.more

@@ -183,9 +183,9 @@ def test_an_input_that_is_called_as_the_commands_of_nav2_has_them(tmp_path: Path
     more = "description: driven.urdf\ncompanions: {params: [controllers.yaml, mux.yaml]}\n"
     files = {"driven_urdf": DRIVEN, "controllers_yaml": CONTROLLERS, "mux_yaml": mux}
     assert build(tmp_path, text + more, **files) == 0
-    nodes = yaml.safe_load((tmp_path / "out/plan.yaml").read_text())["robots"]["robot1"]["nodes"]
-    sent = {(name, it[2]) for name, ends in nodes.items() for it in ends if it[0] == "publishes"}
-    heard = {it[2] for it in nodes["/robot1/twist_mux"] if it[0] == "subscribes"}
+    plan = read_plan((tmp_path / "out" / "plan.yaml").read_bytes(), "plan.yaml")
+    sent = {(it.node, it.name) for it in plan.ends if it.role == "publishes"}
+    heard = {name for role, name in ends(tmp_path, "/robot1/twist_mux") if role == "subscribes"}
     assert ("/robot1/twist_mux", "/robot1/drive/cmd_vel") in sent
     assert ("/robot1/collision_monitor", "/robot1/cmd_vel") in sent and "/robot1/cmd_vel" in heard
 
@@ -214,8 +214,8 @@ def test_a_manager_that_no_stack_starts_is_one_finding(
     if codes:
         return
     manager = "/controller_manager_robot1" if layout == "postfix" else "/robot1/controller_manager"
-    plan = (tmp_path / "out" / "plan.yaml").read_text()
-    assert f"[calls, service, {manager}/load_controller," in plan
+    plan = read_plan((tmp_path / "out" / "plan.yaml").read_bytes(), "plan.yaml")
+    assert ("calls", f"{manager}/load_controller") in {(it.role, it.name) for it in plan.ends}
     launch = (tmp_path / "out" / "fleet.launch.py").read_text()
     assert ("'-c', f'controller_manager_{name}'" in launch.replace('"', "'")) == (
         layout == "postfix"
@@ -250,10 +250,10 @@ def test_assisted_teleop_takes_the_type_of_its_server(
     text = f"layout: both\ndistro: {release}\nstack: {stack}\ndescription: {ROVER}\n"
     files = {"nav2_yaml": ASSISTED.format(nav2), "mux_yaml": MUX.format(own)}
     assert build(tmp_path, f"{text}companions: {{params: [nav2.yaml, mux.yaml]}}\n", **files) == 0
-    plan = yaml.safe_load((tmp_path / "out" / "plan.yaml").read_text())
-    of_server = plan["robots"]["robot1"]["nodes"]["/robot1/behavior_server"]
-    assert "/robot1/cmd_vel_teleop" in {it[2] for it in of_server}
-    assert len({it[3] for it in of_server if "/Twist" in it[3]}) == 1
+    plan = read_plan((tmp_path / "out" / "plan.yaml").read_bytes(), "plan.yaml")
+    of_server = [it for it in plan.ends if it.node == "/robot1/behavior_server"]
+    assert "/robot1/cmd_vel_teleop" in {it.name for it in of_server}
+    assert len({it.type for it in of_server if "/Twist" in it.type}) == 1
 
 
 @pytest.mark.parametrize("layout", ["both", "postfix"])

@@ -269,13 +269,12 @@ def test_a_joystick_sends_to_an_input_of_the_users_mux(
     fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
     fleet.write_text(f"layout: {layout}\ndescription: {ROVER}\n{own}\n{ROBOTS}\n")
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
-    plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot1"]["nodes"]
-    ends = {
-        (name.strip("/").replace("robot1", "").strip("/_"), role): topics
-        for name, its in plan.items()
-        for role in ("publishes", "subscribes")
-        if (topics := [it[2].replace("robot1", "").strip("/") for it in its if it[0] == role])
-    }
+    plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
+    nodes = {it.name for it in plan.nodes if it.robot == "robot1"}
+    ends: dict[tuple[str, str], list[str]] = {}
+    for it in (one for one in plan.ends if one.node in nodes):
+        key = it.node.strip("/").replace("robot1", "").strip("/_"), it.role
+        ends.setdefault(key, []).append(it.name.replace("robot1", "").strip("/"))
     assert stick in ends["teleop_twist_joy_node", "publishes"]
     assert keys in ends["teleop_twist_keyboard", "publishes"]
     assert {stick, keys} <= {*ends["twist_mux", "subscribes"]}
@@ -322,12 +321,10 @@ def test_a_keyboard_does_not_go_past_what_limits_or_chooses(
     out = built(tmp_path, f"distro: {release}\nsimulator: gazebo\nstack: [{stacks}]")
     found, stamped = keyboard(out)
     assert found == f"/robot1/{topic}"
-    plan = yaml.safe_load((out / "plan.yaml").read_text())["robots"]["robot1"]["nodes"]
-    heard = {
-        it[3] for node in plan.values() for it in node if (it[0], it[2]) == ("subscribes", found)
-    }
+    plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
+    heard = {it.type for it in plan.ends if (it.role, it.name) == ("subscribes", found)}
     assert heard <= {STAMPED if stamped else PLAIN}
-    if "/robot1/teleop_twist_keyboard" in plan:
+    if "/robot1/teleop_twist_keyboard" in {it.name for it in plan.nodes}:
         assert planned(out, "/robot1/teleop_twist_keyboard", "publishes", found)
 
 

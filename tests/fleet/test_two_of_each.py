@@ -78,7 +78,7 @@ def test_a_topic_that_only_a_bridge_brings_leaves_with_its_robot() -> None:
         in_file("robot1/bridge.yaml", "/robot1/scan", "/robot2/scan"),
         in_file("robot1/hexbase.urdf", "<link", "<!-- --><link"),
         in_file(LAUNCH, '"robot1": start_robot1', '"robot1":  start_robot1'),
-        in_file("plan.yaml", "  robot1:\n", "  robot1:\n    tag: other\n"),
+        in_file("plan.yaml", "- name: robot1\n", "- name: robot1\n  tag: other\n"),
     ],
 )  # fmt: skip
 def test_a_robot_with_another_text_is_read(edit: Edit) -> None:

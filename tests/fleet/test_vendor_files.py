@@ -182,7 +182,7 @@ def test_a_launch_file_is_named_alike_from_every_working_directory(
         monkeypatch.chdir(folder)
         plans += [it.data for it in make_outputs(made).files if it.path == "plan.yaml"]
     assert plans[0] == plans[1]
-    assert b"/controller_manager: system_model.yaml:" in plans[0]
+    assert b"place: system_model.yaml:" in plans[0]
 
 
 STATE = """\

@@ -89,7 +89,7 @@ ENDS: list[tuple[Sequence[str], int]] = [
     ([ROVER, "--fail-on", "note"], 1),
     ([ROVER, "--robots", "robot1,robot2", "--layout", "L2"], 0),
     ([ROVER, "--robots", "robot1,robot2", "--fail-on", "note"], 1),
-    ([ROVER, "--target", "usd"], 0),
+    ([ROVER, "--target", "mjcf"], 0),
     (["--help"], 0),
     (["--version"], 0),
 ]
@@ -119,7 +119,7 @@ WRONG: list[tuple[Sequence[str], str]] = [
     (["good.urdf", "--robots", "1a"], "robot name '1a'"),
     (["good.urdf", "--robots", "a,a"], "'a' is given twice"),
     (["good.urdf", "--layout", "L9"], "'L9' is not known, use one of tf-per-robot"),
-    (["good.urdf", "--target", "stl"], "usd, mjcf"),
+    (["good.urdf", "--target", "usd"], "use one of mjcf"),
     (["good.urdf", "--diff"], "give both"),
     (["good.urdf", "--fix", "--diff", "--output", "x"], "leave out --output"),
     (["good.urdf", "-"], "standard input is linted alone"),

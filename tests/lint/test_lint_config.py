@@ -111,7 +111,7 @@ def test_plain_keys(project: Path) -> None:
     text = """\
         select = ["MB2", "MB501"]
         robots = ["r1", "r2"]
-        targets = ["usd"]
+        targets = ["mjcf"]
         roots = ["external", "."]
         urdf = "robots/rover.urdf"
         fail-on = "error"
@@ -120,7 +120,7 @@ def test_plain_keys(project: Path) -> None:
     """
     found = read(project, text)
     it = found.settings
-    assert (it.select, it.robots, it.targets) == (("MB2", "MB501"), ("r1", "r2"), ("usd",))
+    assert (it.select, it.robots, it.targets) == (("MB2", "MB501"), ("r1", "r2"), ("mjcf",))
     assert [Path(root).resolve() for root in it.roots] == [project / "external", project]
     assert (it.urdf, it.seconds) == (str(project / "robots/rover.urdf"), 5.0)
     assert (found.fail_on, found.file) == ("error", str(project / "urdf-lint.toml"))
@@ -300,7 +300,7 @@ WRONG = [
     ("separators = {links = '_'}", "separator kind 'links' is not known"),
     ("separators = {link = 1}", "separators: 'link' is a number"),
     ("separators = {node = '/'}", "separator node='/': use one of _"),
-    ("targets = ['sdf']", "targets is 'sdf', use one of usd, mjcf"),
+    ("targets = ['sdf']", "targets is 'sdf', use one of mjcf"),
     ("roots = ['nowhere']", "roots: there is no folder"),
     ("roots = ['robots/rover.urdf']", "roots: there is no folder"),
     ("urdf = 'nowhere.urdf'", "urdf: no file 'nowhere.urdf' in"),
@@ -405,7 +405,7 @@ def test_the_command_has_the_last_word_on_codes(
 def test_the_command_replaces_or_adds(project: Path) -> None:
     text = """\
         robots = ["r1"]
-        targets = ["usd"]
+        targets = []
         roots = ["external"]
         baseline = "a.json"
         layout = "L4"
@@ -444,7 +444,7 @@ def test_a_command_that_says_nothing_changes_nothing(project: Path) -> None:
     [
         ({"select": ("MB99",)}, "--select: no rule has the code 'MB99'"),
         ({"ignore": ("MB5", "")}, "--ignore: no rule has the code ''"),
-        ({"target": ("sdf",)}, "--target is 'sdf', use one of usd, mjcf"),
+        ({"target": ("sdf",)}, "--target is 'sdf', use one of mjcf"),
         ({"robots": ("a b",)}, "--robots: robot name 'a b'"),
         ({"fail_on": "never"}, "--fail-on is 'never', use one of"),
         ({"layout": "L9"}, "layout 'L9' is not known"),

@@ -12,9 +12,9 @@ from multibot_rewrite.rules.settings import Settings
 MB3 = ("MB3",)
 
 
-def codes(body: str, targets: tuple[str, ...] = (), name: str = "r") -> list[str]:
+def codes(body: str, name: str = "r") -> list[str]:
     text = f'<robot name="{name}">{body}</robot>'
-    return [it.code for it in lint_data("r.urdf", text.encode(), Settings(MB3, targets=targets))]
+    return [it.code for it in lint_data("r.urdf", text.encode(), Settings(MB3))]
 
 
 def linked(parent: str, child: str, joint: str, type_: str = "continuous", more: str = "") -> str:
@@ -184,44 +184,6 @@ LASER = "libgazebo_ros_laser.so"
 )
 def test_topics_and_namespaces(body: str, expected: list[str]) -> None:
     assert codes(body) == expected
-
-
-@pytest.mark.parametrize(
-    ("body", "targets", "expected"),
-    [
-        (linked("a/b", "c-d", "j"), (), []),
-        (linked("a/b", "c-d", "j"), ("usd",), ["MB320", "MB320"]),
-        (linked("a/b", "c-d", "j/k"), ("mjcf",), ["MB321", "MB321"]),
-        (linked("a/b", "c", "j"), ("usd", "mjcf"), ["MB320", "MB321"]),
-        (linked("4wd", "_x", "j"), ("usd",), ["MB320"]),
-        (linked("Arm_1", "b2", "j"), ("usd", "mjcf"), []),
-        (linked("", "b", "j"), ("usd", "mjcf"), ["MB302"]),
-    ],
-)
-def test_names_for_other_formats(body: str, targets: tuple[str, ...], expected: list[str]) -> None:
-    assert codes(body, targets) == expected
-
-
-def test_a_usd_name_that_is_taken_is_told() -> None:
-    text = f'<robot name="r">{linked("a-b", "a_b", "j")}</robot>'
-    (found,) = lint_data("r.urdf", text.encode(), Settings(("MB320",), targets=("usd",)))
-    assert "already exists" in found.message
-
-
-@pytest.mark.parametrize(
-    ("name", "made"),
-    [
-        ("1", "'tn__1_' in Isaac Sim 6, '_1' in others"),
-        ("00_fr", "'tn__00_fr_' in Isaac Sim 6, '_00_fr' in others"),
-        ("left/wheel", "'tn__leftwheel_' and a code in Isaac Sim 6, 'left_wheel' in others"),
-        ("-", "'tn__' and a code in Isaac Sim 6, '_' in others"),
-    ],
-)
-def test_usd_names_are_those_of_isaac_sim(name: str, made: str) -> None:
-    """What usd-exchange 3.0.1 makes: tn__1_, tn__00_fr_, tn__leftwheel_eE, tn__j0."""
-    text = f'<robot name="r">{linked(name, "b", "j")}</robot>'
-    (found,) = lint_data("r.urdf", text.encode(), Settings(("MB320",), targets=("usd",)))
-    assert found.message.endswith(f"it becomes {made}")
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from multibot_rewrite.base.rosnames import bind, expand, resolve_bound
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER
 from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
-from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, TRANSPORTS, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.live.learning.choosing import (
     _nodes_by_process,
@@ -155,7 +155,9 @@ def with_end(seen: System, *ends: tuple[str, str, str, str, str]) -> System:
 
 def bare(node: NodeFacts) -> NodeFacts:
     """The node as its code is: without what a launch file makes of it, each graph name said once."""
-    ends = [end._replace(remapped="", fixed="") for end in node.endpoints if "<" not in end.name]
+    # That a node itself asks above its namespace, or beside an image, is seen in no graph.
+    plain = [end for end in node.endpoints if "<" not in end.name]
+    ends = [end._replace(remapped="", fixed="", above="", beside="") for end in plain]
     inner = {(kind, name) for end in ends for kind, name in list(expanded(end))[1:]}
     kept = dict.fromkeys(end for end in ends if (end.kind, end.name) not in inner)
     return node._replace(shared=False, endpoints=tuple(kept))
@@ -202,7 +204,15 @@ def stacks() -> dict[str, list[NodeFacts]]:
     """Every stack and node that is known, as its code is; one stack only leaves a node out."""
     library = built_in(NEWEST_LTS)
     names = sorted({*library.stacks, *library.nodes} - {NO_STATE_PUBLISHER, BOTH_TREES})
-    return {name: [bare(node) for node in stack_of(library, name)] for name in names}
+    return {name: [*map(bare, _with_managers(stack_of(library, name)))] for name in names}
+
+
+def _with_managers(nodes: Sequence[NodeFacts]) -> Iterator[NodeFacts]:
+    """Without what is called of a manager that is not among them: no graph shows that it is a node."""
+    runs = {it.name for it in nodes}
+    for node in nodes:
+        ends = (it for it in node.endpoints if MANAGER in runs or f"{MANAGER}/" not in it.name)
+        yield node._replace(endpoints=tuple(ends))
 
 
 @pytest.mark.sample(8)

@@ -11,11 +11,11 @@ from multibot_rewrite.base.releases import (
     chosen_release,
     has_release,
     is_release_words,
-    release_of,
     since_version,
     told_release,
     unusual_release,
 )
+from multibot_rewrite.description.sources.release_said import release_said
 
 
 @pytest.mark.parametrize(
@@ -104,8 +104,8 @@ def test_the_release_of_a_description(
     environment: dict[str, str], text: bytes, release: str
 ) -> None:
     """A library of Gazebo Classic or with a name of Ignition is in no later release."""
-    assert release_of(told_release("", environment), text) == release
-    assert release_of(told_release("kilted", environment), text) == "kilted"
+    assert release_said(told_release("", environment), text, "").release == release
+    assert release_said(told_release("kilted", environment), text, "").release == "kilted"
 
 
 def test_a_release_that_has_ended_or_is_not_known_is_doubted() -> None:

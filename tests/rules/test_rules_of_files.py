@@ -21,10 +21,28 @@ from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.rules.files.examples import ROVER
 from multibot_rewrite.rules.files.judge import SHARED, THEMES
 from multibot_rewrite.rules.settings import Settings
 
+DESCRIPTION = """\
+<robot name="rover">
+  <link name="base_link"/>
+  <link name="lidar_link"/>
+  <joint name="lidar_joint" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
+  <link name="left"/>
+  <joint name="left_wheel_joint" type="continuous">
+    <parent link="base_link"/><child link="left"/><axis xyz="0 1 0"/>
+  </joint>
+  <link name="right"/>
+  <joint name="right_wheel_joint" type="continuous">
+    <parent link="base_link"/><child link="right"/><axis xyz="0 1 0"/>
+  </joint>
+</robot>
+"""
+ROVER: Mapping[str, str] = {
+    "package.xml": "<package><name>rover</name></package>",
+    "urdf/rover.urdf": DESCRIPTION,
+}
 ROBOTS = ("robot1", "robot2")
 EKF = "ekf_filter_node:\n  ros__parameters:\n    {}\n    odom0: odom\n"
 AMCL = "amcl:\n  ros__parameters:\n    {}\n"

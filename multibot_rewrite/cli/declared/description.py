@@ -185,7 +185,7 @@ LINT = Command(
             "checks",
             (
                 ROBOTS,
-                several("--target", "A,B", "also check names for these formats: usd, mjcf"),
+                several("--target", "A,B", "also check what is lost in these formats: mjcf"),
                 value("--baseline", metavar="FILE", about="report only findings not in FILE"),
                 path_option("--write-baseline", "write the current findings, for --baseline"),
             ),

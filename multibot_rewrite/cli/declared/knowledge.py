@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from multibot_rewrite.cli.declared.shared import (
     DISTRO,
-    EVERYTHING,
     GENERAL,
     RESULT_OUTPUT,
     TRUST,
@@ -26,13 +25,12 @@ REPORT_FORMS = ("table", "json")
 INSPECT = Command(
     "inspect",
     "inspect",
-    "%(prog)s [CODE... | NAME | PATH...] [NAME:=VALUE...] [options]",
+    "%(prog)s [CODE... | NAME | FILE.xacro] [NAME:=VALUE...] [options]",
     "Explain a finding's code, a plugin, a xacro's arguments.",
     (
         Example("multibot inspect MB202", "a finding: what it is, why, how to fix it"),
         Example("multibot inspect MB", "all rules of urdf-lint; MG: those of check"),
         Example("multibot inspect libgazebo_ros_diff_drive.so", "which of its values are names?"),
-        Example("multibot inspect urdf/", "what is known of all .urdf and .sdf, and what is not"),
         Example("multibot inspect arm.urdf.xacro", "which argument goes into which names?"),
         Example("multibot inspect --suggest rover.urdf -o acme.vocab", "draft what is missing"),
         Example("multibot inspect", "all that is known: plugins, then rules"),
@@ -45,8 +43,7 @@ INSPECT = Command(
                     "words",
                     "NAME",
                     "a finding's code, its beginning, or its name; a library, class, element or"
-                    " sensor type; files, or folders to search for *.urdf and *.sdf; NAME:=VALUE is"
-                    " for xacro",
+                    " sensor type; a xacro file, and NAME:=VALUE for it",
                     "*",
                 ),
                 path_option(
@@ -54,7 +51,6 @@ INSPECT = Command(
                     "write a file of plugin definitions, for the plugins of this description that"
                     " are not known; NAME:=VALUE is for xacro",
                 ),
-                EVERYTHING,
                 VOCABULARY,
                 DISTRO,
                 TRUST,
@@ -63,6 +59,6 @@ INSPECT = Command(
         output_group(RESULT_OUTPUT, form(REPORT_FORMS, "how it is written")),
         GENERAL,
     ),
-    "0 done; 2 wrong use, an unknown name, or nothing could be read",
+    "0 done; 2 wrong use, an unknown name, or a file that cannot be read",
     more="To find what an argument affects, the xacro is expanded again with another value for it.",
 )

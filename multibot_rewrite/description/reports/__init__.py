@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports about a description: changes, explanations, coverage and suggested vocabulary."""
+"""Reports about a description: changes, explanations, a xacro's arguments and suggested vocabulary."""

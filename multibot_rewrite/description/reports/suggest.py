@@ -12,9 +12,10 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.base.wording import clip
 from multibot_rewrite.description.checks.mentions import MENTIONED
-from multibot_rewrite.description.reports.paths import short_name
-from multibot_rewrite.description.reports.survey import loaded_by
+from multibot_rewrite.description.checks.unknown import is_unknown
+from multibot_rewrite.description.reports.paths import plugin_name, short_name
 from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import (
     ANY_WITH_ROS,
     TreeNode,
@@ -84,6 +85,14 @@ class SuggestedSection(NamedTuple):
     rows: tuple[SuggestedRow, ...]
 
 
+class Loaded(NamedTuple):
+    """What an element loads: the library (or class) of a plugin, the class of a hardware."""
+
+    type: str
+    name: str
+    known: bool
+
+
 def suggest(inventory: Inventory) -> list[SuggestedSection]:
     """A section for each plugin that is unknown, and each unknown hardware class with parameters,
     in the order of the file."""
@@ -95,6 +104,17 @@ def suggest(inventory: Inventory) -> list[SuggestedSection]:
             hosts.setdefault((thing.type, name, "" if name else thing.name), []).append(host)
     sections = [_section(key, group, inventory.declared) for key, group in hosts.items()]
     return [it for it in sections if it.type == "plugin" or _has_params(it)]
+
+
+def loaded_by(host: Host) -> Loaded | None:
+    """What an element loads; None where it loads nothing (a sensor is no plugin)."""
+    section = host.node.section
+    assert section is not None
+    type_ = section.select or section.type
+    if type_ == "plugin":
+        return Loaded(type_, plugin_name(host.element), not is_unknown(section))
+    class_ = text_at(host.element, "hardware/plugin") if type_ == "hardware" else ""
+    return Loaded(type_, class_, not section.select) if class_ else None
 
 
 def _section_name(type_: str, element: _Element) -> str:

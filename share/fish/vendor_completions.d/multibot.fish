@@ -73,7 +73,6 @@ complete -c multibot -n '__fish_seen_subcommand_from init' -s v -l verbose -d 'l
 complete -c multibot -n '__fish_seen_subcommand_from init' -l color -r -f -a 'auto always never' -d 'auto (default: on a terminal, unless NO_COLOR is set), always or never'
 complete -c multibot -n __fish_use_subcommand -f -a inspect -d 'Explain a finding\'s code, a plugin, a xacro\'s arguments.'
 complete -c multibot -n '__fish_seen_subcommand_from inspect' -l suggest -r -d 'write a file of plugin definitions, for the plugins of this description that are not known'
-complete -c multibot -n '__fish_seen_subcommand_from inspect' -l no-default-excludes -d 'in folders, also read build/, install/, log/, folders with COLCON_IGNORE or AMENT_IGNORE, and files that git ignores'
 complete -c multibot -n '__fish_seen_subcommand_from inspect' -l vocabulary -r -d 'file with more plugin definitions: which parameters are names (docs/add-a-plugin.md)'
 complete -c multibot -n '__fish_seen_subcommand_from inspect' -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release that the robots run: humble, jazzy, kilted, lyrical, rolling'
 complete -c multibot -n '__fish_seen_subcommand_from inspect' -l trust -d 'run xacro files without the sandbox'

@@ -12,7 +12,7 @@ complete -c urdf-lint -s o -l output -r -d 'write the findings there, not to sta
 complete -c urdf-lint -l fix -d 'apply the safe fixes'
 complete -c urdf-lint -l diff -d 'with --fix: print what would change, write nothing'
 complete -c urdf-lint -l robots -r -d 'names of robots'
-complete -c urdf-lint -l target -r -d 'also check names for these formats: usd, mjcf'
+complete -c urdf-lint -l target -r -d 'also check what is lost in these formats: mjcf'
 complete -c urdf-lint -l baseline -r -d 'report only findings not in FILE'
 complete -c urdf-lint -l write-baseline -r -d 'write the current findings, for --baseline'
 complete -c urdf-lint -l layout -r -f -a 'tf-per-robot L1 frames-per-robot L2 both L3 postfix L4 frame-prefix L5' -d 'tf-per-robot (L1): tf topic per robot, bare frames'

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What controllers are spawned with, by ``multibot inspect``: since Jazzy a controller takes no rules
+"""What controllers are spawned with, by ``urdf-postfix``: since Jazzy a controller takes no rules
 of the plugin that loads it, on Humble it does."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.cli.urdf_postfix import main
 
 ROBOT = (
     '<robot name="r"><link name="a"/><gazebo><plugin filename="gz_ros2_control-system" '
@@ -26,9 +25,5 @@ def test_the_rules_of_a_spawner(
 ) -> None:
     file = tmp_path / "r.urdf"
     file.write_text(ROBOT)
-    assert main(["inspect", str(file), "--distro", distro, "--form", "json"]) == 0
-    found = json.loads(capsys.readouterr().out)["spawners"]
-    rule = "-r /joint_states:=/joint_states/ROBOT"
-    assert [rule in it["advice"] for it in found if it["layout"] == "postfix"] == [True] * is_said
-    assert main(["inspect", str(file), "--distro", distro]) == 0
-    assert (rule in capsys.readouterr().out) is is_said
+    assert main([str(file), "robot1", "--distro", distro]) == 0
+    assert ("-r /joint_states:=/joint_states/ROBOT" in capsys.readouterr().err) is is_said

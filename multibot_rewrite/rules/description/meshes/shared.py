@@ -16,7 +16,6 @@ _SCHEME = lazy_compile(r"([A-Za-z][A-Za-z0-9+.-]+)://")
 _SHORT = "file:/"
 # A letter and a colon is a drive of Windows.
 _MACHINE = lazy_compile(r"/|[A-Za-z]:[/\\]")
-MESH = '<link name="a"><visual><geometry><mesh filename="%s"/></geometry></visual></link>\n'
 
 
 class Used(NamedTuple):

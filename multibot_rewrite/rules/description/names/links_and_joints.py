@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names of links, joints and the robot that are not valid in URDF, SDF or tf, or in other formats
-(USD, MJCF) that the option targets names."""
+"""Names of links, joints and the robot that are not valid in URDF, SDF or tf."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.naming import is_keyword
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.names.shared import BLANK, TOKEN, name_of_robot, named
+from multibot_rewrite.rules.description.names.shared import BLANK, name_of_robot, named
 from multibot_rewrite.rules.subject import Subject
 
 WORLD = "world"
@@ -118,43 +116,3 @@ def name_not_ascii(subject: Subject) -> Iterator[Problem]:
             letter = next(it for it in name if not it.isascii())
             code = f"U+{ord(letter):04X}"
             yield Problem(element, f"{kind} {name!r} contains {letter!r} ({code})", "name")
-
-
-@rule("MB320", "invalid-usd-name", WARNING, options={"targets": ("usd",)})
-def no_usd_name(subject: Subject) -> Iterator[Problem]:
-    """The message has the name that a converter makes, and whether it already exists."""
-    if "usd" not in subject.settings.targets:
-        return
-    names = {name for _, name, _ in named(subject)}
-    for kind, name, element in named(subject):
-        if name.strip() and not TOKEN.fullmatch(name):
-            made = re.sub(r"\W", "_", name, flags=re.ASCII)
-            made = f"_{made}" if made[0].isdigit() else made
-            taken = ", which already exists" if made in names else ""
-            message = (
-                f"{kind} {name!r} is not a valid USD identifier: it becomes {_encoded(name)} in Isaac "
-                f"Sim 6, {made!r}{taken} in others"
-            )
-            yield Problem(element, message, "name", f"use {made!r}")
-
-
-def _encoded(name: str) -> str:
-    """The name as Isaac Sim 6 spells it: what a prim may have, then a code of all else.
-
-    Source: what usd-exchange 3.0.1 makes of names (getValidPrimName); strands-labs/robots#1902.
-    """
-    plain = re.sub(r"\W", "", name, flags=re.ASCII)
-    if plain == name:
-        return repr(f"tn__{name}_")
-    return f"'tn__{plain}_' and a code" if plain else "'tn__' and a code"
-
-
-@rule("MB321", "slash-for-mjcf", WARNING, options={"targets": ("mjcf",)})
-def slash_for_mjcf(subject: Subject) -> Iterator[Problem]:
-    """Links become bodies, joints stay joints."""
-    if "mjcf" not in subject.settings.targets:
-        return
-    for kind, name, element in named(subject):
-        if "/" in name:
-            hint = f"use {name.strip('/').replace('/', '_')!r}"
-            yield Problem(element, f"{kind} {name!r} contains a slash", "name", hint)

@@ -15,12 +15,13 @@ from multibot_rewrite.base.rosnames import check_topic_name, propose_token, spli
 from multibot_rewrite.companions.kinds import EVERY
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import value_slot
-from multibot_rewrite.rules.description.names.shared import SUBSTITUTION, TOKEN, name_of_robot
+from multibot_rewrite.rules.description.names.shared import SUBSTITUTION, name_of_robot
 from multibot_rewrite.rules.subject import Subject
 
 # Interfaces that ros2_control has names for (hardware_interface_type_values.hpp).
 STANDARD = frozenset(("position", "velocity", "effort", "acceleration"))
 ROS_KINDS = frozenset({"topic", "service", "namespace"})
+_TOKEN = lazy_compile(r"[A-Za-z_]\w*", re.ASCII)
 # ROS 1, ROS 2 and both Gazebos agree on these.
 _ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
 
@@ -64,7 +65,7 @@ def slash_in_joint(subject: Subject) -> Iterator[Problem]:
 def robot_name(subject: Subject) -> Iterator[Problem]:
     """Names with '::' are MB305."""
     name = name_of_robot(subject)
-    if name is None or "::" in name or TOKEN.fullmatch(name):
+    if name is None or "::" in name or _TOKEN.fullmatch(name):
         return
     hint = f"use {propose_token(name)!r}" if name.strip() else "add one"
     yield Problem(

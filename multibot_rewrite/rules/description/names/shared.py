@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import re
-
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
@@ -14,7 +12,6 @@ from multibot_rewrite.rules.subject import Subject
 # Names with a substitution are skipped: MB105 reports them.
 SUBSTITUTION = "$"
 BLANK = lazy_compile(r"\s")
-TOKEN = lazy_compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 @memoized

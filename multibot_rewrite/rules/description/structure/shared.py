@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What rules about the tree and its joints share: the types of joints, and examples."""
+"""What rules about the tree and its joints share: the types of joints."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ ONE_AXIS = frozenset(("revolute", "continuous", "prismatic"))
 BOUNDED = frozenset(("revolute", "prismatic"))
 TOLERANCE = 1e-3
 SHOWN = 8
-LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
 
 
 def first_names(names: Iterable[str]) -> str:

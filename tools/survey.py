@@ -1,24 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much of a set of descriptions the vocabulary knows: plugins, values, unclaimed names."""
+"""``python -m tools.survey PATH...``: how much of a set of descriptions the vocabulary knows.
+
+Every .urdf and .sdf there is read. Printed are plugins and hardware classes that no section describes,
+how many values of each kind are claimed, and links and joints in values that no line reads.
+"""
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TypeVar
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple, TypeVar
 
 from multibot_rewrite.base.findings.finding import locate
-from multibot_rewrite.base.model import Claim
+from multibot_rewrite.base.model import Claim, InputError, MultibotError
 from multibot_rewrite.base.naming import DECLARED_KINDS
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.base.wording import clip, plural
+from multibot_rewrite.cli.tables import Grid, render
+from multibot_rewrite.cli.walk import find_files
 from multibot_rewrite.description.checks.mentions import MENTIONED, unclaimed_mentions
-from multibot_rewrite.description.checks.unknown import is_unknown
-from multibot_rewrite.description.reports.paths import plugin_name, tag_path
+from multibot_rewrite.description.reports.paths import tag_path
+from multibot_rewrite.description.reports.suggest import Loaded, loaded_by
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.spelling import ResolvedName
-from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.steps.collect import Host, Inventory
-from multibot_rewrite.description.steps.document import Document, slot_values
+from multibot_rewrite.description.sources.whole import read_whole
+from multibot_rewrite.description.steps.collect import Inventory, collect
+from multibot_rewrite.description.steps.document import Document, read_document, slot_values
+
+SUFFIXES = (".urdf", ".sdf")
 
 # Stands for the kind of a name that this file would have to declare.
 UNRESOLVED = "unresolved"
@@ -31,14 +42,6 @@ class Tally(NamedTuple):
     files: int
     place: str
     value: str
-
-
-class Loaded(NamedTuple):
-    """What an element loads: the library (or class) of a plugin, the class of a hardware."""
-
-    type: str
-    name: str
-    known: bool
 
 
 class MentionPlace(NamedTuple):
@@ -115,17 +118,6 @@ def _loaded(inventory: Inventory) -> dict[Loaded, Tally]:
     return found
 
 
-def loaded_by(host: Host) -> Loaded | None:
-    """What an element loads; None where it loads nothing (a sensor is no plugin)."""
-    section = host.node.section
-    assert section is not None
-    type_ = section.select or section.type
-    if type_ == "plugin":
-        return Loaded(type_, plugin_name(host.element), not is_unknown(section))
-    class_ = text_at(host.element, "hardware/plugin") if type_ == "hardware" else ""
-    return Loaded(type_, class_, not section.select) if class_ else None
-
-
 def _mentions(inventory: Inventory, tree: Tree) -> dict[MentionPlace, Tally]:
     names = {name for kind in MENTIONED for name in inventory.declared[kind]}
     values = slot_values(inventory.document.root)
@@ -154,3 +146,63 @@ def share(total: Survey, type_: str) -> tuple[int, int]:
     """How many occurrences of that type there are, and how many of them are known."""
     counts = [(tally.times, it.known) for it, tally in total.loaded.items() if it.type == type_]
     return sum(count for count, _ in counts), sum(count for count, known in counts if known)
+
+
+def surveyed(paths: Sequence[str]) -> tuple[Survey, list[str]]:
+    """What is known of all files below the paths, and why some cannot be read; raises UsageError."""
+    tree, found, unreadable = builtin_tree((), NEWEST_LTS), [], []
+    for path in find_files(paths, SUFFIXES, everything=True).files:
+        try:
+            read = read_whole(path, {}, False)
+            found.append(survey(collect(read_document(read.data, read.file), tree), tree))
+        except InputError as error:
+            unreadable.append(str(error))
+    return add(found), unreadable
+
+
+def percentage(count: int, known: int) -> float:
+    """Rounded down, so that 100 means all; all of nothing is all."""
+    return 1000 * known // count / 10 if count else 100.0
+
+
+def report(total: Survey, unreadable: Sequence[str]) -> Iterator[str | Grid]:
+    """What is printed."""
+    yield f"{plural(total.files, 'file')} read, {len(unreadable)} cannot be read"
+    yield from (f"  {it}" for it in unreadable)
+    yield from _loaded_parts(total, "plugin", "plugins")
+    yield from _loaded_parts(total, "hardware", "hardware classes")
+    claims = sorted(total.claims.items(), key=lambda pair: (-pair[1], pair[0]))
+    yield from ("", f"{plural(sum(total.claims.values()), 'value')} claimed")
+    yield "  " + ", ".join(f"{kind} {count}" for kind, count in claims)
+    for exact, what in (
+        (True, "and exactly a link or joint"),
+        (False, "with a link or joint inside"),
+    ):
+        mentions = ranked(it for it in total.mentions.items() if it[0].exact == exact)
+        yield from ("", f"{sum(it.times for _, it in mentions)} unclaimed {what}")
+        rows = [(str(t.times), str(t.files), m.path, clip(t.value), t.place) for m, t in mentions]
+        yield from [Grid(("count", "files", "path", "value", "first seen"), rows)] * bool(rows)
+
+
+def _loaded_parts(total: Survey, type_: str, words: str) -> Iterator[str | Grid]:
+    count, known = share(total, type_)
+    every = [it for it in total.loaded.items() if it[0].type == type_]
+    names = f"{sum(it.known for it, _ in every)} of {len(every)} names"
+    yield from ("", f"{known} of {count} {words} known ({percentage(count, known)} %), {names}")
+    unknown = ranked(it for it in every if not it[0].known)
+    rows = [(str(t.times), str(t.files), it.name, t.place) for it, t in unknown]
+    yield from [Grid(("count", "files", "not known", "first seen"), rows)] * bool(rows)
+
+
+def main(words: Sequence[str]) -> int:
+    """Print the report; returns the exit code."""
+    try:
+        print(render(report(*surveyed(words))), end="")
+    except MultibotError as error:
+        print(f"survey: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

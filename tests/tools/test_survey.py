@@ -8,25 +8,35 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from paths import CORPUS, ROOT
 from surveyed_robot import inventory, surveyed
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.cli.tables import render
 from multibot_rewrite.description.checks.mentions import find_mentions
 from multibot_rewrite.description.pipeline import prepare
-from multibot_rewrite.description.reports.survey import (
-    Loaded,
+from multibot_rewrite.description.reports.suggest import Loaded
+from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.steps.document import slot_values
+from tools import unclaimed
+from tools.survey import (
     MentionPlace,
     Survey,
     Tally,
     add,
+    main,
+    percentage,
     ranked,
+    report,
     share,
     survey,
 )
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
-from multibot_rewrite.description.steps.document import slot_values
+from tools.survey import surveyed as surveyed_files
 
+UNCLAIMED = ROOT / "fixtures" / "unclaimed.tsv"
+# Percent of the occurrences over the corpus.
+LEAST_PLUGINS, LEAST_HARDWARE = 98, 95
 EMPTY = Survey(0, {}, {}, {})
 
 
@@ -154,6 +164,58 @@ def test_the_walk_is_that_of_the_warnings() -> None:
     assert sum(tally.times for tally in found.mentions.values()) == count["MB901"] == 2
 
 
+TALLY = Tally(3, 2, "a.urdf:4", "base  link")
+SURVEY = Survey(
+    2,
+    {
+        Loaded("plugin", "liba.so", True): TALLY, Loaded("plugin", "libb.so", False): TALLY,
+        Loaded("plugin", "libc.so", False): TALLY._replace(times=4),
+        Loaded("hardware", "x/Y", True): TALLY._replace(times=1),
+    },
+    {"link": 3, "frame": 5, "joint": 3},
+    {
+        MentionPlace("robot/a", True): TALLY, MentionPlace("robot/b", False): TALLY._replace(times=1),
+        MentionPlace("robot/c", False): TALLY._replace(times=2),
+    },
+)  # fmt: skip
+
+
+def test_how_much_is_known() -> None:
+    """Percentages are rounded down, and the most frequent comes first."""
+    assert render(report(SURVEY, ["x.urdf: no XML"])) == (
+        "2 files read, 1 cannot be read\n  x.urdf: no XML\n\n"
+        "3 of 10 plugins known (30.0 %), 1 of 3 names\n"
+        "count  files  not known  first seen\n"
+        "    4      2  libc.so    a.urdf:4\n"
+        "    3      2  libb.so    a.urdf:4\n\n"
+        "1 of 1 hardware classes known (100.0 %), 1 of 1 names\n\n"
+        "11 values claimed\n  frame 5, joint 3, link 3\n\n"
+        "3 unclaimed and exactly a link or joint\n"
+        "count  files  path     value      first seen\n"
+        "    3      2  robot/a  base link  a.urdf:4\n\n"
+        "3 unclaimed with a link or joint inside\n"
+        "count  files  path     value      first seen\n"
+        "    2      2  robot/c  base link  a.urdf:4\n"
+        "    1      2  robot/b  base link  a.urdf:4\n"
+    )
+    assert (percentage(3, 2), percentage(0, 0)) == (66.6, 100.0)
+    assert percentage(2000, 1999) == 99.9
+
+
+def test_the_program_reads_what_it_can(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, text in {"a.urdf": '<robot name="r"/>', "b.urdf": "<robot>", "c.xml": ""}.items():
+        (tmp_path / name).write_text(text)
+    assert main(["."]) == 0
+    first, second, *_ = capsys.readouterr().out.splitlines()
+    assert first == "1 file read, 1 cannot be read"
+    assert second.startswith("  ./b.urdf:1:8: not well-formed XML")
+    assert main(["nowhere"]) == 2
+    assert capsys.readouterr().err == "survey: nowhere: there is no such file or folder\n"
+
+
 # ---------------------------------------------------------------- real files
 
 
@@ -181,3 +243,15 @@ def test_no_mention_of_the_corpus_is_lost(corpus: dict[str, Path]) -> None:
         warned = find_mentions(found, values, names, builtin_tree((), NEWEST_LTS))
         tallies = survey(found, builtin_tree((), NEWEST_LTS)).mentions.values()
         assert sum(tally.times for tally in tallies) == len(warned)
+
+
+@pytest.mark.deep
+def test_the_corpus_is_known_and_its_rest_explained(corpus: dict[str, Path]) -> None:
+    total, unreadable = surveyed_files([str(CORPUS / "urdf")])
+    # Some have a rest of xacro in them, and what they include is elsewhere.
+    assert total.files + len(unreadable) == len(corpus)
+    assert len(unreadable) < 30
+    assert all("xacro failed" in it for it in unreadable)
+    assert percentage(*share(total, "plugin")) >= LEAST_PLUGINS
+    assert percentage(*share(total, "hardware")) >= LEAST_HARDWARE
+    assert unclaimed.main([str(UNCLAIMED), str(CORPUS / "urdf")]) == 0
