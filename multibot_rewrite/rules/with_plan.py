@@ -23,7 +23,7 @@ from multibot_rewrite.rules.system.planned_frames import frame_without_robot_nam
 from multibot_rewrite.rules.system.planned_nodes import unplanned_node
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import TF, Index, ends_of
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
+from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVES, SERVICE, TOPIC, End
 from multibot_rewrite.system.tf_copies import tree_topic
 
 # A node, or a name and whose it is: a node's or robot's, or beside which other name; empty for all.
@@ -101,17 +101,18 @@ def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_Abou
         about = tree_topic(used) if is_tf else used
         yield from ((whose, about) for whose in (it.node, f"beside {it.names[0]}", it.robot, ""))
     elif _is_of_an_end(it, rules):
-        # What all robots have, such as /clock, the nodes of a robot lack together.
-        # Who has to send it is not one of them, but the cause.
-        alone = seen.robot(it.names[0]) or _has_to_send(seen, it)
+        # What all robots have, such as /clock, the nodes of a robot lack together; whoever has to send
+        # it is not one of them, but the cause.
+        alone = seen.robot(it.names[0]) or _has_to_give(seen, it)
         lacks = (it.node,) if alone else (it.node, it.robot)
         yield from ((whose, it.names[0]) for whose in lacks)
 
 
-def _has_to_send(seen: Index, it: Finding) -> bool:
-    """Has a node what others wait for, by the plan?"""
+def _has_to_give(seen: Index, it: Finding) -> bool:
+    """Has a node to send or serve, by the plan, what others wait for?"""
     plan = seen.expected.by_key if seen.expected else ()
-    return (it.node, TOPIC, PUBLISHES, it.names[0]) in plan
+    gives = ((TOPIC, PUBLISHES), (SERVICE, SERVES), (ACTION, SERVES))
+    return any((it.node, *way, it.names[0]) in plan for way in gives)
 
 
 def _is_there(it: Finding) -> bool:

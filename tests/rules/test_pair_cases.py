@@ -495,3 +495,22 @@ def test_a_tree_lacks_what_a_row_brings_elsewhere() -> None:
     for text, codes in ((row, {"MG406"}), ("planned: shared topic /x", {"MG405"})):
         found = check(*read_example(ELSEWHERE + text))
         assert {it.code for it in found} & {"MG405", "MG406"} == codes
+
+
+@pytest.mark.parametrize(
+    ("sender", "reader"),
+    [
+        ("publishes /clock rosgraph_msgs/msg/Clock", "subscribes /clock rosgraph_msgs/msg/Clock"),
+        ("serves /reset std_srvs/srv/Empty", "calls /reset std_srvs/srv/Empty"),
+    ],
+)
+def test_who_has_to_give_what_all_robots_wait_for_is_the_cause(sender: str, reader: str) -> None:
+    """One node of the robot that waits for it has to."""
+    found = check(
+        *read_example(
+            f"planned: shared topic {sender.split()[1]}\n"
+            f"planned: /robot1/giver {sender}\nrunning: /robot1/giver\n"
+            f"as planned: /robot1/ekf_node {reader}\nas planned: /robot2/ekf_node {reader}"
+        )
+    )
+    assert [(it.code, it.node) for it in found] == [("MG102", "/robot1/giver")]
