@@ -81,12 +81,13 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     usual = {name: default for name, default, _ in launch_arguments(starts)}
     clock = str(not starts.use_sim_time).lower()
     off = {"use_sim_time": clock, "rviz": "false", "simulator": "false"}
-    first = ",".join(it.name for it in starts.robots[:2])
+    names = [it.name for it in starts.robots]
     other = {"headless": "true", "world": "other.sdf"}
+    told = {name: it for name, it in other.items() if name in usual}
     return [
         Launching({}, frozenset({BRIDGE})),
         Launching({name: it for name, it in off.items() if name in usual}),
-        Launching({"robots": first, **{name: it for name, it in other.items() if name in usual}}),
+        *(Launching({"robots": ",".join(it), **told}) for it in (names[:2], names[2:]) if it),
         Launching({"robots": "1", "use_sim_time": "1"}),
     ]
 
