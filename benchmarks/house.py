@@ -221,7 +221,9 @@ def _reads_system(node: ast.AST) -> bool:
     if not isinstance(node, ast.FunctionDef) or node.returns is None:
         return False
     given = [_name(it.annotation) for it in node.args.args if it.annotation]
-    return "bytes" in given and _name(node.returns) == "System"
+    # Who asks the reader of another module is none.
+    asks = any(isinstance(it, ast.Attribute) and it.attr == "read_system" for it in ast.walk(node))
+    return "bytes" in given and _name(node.returns) == "System" and not asks
 
 
 def importing_rows(checkout: Path, every: list[Module]) -> Iterator[tuple[str, int, int]]:
