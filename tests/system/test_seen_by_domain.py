@@ -22,7 +22,7 @@ PLAN = System(NODES, robots=(Robot("a"), Robot("b")), domains=(Domain("a", 11), 
 def test_what_a_node_has_is_in_its_domain() -> None:
     more = Node("/b/more")
     nodes = (*NODES, more, Node("/tool"))
-    ends = tuple(End(TOPIC, PUBLISHES, f"{it.name}/x", node=it.name) for it in nodes)
+    ends = tuple(End(TOPIC, PUBLISHES, f"{it.name}/x", "a/msg/A", node=it.name) for it in nodes)
     parameters = tuple(Parameter(it.name, "use_sim_time", "true") for it in nodes)
     seen = seen_by_domain(PLAN, System(nodes, ends, parameters=parameters))
     own = {11: ["/a/n", "/tool"], 12: ["/b/n", "/b/more"]}
