@@ -89,7 +89,7 @@ def crossings(plan: System, given: Sequence[str]) -> list[Crossing]:
 
 
 def _needed(plan: System, numbers: Mapping[str, int]) -> Iterator[Crossing]:
-    robot_of = {it.name: it.robot for it in plan.nodes}
+    robot_of = _robots(plan)
     ends: dict[tuple[str, str], dict[str, End]] = defaultdict(dict)
     for it in plan.ends:
         if it.kind == TOPIC and it.name not in SENT_BY_EVERY_NODE:
@@ -107,12 +107,17 @@ def _needed(plan: System, numbers: Mapping[str, int]) -> Iterator[Crossing]:
         yield from (Crossing(it, CLOCK, CLOCK_TYPE, False) for it in apart)
 
 
+def _robots(plan: System) -> Mapping[str, str]:
+    """By node: its robot; empty for a node of all robots, and for what such a node makes for itself."""
+    return defaultdict(str, {it.name: it.robot for it in plan.nodes})
+
+
 def _type_of(*ends: End) -> str:
     return next((it.type for it in ends if it.type), "")
 
 
 def _given(plan: System, numbers: Mapping[str, int], given: Sequence[str]) -> Iterator[Crossing]:
-    robot_of = {it.name: it.robot for it in plan.nodes}
+    robot_of = _robots(plan)
     known: dict[str, dict[str, Crossing]] = defaultdict(dict)
     sent = {(robot_of[it.node], it.name) for it in plan.ends if it.role == PUBLISHES}
     for it in plan.ends:
@@ -135,15 +140,15 @@ def _given(plan: System, numbers: Mapping[str, int], given: Sequence[str]) -> It
 def services_apart(plan: System) -> Iterator[tuple[End, int, int]]:
     """Services and actions that are called in one domain and served in another alone, with both."""
     numbers = domain_of(plan)
-    at = {it.name: numbers[it.robot] for it in plan.nodes} if numbers else {}
+    robot_of = _robots(plan)
     served: dict[tuple[str, str], set[int]] = defaultdict(set)
     for it in plan.ends if numbers else ():
         if it.role == SERVES:
-            served[it.kind, it.name].add(at[it.node])
+            served[it.kind, it.name].add(numbers[robot_of[it.node]])
     for it in plan.ends:
         own = served.get((it.kind, it.name), ()) if it.role == CALLS else ()
-        if own and at[it.node] not in own:
-            yield it, at[it.node], min(own)
+        if own and (at := numbers[robot_of[it.node]]) not in own:
+            yield it, at, min(own)
 
 
 def bridge_files(plan: System) -> Iterator[tuple[str, bytes]]:
