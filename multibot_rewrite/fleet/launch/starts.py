@@ -27,9 +27,6 @@ class Text(NamedTuple):
     path: str
 
 
-Value = str | int | float | bool | File | Text | list[str]
-
-
 class Component(NamedTuple):
     """A node that is loaded into the process of another."""
 

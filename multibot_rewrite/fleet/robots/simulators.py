@@ -39,14 +39,6 @@ from multibot_rewrite.producers.evidence.semantics import FIXED
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.words import moves
 
-DRIVE = """\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo>
-    <plugin name="drive" filename="libgazebo_ros_diff_drive.so"/>
-  </gazebo>
-</robot>
-"""
 SIMULATED_OR_REAL = declare("MF828", "simulated-or-real", NOTE, formats=("fleet",))
 OTHER_HARDWARE = declare("MF843", "hardware-of-real-robot-simulated", ERROR, formats=("fleet",))
 
