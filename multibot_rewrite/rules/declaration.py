@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a rule about a system is declared: on the function that finds it."""
+"""How a rule about a system, a launch or a file is declared: on the function that finds it."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterator
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import Rule, declare
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.rule import Rule, declare, rule
 
 if TYPE_CHECKING:
+    from multibot_rewrite.companions.named_file import NamedFile
     from multibot_rewrite.system.index import Index
 
 _Check = TypeVar("_Check", bound=Callable[..., Any])
@@ -18,7 +19,7 @@ _Compare = Callable[["Index", "Index"], Iterator[Finding]]
 # How pictures show what a finding is about; "" is violet for an error, blue for a warning.
 Drawn = Literal["", "missing", "leak", "cross-talk", "unexpected"]
 # What the examples of a rule are written in: lines of a system, and of its plan.
-SYSTEM = "system"
+SYSTEM, LAUNCH = "system", "launch"
 
 
 def system_rule(
@@ -79,3 +80,22 @@ def planned_rule(
         return declare(code, name, level, check, formats=(SYSTEM,), options=options)
 
     return declared
+
+
+def launch_rule(code: str, name: str, *, level: str = ERROR) -> Callable[[_Check], Rule]:
+    """Make a function a rule about what a launch starts: it gets a ``Launched`` and yields findings."""
+    return rule(code, name, level, formats=(LAUNCH,))
+
+
+def of_robots(
+    find: Callable[[NamedFile], Iterator[Finding]],
+) -> Callable[[NamedFile], Iterator[Finding]]:
+    """A rule about what several robots get: asked of a file that is for a certain robot, and of one
+    alone where robots are named."""
+
+    @wraps(find)
+    def found(file: NamedFile) -> Iterator[Finding]:
+        if file.is_certain or file.robots:
+            yield from find(file)
+
+    return found

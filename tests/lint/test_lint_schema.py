@@ -8,8 +8,9 @@ from collections.abc import Callable
 import pytest
 from counted_steps import growth
 
+from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.rules.schema.faults import Fault, read_faults
+from multibot_rewrite.rules.schema.faults import read_faults
 from multibot_rewrite.rules.schema.sections import schema
 from multibot_rewrite.rules.schema.values import FINE
 from multibot_rewrite.rules.schema.versions import KNOWN
@@ -18,13 +19,13 @@ LINKS = '<link name="a"/><link name="b"/>'
 ENDS = '<parent link="a"/><child link="b"/>'
 
 
-def faults(body: str) -> tuple[Fault, ...]:
+def faults(body: str) -> tuple[Problem, ...]:
     text = body if body.startswith(("<robot", "<sdf")) else f'<robot name="r">{body}</robot>'
     return read_faults(read_document(text.encode(), "robot.urdf"))
 
 
 def kinds(body: str) -> list[tuple[str, str, str | None]]:
-    return sorted((it.kind, str(it.element.tag), it.attribute) for it in faults(body))
+    return sorted((it.code, str(it.element.tag), it.attribute) for it in faults(body))
 
 
 def joint(inside: str, type_: str = "revolute") -> str:
@@ -193,7 +194,7 @@ def test_one_fault_is_told_once(body: str, kind: str, tag: str, attribute: str |
     ],
 )
 def test_line_ends_and_tabs_count_in_numbers_alone(text: str, found: int) -> None:
-    assert len([it for it in faults(text) if it.kind == "value"]) == found
+    assert len([it for it in faults(text) if it.code == "value"]) == found
 
 
 def test_the_same_wrong_value_is_told_at_every_place() -> None:

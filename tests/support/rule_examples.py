@@ -27,8 +27,7 @@ from multibot_rewrite.producers.launch.read import read_own
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.check import check, judge
-from multibot_rewrite.rules.declaration import SYSTEM
-from multibot_rewrite.rules.launch.declaration import LAUNCH
+from multibot_rewrite.rules.declaration import LAUNCH, SYSTEM
 from multibot_rewrite.rules.launch.judge import judge_launch
 from multibot_rewrite.rules.settings import Settings
 

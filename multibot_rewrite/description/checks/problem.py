@@ -18,7 +18,8 @@ class Problem(NamedTuple):
 
     ``attribute`` is the name of the attribute at fault, empty for the element's text, None for the
     element itself. ``edits`` fix it without a change of meaning; empty where that is not safe.
-    ``code`` and ``level`` are the rule's; they may be empty in a lint rule, which has them itself.
+    ``code`` and ``level`` are the rule's; they may be empty in a lint rule, which has them itself. What
+    one look at a document finds for several rules has the word of its rule as the code.
     """
 
     element: _Element
@@ -28,6 +29,18 @@ class Problem(NamedTuple):
     edits: tuple[Edit, ...] = ()
     code: str = ""
     level: str = ""
+
+
+def fault(
+    word: str,
+    element: _Element,
+    attribute: str | None,
+    message: str,
+    hint: str = "",
+    level: str = "",
+) -> Problem:
+    """A problem for the rule that asks for those of a ``word``."""
+    return Problem(element, message, attribute, hint, (), word, level)
 
 
 def about(claim: Claim, code: str, message: str, hint: str = "") -> Problem:

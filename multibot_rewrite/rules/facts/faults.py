@@ -11,32 +11,31 @@ from multibot_rewrite.base.findings.rule import SRDF, URDF
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.simulators import simulator_plugins
-from multibot_rewrite.rules.schema.faults import Fault, read_faults
+from multibot_rewrite.rules.schema.faults import read_faults
 from multibot_rewrite.rules.subject import Subject
 
 
 def faults(kind: str, subject: Subject) -> Iterator[Problem]:
     """The faults of one kind, which a rule reports."""
-    for it in _by_kind(subject).get(kind, ()):
-        yield Problem(it.element, it.message, it.attribute, it.hint, level=it.level)
+    yield from _by_kind(subject).get(kind, ())
 
 
 @memoized
-def urdf_faults(subject: Subject) -> tuple[Fault, ...]:
+def urdf_faults(subject: Subject) -> tuple[Problem, ...]:
     """The faults of a URDF; the source of a xacro file has none yet."""
     return read_faults(subject.document) if subject.format == URDF else ()
 
 
 @memoized
-def _by_kind(subject: Subject) -> Mapping[str, list[Fault]]:
-    found: dict[str, list[Fault]] = {}
+def _by_kind(subject: Subject) -> Mapping[str, list[Problem]]:
+    found: dict[str, list[Problem]] = {}
     for faults_of in (urdf_faults, _of_srdf, _in_blocks, _of_parameters):
         for it in faults_of(subject):
-            found.setdefault(it.kind, []).append(it)
+            found.setdefault(it.code, []).append(it)
     return found
 
 
-def _of_srdf(subject: Subject) -> Iterable[Fault]:
+def _of_srdf(subject: Subject) -> Iterable[Problem]:
     if subject.format != SRDF:
         return ()
     from multibot_rewrite.rules.schema.srdf import srdf_faults  # a URDF needs none of it
@@ -44,7 +43,7 @@ def _of_srdf(subject: Subject) -> Iterable[Fault]:
     return srdf_faults(subject.document.root, subject.beside)
 
 
-def _in_blocks(subject: Subject) -> Iterable[Fault]:
+def _in_blocks(subject: Subject) -> Iterable[Problem]:
     """What is wrong below ``<gazebo>``, or in the models of an SDF file."""
     root, release = subject.document.root, subject.settings.distro
     blocks = subject.elements.tops("gazebo")
@@ -56,7 +55,7 @@ def _in_blocks(subject: Subject) -> Iterable[Fault]:
     return block_faults(blocks, subject.robot, release) if blocks else model_faults(root, release)
 
 
-def _of_parameters(subject: Subject) -> Iterator[Fault]:
+def _of_parameters(subject: Subject) -> Iterator[Problem]:
     """What is wrong with the parameters of plugins and of hardware."""
     vocabulary, systems = subject.tree.vocabulary, subject.elements.tops("ros2_control")
     plugins = simulator_plugins(subject)

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import SLIP, did_you_mean, nearest
 from multibot_rewrite.base.record import NamedTuple
@@ -30,8 +30,9 @@ from multibot_rewrite.companions.bridge_entry import (
 from multibot_rewrite.companions.kinds import BRIDGE
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.yaml_text import items
+from multibot_rewrite.rules.declaration import of_robots
 from multibot_rewrite.rules.files.given import did_you_mean_at
-from multibot_rewrite.rules.files.records import Remark, of_robots, remark_at
+from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.spelling.bridge_rows import bridge_data
 from multibot_rewrite.system.records import NOWHERE, Place
 
@@ -39,7 +40,7 @@ _BOTH_WAYS, _IN = DIRECTIONS[:2]
 
 
 @rule("MB855", "bridge-row", WARNING, formats=(BRIDGE,))
-def bridge_row(file: NamedFile) -> Iterator[Remark]:
+def bridge_row(file: NamedFile) -> Iterator[Finding]:
     """Each fault of each row, and a row that is no item of a list (bridge_config.cpp: 'top level must
     be a YAML sequence')."""
     root = file.document.root if file.document else None
@@ -56,7 +57,7 @@ def _rows(file: NamedFile) -> list[yaml.Node]:
 
 
 @rule("MB858", "bridge-key", WARNING, formats=(BRIDGE,))
-def bridge_key(file: NamedFile) -> Iterator[Remark]:
+def bridge_key(file: NamedFile) -> Iterator[Finding]:
     """Each key of each row."""
     for row in map(row_of, _rows(file)):
         for name, (key, _) in row.items():
@@ -66,7 +67,7 @@ def bridge_key(file: NamedFile) -> Iterator[Remark]:
 
 
 @rule("MB874", "bridge-types-not-converted", WARNING, formats=(BRIDGE,))
-def not_converted(file: NamedFile) -> Iterator[Remark]:
+def not_converted(file: NamedFile) -> Iterator[Finding]:
     """Rows whose types do not belong together."""
     known: Mapping[str, list[str]] = bridge_data()["pairs"]
     for node in _rows(file):
@@ -81,7 +82,7 @@ def not_converted(file: NamedFile) -> Iterator[Remark]:
 
 def _misspelt(
     node: yaml.Node, ros: str, gz: str, known: Mapping[str, list[str]]
-) -> Iterator[Remark]:
+) -> Iterator[Finding]:
     """Types that are nearly one, and gz types of a package that there is not."""
     cased = (it for it in known if it.lower() == ros.lower())
     alike = "" if ros in known else next(cased, nearest(ros, known, SLIP))
@@ -104,7 +105,7 @@ def _misspelt(
     options={"robots": ("robot1", "robot2")},
 )
 @of_robots
-def second_model(file: NamedFile) -> Iterator[Remark]:
+def second_model(file: NamedFile) -> Iterator[Finding]:
     """Each other model than the first, at its first entry."""
     first: dict[str, yaml.Node] = {}
     for node, name in models(file.document) if file.document else ():
@@ -124,7 +125,7 @@ def second_model(file: NamedFile) -> Iterator[Remark]:
     options={"robots": ("robot1", "robot2")},
 )
 @of_robots
-def shared_service(file: NamedFile) -> Iterator[Remark]:
+def shared_service(file: NamedFile) -> Iterator[Finding]:
     """Services that are not those of the world."""
     for node in _rows(file):
         service = text_in(row_of(node), SERVICE)
@@ -154,7 +155,7 @@ class GzTopic(NamedTuple):
 
 
 @rule("MB879", "bridge-row-without-gz-topic", WARNING, formats=(BRIDGE,), options={"build": True})
-def no_gz_topic(file: NamedFile) -> Iterator[Remark]:
+def no_gz_topic(file: NamedFile) -> Iterator[Finding]:
     """Rows for a gz topic of the description with another type or direction, and rows that read one
     which is not there, although another one of their type is: what sends topics of other types is not
     known."""
@@ -165,7 +166,7 @@ def no_gz_topic(file: NamedFile) -> Iterator[Remark]:
             yield from _of_row(node, row, known.topics)
 
 
-def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterator[Remark]:
+def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterator[Finding]:
     topic = f"/{str(node.value).lstrip('/')}"
     way, type_ = text_in(row, "direction") or _BOTH_WAYS, _bare(text_in(row, TYPES[1]))
     own = topics.get(topic)

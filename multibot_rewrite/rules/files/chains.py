@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.rules.files.plugins import FILTER
-from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.places import remark_at
 
 _PACKAGE = "laser_filters"
 _NEEDED = ("name", "type")
@@ -24,7 +24,7 @@ _Filters = Mapping[str, Mapping[str, Given]]
 
 
 @rule("MB896", "filter-chain", WARNING, formats=(PARAMS,))
-def broken_chains(file: NamedFile) -> Iterator[Remark]:
+def broken_chains(file: NamedFile) -> Iterator[Finding]:
     """Of every chain of a node of laser_filters."""
     for section in sections(file):
         if section.node and section.node.package == _PACKAGE:
@@ -42,7 +42,7 @@ def _chains(section: Section) -> Mapping[str, _Filters]:
     return found
 
 
-def _not_loaded(section: Section, filters: _Filters) -> Iterator[Remark]:
+def _not_loaded(section: Section, filters: _Filters) -> Iterator[Finding]:
     last = next(at for at in range(1, len(filters) + 2) if str(at) not in filters) - 1
     for number, parts in filters.items():
         if not number or int(number) > last:
@@ -51,7 +51,7 @@ def _not_loaded(section: Section, filters: _Filters) -> Iterator[Remark]:
             yield remark_at(next(iter(parts.values())).key, message, hint)
 
 
-def _incomplete(section: Section, filters: _Filters) -> Iterator[Remark]:
+def _incomplete(section: Section, filters: _Filters) -> Iterator[Finding]:
     names: dict[str, str] = {}
     for number, parts in filters.items():
         first = next(iter(parts.values()))

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
@@ -30,13 +30,13 @@ from multibot_rewrite.producers.evidence.moveit import (
     names_of,
 )
 from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in, shown
-from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.places import remark, remark_at
 from multibot_rewrite.spelling.records import GivenNode
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
 
 @rule("MB857", "undeclared-controller-beside", WARNING, formats=(MOVEIT, PARAMS))
-def undeclared_controller(file: NamedFile) -> Iterator[Remark]:
+def undeclared_controller(file: NamedFile) -> Iterator[Finding]:
     """Controllers of ``moveit_simple_controller_manager``; nothing where no file declares any."""
     found = [*managers(file.document.root)] if file.document else []
     given = beside(file).given if found else ()
@@ -47,7 +47,7 @@ def undeclared_controller(file: NamedFile) -> Iterator[Remark]:
             yield from _of_one(file, key, body, declared)
 
 
-def _without_body(file: NamedFile, manager: yaml.Node) -> Iterator[Remark]:
+def _without_body(file: NamedFile, manager: yaml.Node) -> Iterator[Finding]:
     """Listed controllers that have no parameters, which may be in another file."""
     keys = {str(key.value): key for key, _ in pairs(manager) if key.value != NAMES}
     names = names_of(manager)
@@ -61,7 +61,7 @@ def _without_body(file: NamedFile, manager: yaml.Node) -> Iterator[Remark]:
 
 def _of_one(
     file: NamedFile, key: yaml.ScalarNode, body: yaml.Node, declared: Mapping[str, GivenNode]
-) -> Iterator[Remark]:
+) -> Iterator[Finding]:
     name = str(key.value)
     controller = declared.get(name.rpartition("/")[2])
     if controller is None:
@@ -82,7 +82,7 @@ def _of_one(
 
 def _action(
     key: yaml.ScalarNode, body: yaml.Node, controller: GivenNode, facts: NodeFacts
-) -> Iterator[Remark]:
+) -> Iterator[Finding]:
     """The action that MoveIt calls, if the controller serves others alone."""
     ends = (it for it in facts.endpoints if (it.kind, it.role) == (ACTION, SERVES))
     served = {it.name.removeprefix("~/"): it.type.rpartition("/")[2] for it in ends}
@@ -99,7 +99,7 @@ def _action(
         yield from _lacks(type_, f"{called} as {type_.value}", hint)
 
 
-def _lacks(node: yaml.Node, name: str, hint: str) -> Iterator[Remark]:
+def _lacks(node: yaml.Node, name: str, hint: str) -> Iterator[Finding]:
     # Launch files fill in placeholders.
     if not PLACEHOLDER.search(name):
         yield remark_at(node, f"MoveIt uses {name}, which no parameter file of the robot has", hint)
@@ -115,7 +115,7 @@ def _own_joints(controller: GivenNode) -> dict[str, Place]:
 
 
 @rule("MB878", "section-of-no-controller", WARNING, formats=(PARAMS,))
-def section_of_no_controller(file: NamedFile) -> Iterator[Remark]:
+def section_of_no_controller(file: NamedFile) -> Iterator[Finding]:
     """Nothing is said where no parameter file of the robot declares a controller."""
     given, known = beside(file)
     declared = {it.name: it for it in given if it.manager}
@@ -130,10 +130,9 @@ def section_of_no_controller(file: NamedFile) -> Iterator[Remark]:
             continue
         place = declared[near or next(iter(declared))].place
         hint = f"declare it as at {shown(place)}, or leave it out"
-        yield Remark(
-            it.place.line, 1, f"{it.name} has parameters of a controller that nothing declares",
-            did_you_mean_at(near, place) if near else hint, WARNING if near else NOTE,
-        )  # fmt: skip
+        hint = did_you_mean_at(near, place) if near else hint
+        message = f"{it.name} has parameters of a controller that nothing declares"
+        yield remark(it.place._replace(column=1), message, hint, WARNING if near else NOTE)
 
 
 def _undeclared(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> Iterator[GivenNode]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import hypot
 
-from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.kinds import PARAMS
@@ -18,8 +18,8 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.checks.footprint import reach_of
 from multibot_rewrite.knowledge.plugin_classes import canonical
 from multibot_rewrite.rules.files.bounds import polygon_of
-from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.rules.subject import Robots
 
 _INFLATION = "nav2_costmap_2d::InflationLayer"
@@ -40,14 +40,14 @@ class Size(NamedTuple):
 
 
 @rule("MB895", "costmap-robot-size", WARNING, formats=(PARAMS,))
-def robot_size(file: NamedFile) -> Iterator[Remark]:
+def robot_size(file: NamedFile) -> Iterator[Finding]:
     """Each costmap of a file."""
     for section in sections(file):
         if section.node is not None and section.node.package == _COSTMAP:
             yield from _of_costmap(file, section)
 
 
-def _of_costmap(file: NamedFile, section: Section) -> Iterator[Remark]:
+def _of_costmap(file: NamedFile, section: Section) -> Iterator[Finding]:
     radius, footprint = _by_radius(section), _by_footprint(section)
     size = footprint or radius
     if size is None:
@@ -102,7 +102,7 @@ def _fits(radius: Size, footprint: Size) -> bool:
     return footprint.inscribed * 0.9 <= radius.reach <= footprint.reach * 1.5
 
 
-def _inflation(section: Section, size: Size) -> Iterator[Remark]:
+def _inflation(section: Section, size: Size) -> Iterator[Finding]:
     for name, given in section.whole.items():
         layer, _, last = name.rpartition(".")
         class_ = section.whole.get(f"{layer}.plugin")

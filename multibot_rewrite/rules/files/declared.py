@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
 from multibot_rewrite.base.releases import RELEASES
@@ -26,8 +26,8 @@ from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_facts import facts_of_node, of_parameter, of_release
 from multibot_rewrite.rules.files.plugin_names import older_nodes
 from multibot_rewrite.rules.files.plugins import RENAMED
-from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.system.parameters import Value
 
 # What every node has, or every controller and plugin; prefixes end in a dot.
@@ -46,7 +46,7 @@ _COSTMAPS = "nav2_costmap_2d"
 _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
-def unknown_parameters(file: NamedFile) -> Iterator[Remark]:
+def unknown_parameters(file: NamedFile) -> Iterator[Finding]:
     """Parameters that no release of their node declares, with a name nearly that of one."""
     for section in sections(file):
         unknown = [it for it, found in section.known if all(map(_is_any_name, found))]
@@ -138,7 +138,7 @@ def _cut(name: str, known: Iterable[str]) -> str:
     return longer[0] if len(longer) == 1 else ""
 
 
-def wrong_types(file: NamedFile) -> Iterator[Remark]:
+def wrong_types(file: NamedFile) -> Iterator[Finding]:
     """Values of another type than the one that all declarations of a parameter have. It is an error
     where no release takes the value."""
     for section in sections(file):
@@ -181,7 +181,7 @@ def _wrong_type(it: Given, known: Sequence[Declared]) -> str:
     return type_ if sure and _expected(type_) not in ("", _type_of(it.value)) else ""
 
 
-def not_read(file: NamedFile) -> Iterator[Remark]:
+def not_read(file: NamedFile) -> Iterator[Finding]:
     """Parameters of a node whose package declares all of its own, and not these."""
     for section in sections(file):
         facts = [fact for fact in section.facts if fact.how != DEMANDED]
@@ -194,7 +194,7 @@ def not_read(file: NamedFile) -> Iterator[Remark]:
                 yield remark_at(it.key, message, f"nothing reads it; see {facts[0].source}")
 
 
-def in_the_manager(file: NamedFile) -> Iterator[Remark]:
+def in_the_manager(file: NamedFile) -> Iterator[Finding]:
     """Parameters of a controller in the section of its manager, which reads their class."""
     known = file.known
     for section in sections(file) if known else ():
@@ -221,7 +221,7 @@ def _are_all(facts: Sequence[Declared]) -> bool:
     )
 
 
-def below_unknown_names(file: NamedFile) -> Iterator[Remark]:
+def below_unknown_names(file: NamedFile) -> Iterator[Finding]:
     """Parameters below a name that the list which has those names lacks: ``constraints.JOINT``."""
     for section in sections(file):
         for it, known in section.known:
@@ -233,14 +233,16 @@ def below_unknown_names(file: NamedFile) -> Iterator[Remark]:
                         yield _for_unknown(section, it, name, [str(each) for each in names], word)
 
 
-def _for_unknown(section: Section, it: Given, name: str, names: Sequence[str], word: str) -> Remark:
+def _for_unknown(
+    section: Section, it: Given, name: str, names: Sequence[str], word: str
+) -> Finding:
     near = nearest(name, names)
     hint = f"did you mean {near!r}?" if near else "nothing reads it"
     message = f"{section.title}: {it.name} is for {name!r}, which is not in {word.strip('<>')}"
     return remark_at(it.key, message, hint, WARNING if near else "")
 
 
-def of_other_releases(file: NamedFile) -> Iterator[Remark]:
+def of_other_releases(file: NamedFile) -> Iterator[Finding]:
     """Parameters that the node declares in other releases only."""
     release = file.context.distro
     for section in sections(file):
@@ -253,7 +255,7 @@ def of_other_releases(file: NamedFile) -> Iterator[Remark]:
             yield remark_at(it.key, message, f"delete it; see {facts[0].source}")
 
 
-def out_of_bounds(file: NamedFile) -> Iterator[Remark]:
+def out_of_bounds(file: NamedFile) -> Iterator[Finding]:
     """Values that a check of generate_parameter_library, or of the node's code, rejects."""
     for section in sections(file):
         for it, facts in _declared(section, file.context.distro):

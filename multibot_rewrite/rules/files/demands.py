@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Set
 from typing import TypeGuard
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import differ_in_numbers, slip_of
@@ -21,8 +21,8 @@ from multibot_rewrite.knowledge.declared import DEMANDED
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.rules.files.parameter_facts import of_release
-from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, filled, sections
+from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.system.parameters import Value
 
 # What keeps a node from coming up in each release.
@@ -55,7 +55,7 @@ def demands(file: NamedFile, *checks: str) -> Iterator[Demand]:
                         yield Demand(section, it, check, words, fact.source, fact.releases)
 
 
-def above_others(file: NamedFile) -> Iterator[Remark]:
+def above_others(file: NamedFile) -> Iterator[Finding]:
     """Values above another parameter that is the upper end of the same range."""
     for it in demands(file, "at_most", "not_above"):
         value, other = it.given.value, value_of(it.section, it.words[0])
@@ -83,7 +83,7 @@ def value_of(section: Section, name: str) -> Value | None:
 
 
 @rule("MB894", "parameters-contradict", WARNING, formats=(PARAMS, MOVEIT))
-def contradictions(file: NamedFile) -> Iterator[Remark]:
+def contradictions(file: NamedFile) -> Iterator[Finding]:
     """Every demand of one parameter on another that is no order."""
     for it in demands(file, *_PAIRS):
         said = _PAIRS[it.check](it)
@@ -106,7 +106,7 @@ def _stops(it: Demand) -> bool:
     return it.check in _STOPS and not it.releases and known
 
 
-def _managed(it: Demand, nodes: Set[str]) -> Iterator[Remark]:
+def _managed(it: Demand, nodes: Set[str]) -> Iterator[Finding]:
     """Names in a list that are no node of the file, but nearly one that the list lacks."""
     listed = it.given.value if isinstance(it.given.value, list) else []
     for word in map(str, listed):
@@ -117,7 +117,7 @@ def _managed(it: Demand, nodes: Set[str]) -> Iterator[Remark]:
             yield remark_at(it.given.node, message, f"it waits for that node; see {it.source}")
 
 
-def _to_itself(section: Section, node: NodeFacts) -> Iterator[Remark]:
+def _to_itself(section: Section, node: NodeFacts) -> Iterator[Finding]:
     """A transform that a node sends from a frame to itself: buffer_core.cpp of tf2 refuses it."""
     defaults: dict[str, Value | None] = {it.parameter: it.default for it in node.frames}
     values = {**defaults, **{name: it.value for name, it in section.whole.items()}}

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, sections
+from multibot_rewrite.rules.places import remark_at
 
 _NODE = "joy_teleop"
 # Type of a command -> the middle of its interface's type, what names it, and what starts it.
@@ -36,7 +36,7 @@ _Values = Mapping[str, Given]
 
 
 @rule("MB897", "joystick-command", ERROR, formats=(PARAMS,))
-def broken_commands(file: NamedFile) -> Iterator[Remark]:
+def broken_commands(file: NamedFile) -> Iterator[Finding]:
     """Of each command, at its first parameter."""
     for section in sections(file):
         if section.node is None or section.node.name != _NODE:

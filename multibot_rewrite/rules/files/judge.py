@@ -40,7 +40,6 @@ from multibot_rewrite.rules.files import (
     sections,
     wheels,
 )
-from multibot_rewrite.rules.files.records import Remark
 from multibot_rewrite.rules.system import clocks
 
 THEMES = (
@@ -66,11 +65,11 @@ THEMES = (
 
 
 def _each(
-    *finders: Callable[[NamedFile], Iterator[Remark]],
-) -> Callable[[NamedFile], Iterator[Remark]]:
+    *finders: Callable[[NamedFile], Iterator[Finding]],
+) -> Callable[[NamedFile], Iterator[Finding]]:
     """What any of several functions finds, for a rule that they all answer."""
 
-    def found(file: NamedFile) -> Iterator[Remark]:
+    def found(file: NamedFile) -> Iterator[Finding]:
         for find in finders:
             yield from find(file)
 
@@ -131,9 +130,9 @@ def judged(file: NamedFile, rules: Iterable[Rule]) -> Iterator[Finding]:
     for rule in rules:
         for it in rule.check(file) if rule.check else ():
             if rule.code not in _silenced(lines[it.line - 1]):
+                said = it.hint or rule.advice
                 level = it.level or rule.level
-                place = {"file": file.file, "line": it.line, "column": it.column}
-                yield rule.finding(it.message, it.hint, level=level, **place)
+                yield it._replace(code=rule.code, level=level, hint=said, file=file.file)
 
 
 def judged_once(file: NamedFile) -> list[Finding]:

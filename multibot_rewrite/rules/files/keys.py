@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
@@ -17,13 +17,13 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import ParamSection, flattened, is_for
 from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.rules.files.given import did_you_mean_at, given_in, is_in
-from multibot_rewrite.rules.files.records import Remark, remark, remark_at
+from multibot_rewrite.rules.places import remark, remark_at
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Place
 
 
 @rule("MB859", "repeated-key", WARNING, formats=(PARAMS, MOVEIT))
-def repeated_key(file: NamedFile) -> Iterator[Remark]:
+def repeated_key(file: NamedFile) -> Iterator[Finding]:
     """Every key that is there before in the same map."""
     for site in file.twice:
         message = f"{site.text!r} is set twice; the later value counts"
@@ -31,7 +31,7 @@ def repeated_key(file: NamedFile) -> Iterator[Remark]:
 
 
 @rule("MB866", "repeated-section", WARNING, formats=(PARAMS,))
-def repeated_section(file: NamedFile) -> Iterator[Remark]:
+def repeated_section(file: NamedFile) -> Iterator[Finding]:
     """Every section of a node but its first."""
     first: dict[str, ParamSection] = {}
     for section, _ in file.pages:
@@ -44,7 +44,7 @@ def repeated_section(file: NamedFile) -> Iterator[Remark]:
 
 
 @rule("MB867", "wildcard-overrides-section", WARNING, formats=(PARAMS,))
-def overridden(file: NamedFile) -> Iterator[Remark]:
+def overridden(file: NamedFile) -> Iterator[Finding]:
     """What a wildcard section sets after the section of a node that it matches."""
     sections = [section for section, _ in file.pages]
     for at, section in enumerate(sections):
@@ -62,7 +62,7 @@ def overridden(file: NamedFile) -> Iterator[Remark]:
 
 
 @rule("MB868", "parameter-without-value", WARNING, formats=(PARAMS,))
-def no_value(file: NamedFile) -> Iterator[Remark]:
+def no_value(file: NamedFile) -> Iterator[Finding]:
     """Keys of parameters without a value."""
     for _, names in file.pages:
         for key in names.empty:
@@ -74,7 +74,7 @@ _DIGITS = str.maketrans("", "", "0123456789")
 
 
 @rule("MB877", "listed-name-without-parameters", WARNING, formats=(PARAMS,))
-def listed_without_parameters(file: NamedFile) -> Iterator[Remark]:
+def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
     """Each list of each node."""
     for node in given_in(file):
         bodies = _bodies(node.values)
@@ -88,7 +88,7 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Remark]:
                 if near and near.translate(_DIGITS) != word.translate(_DIGITS):
                     message = f"{node.name} has {word} in {parameter}, without parameters"
                     hint = did_you_mean_at(near, own[near])
-                    yield Remark(value.place.line, 1, message, hint)
+                    yield remark(value.place._replace(column=1), message, hint)
 
 
 def _is_list(parameter: str, given: Given) -> bool:

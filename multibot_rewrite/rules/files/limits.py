@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import did_you_mean
@@ -22,8 +22,8 @@ from multibot_rewrite.description.checks.numbers import value_of
 from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules.description.structure.shared import BOUNDED
-from multibot_rewrite.rules.files.records import Remark, remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.places import remark, remark_at
 from multibot_rewrite.rules.subject import Robots, Subject
 
 _LIMIT = lazy_compile(
@@ -43,7 +43,7 @@ _GROUP = lazy_compile(rb"<group\s[^<>]*?name\s*=\s*[\"']([^\"'<]*)[\"']")
 
 
 @rule("MB898", "limits-beyond-the-joint", WARNING, formats=(MOVEIT,))
-def limits_beyond_the_joint(file: NamedFile) -> Iterator[Remark]:
+def limits_beyond_the_joint(file: NamedFile) -> Iterator[Finding]:
     """What no description of the package with this joint allows."""
     robots: Robots | None = file.memo.get(Robots)
     subjects = robots.subjects if robots and file.kind == MOVEIT else ()
@@ -65,7 +65,7 @@ def limits_beyond_the_joint(file: NamedFile) -> Iterator[Remark]:
                 yield remark_at(it.node, f"{message}, but the URDF has {limits[0]:g}", hint)
 
 
-def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> Iterator[Remark]:
+def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> Iterator[Finding]:
     """Joints that the only robot of a package has not, nor the SRDF of the file's folder, which is for
     that robot."""
     srdfs = _srdfs(file.file)
@@ -110,7 +110,7 @@ def _beyond(joint: Joint, what: str, value: object) -> float | None:
 
 
 @rule("MB899", "group-not-in-srdf", WARNING, formats=(MOVEIT, PARAMS))
-def groups_not_in_srdf(file: NamedFile) -> Iterator[Remark]:
+def groups_not_in_srdf(file: NamedFile) -> Iterator[Finding]:
     """Nothing where an SRDF makes names of its groups when it is expanded."""
     sites = [it for it in file.names if it.kind == "group" and it.is_sure]
     # A build that has the SRDF knows its groups, and says it as of any name.

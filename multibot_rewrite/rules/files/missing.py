@@ -7,18 +7,18 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.knowledge.declared import Declared
 from multibot_rewrite.producers.evidence.claims import TYPE
 from multibot_rewrite.rules.files.demands import demands, value_of
 from multibot_rewrite.rules.files.given import is_set_beside
 from multibot_rewrite.rules.files.parameter_facts import of_release
-from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Section, sections
+from multibot_rewrite.rules.places import remark_at
 
 
-def missing_parameters(file: NamedFile) -> Iterator[Remark]:
+def missing_parameters(file: NamedFile) -> Iterator[Finding]:
     """What a node asks for and has no default: by itself, in a block, or with another parameter."""
     for section in sections(file):
         yield from _missing(file, section)
@@ -29,7 +29,7 @@ def missing_parameters(file: NamedFile) -> Iterator[Remark]:
             yield remark_at(it.given.key, message, f"add it, or set this to false; see {it.source}")
 
 
-def _missing(file: NamedFile, section: Section) -> Iterator[Remark]:
+def _missing(file: NamedFile, section: Section) -> Iterator[Finding]:
     facts = of_release(section.facts, file.context.distro)
     needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]
     found = [it for fact, words in needed for it in _required(file, section, fact, words)]
@@ -44,7 +44,7 @@ def _missing(file: NamedFile, section: Section) -> Iterator[Remark]:
             yield from _required_or(file, section, fact, words.split())
 
 
-def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Remark]:
+def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:
     listed = value_of(section, words) if words else None
     for block, first in _blocks(section, fact.path):
         _, _, word = block.rpartition(".")
@@ -58,7 +58,7 @@ def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> 
 
 def _required_or(
     file: NamedFile, section: Section, fact: Declared, others: Sequence[str]
-) -> Iterator[Remark]:
+) -> Iterator[Finding]:
     names = (fact.path, *others)
     there = any(it in section.whole or is_set_beside(file, section.title, it) for it in names)
     if section.given and not there:

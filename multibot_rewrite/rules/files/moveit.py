@@ -5,14 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.kinds import MOVEIT
 from multibot_rewrite.companions.moveit.rewrite import asks_below_root
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.sites import slot_of
-from multibot_rewrite.rules.files.records import Remark, of_robots, remark
+from multibot_rewrite.rules.declaration import of_robots
+from multibot_rewrite.rules.places import remark
 
 
 @rule(
@@ -22,7 +23,7 @@ from multibot_rewrite.rules.files.records import Remark, of_robots, remark
     formats=(MOVEIT,),
     options={"build": True, "groups": "rename"},
 )
-def groups_without_srdf(file: NamedFile) -> Iterator[Remark]:
+def groups_without_srdf(file: NamedFile) -> Iterator[Finding]:
     """Each group, at its first place."""
     names = file.context.names
     asked = "group" in names.naming.separators and not names.declared.get("group")
@@ -40,7 +41,7 @@ def groups_without_srdf(file: NamedFile) -> Iterator[Remark]:
     options={"build": True, "layout": "postfix"},
 )
 @of_robots
-def one_controller_manager(file: NamedFile) -> Iterator[Remark]:
+def one_controller_manager(file: NamedFile) -> Iterator[Finding]:
     """Places that select a controller manager which no robot has."""
     if file.document is None or file.context.names.naming.topics == NAMESPACE:
         return

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.nearest import HINTED, MISTYPED, did_you_mean, meant_name
@@ -21,8 +21,9 @@ from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.description.checks.mentions import mentioned
 from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.rules.declaration import of_robots
 from multibot_rewrite.rules.files.declared import unknown_parameters
-from multibot_rewrite.rules.files.records import Remark, of_robots, remark
+from multibot_rewrite.rules.places import remark
 
 _FRAMES = ("frame", "link")
 _PARTS = ("joint", "sensor", "group", "interface")
@@ -40,18 +41,18 @@ WORLD = "world"
 
 
 @rule("MB853", "undeclared-frame-beside", WARNING, formats=EVERY)
-def undeclared_frame(file: NamedFile) -> Iterator[Remark]:
+def undeclared_frame(file: NamedFile) -> Iterator[Finding]:
     """Frames and links."""
     return _undeclared(file, _FRAMES)
 
 
 @rule("MB854", "undeclared-joint-beside", NOTE, formats=EVERY)
-def undeclared_joint(file: NamedFile) -> Iterator[Remark]:
+def undeclared_joint(file: NamedFile) -> Iterator[Finding]:
     """Joints, sensors and groups."""
     return _undeclared(file, _PARTS)
 
 
-def _undeclared(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Remark]:
+def _undeclared(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Finding]:
     there = {it.together for it in file.names if _is_there(file, it)}
     foreign = set(_foreign(file)[0])
     hinted: dict[str, str] = {}
@@ -130,7 +131,7 @@ def _missing_owner(file: NamedFile, site: Site) -> str:
 
 
 @rule("MB875", "file-of-another-robot", ERROR, formats=(MOVEIT,), options={"build": True})
-def of_another_robot(file: NamedFile) -> Iterator[Remark]:
+def of_another_robot(file: NamedFile) -> Iterator[Finding]:
     """One remark for all names, at the first."""
     missing, count, first = _foreign(file)
     if missing and first:
@@ -154,7 +155,7 @@ def _foreign(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
     return missing, len(closed), closed[missing[0]]
 
 
-def unknown_uses(file: NamedFile) -> Iterator[Remark]:
+def unknown_uses(file: NamedFile) -> Iterator[Finding]:
     """Texts of unknown use that are names, and in files of plugins those that hold one."""
     yield from _guessed(file)
     if not file.others:
@@ -171,7 +172,7 @@ def unknown_uses(file: NamedFile) -> Iterator[Remark]:
 
 
 @of_robots
-def _guessed(file: NamedFile) -> Iterator[Remark]:
+def _guessed(file: NamedFile) -> Iterator[Finding]:
     """Parameters of a node that is not known, taken for names by their own: one remark a section."""
     for section, names in (it for it in file.pages if is_guessed(it[0])):
         taken = [it for it in names.sites if _is_taken(file, it)]
@@ -191,7 +192,7 @@ def _keys(sites: Iterable[Site]) -> str:
     return ", ".join(dict.fromkeys(it.key for it in sites))
 
 
-def _unknown(site: Site, node: str, told: str) -> Remark:
+def _unknown(site: Site, node: str, told: str) -> Finding:
     hint = "describe the node in a file under nodes:"
     return remark(site, f"node {node} is not known; {told}", hint)
 

@@ -13,7 +13,7 @@ from functools import cache
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.companions.named_file import NamedFile
@@ -35,8 +35,8 @@ from multibot_rewrite.knowledge.plugin_classes import (
 from multibot_rewrite.producers.evidence.claims import TYPE
 from multibot_rewrite.rules.files.demands import Demand, demands
 from multibot_rewrite.rules.files.given import is_set_beside
-from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, sections
+from multibot_rewrite.rules.places import remark_at
 
 _CONTROLLER = "controller_interface::ControllerInterface"
 _DWB, _CRITIC = "dwb_critics", "Critic"
@@ -46,7 +46,7 @@ _CRITIC_SCOPES = {
 }
 
 
-def unknown_classes(file: NamedFile) -> Iterator[Remark]:
+def unknown_classes(file: NamedFile) -> Iterator[Finding]:
     """Classes that no package of the release registers, in parameters and kinematics of MoveIt."""
     release = file.context.distro
     known = file.known.nodes.values() if file.known else ()
@@ -102,7 +102,7 @@ def words_of(given: Given) -> list[str]:
     return [str(word) for word in value] if isinstance(value, list) else str(value or "").split()
 
 
-def _of_class(node: yaml.Node, where: str, name: str, base: str, release: str) -> Iterator[Remark]:
+def _of_class(node: yaml.Node, where: str, name: str, base: str, release: str) -> Iterator[Finding]:
     known = plugin_bases()[base]
     if has_release(known.classes.get(name, "none"), release) if name in known.classes else False:
         return
@@ -153,7 +153,7 @@ def _near(name: str, there: Sequence[str]) -> str:
     return f"did you mean {near}?" if near else "see the plugins of its package"
 
 
-def _critics(it: Demand) -> Iterator[Remark]:
+def _critics(it: Demand) -> Iterator[Finding]:
     """Critics are classes of a scope: DWB adds the word Critic, and may look in others.
     Another package may register more of them in that scope (pluginlib looks a name up in all)."""
     base = it.words[0]
@@ -173,7 +173,7 @@ def _critics(it: Demand) -> Iterator[Remark]:
                 yield remark_at(it.given.node, message, f"did you mean {near}?", ERROR)
 
 
-def without_plugin(file: NamedFile) -> Iterator[Remark]:
+def without_plugin(file: NamedFile) -> Iterator[Finding]:
     """Words of a list of plugins without NAME.plugin, sources without parameters, controllers without
     a type."""
     for it in demands(file, "classes", "blocks"):
@@ -199,7 +199,7 @@ def without_plugin(file: NamedFile) -> Iterator[Remark]:
     yield from _without_type(file)
 
 
-def _without(it: Demand, word: str, below: str) -> Remark:
+def _without(it: Demand, word: str, below: str) -> Finding:
     what = "plugin" if it.check == "classes" else "parameters"
     message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
     name = below + "plugin" if what == "plugin" else below.rstrip(".")
@@ -214,7 +214,7 @@ def _is_misspelt(it: Demand, word: str, words: Sequence[str]) -> bool:
     return bool(nearest(word, own - set(words)))
 
 
-def _without_type(file: NamedFile) -> Iterator[Remark]:
+def _without_type(file: NamedFile) -> Iterator[Finding]:
     raw = [RawSection(*it[:3]) for it, _ in file.pages]
     types = controller_types(raw)
     own = {fact.path.partition(".")[0] for fact in declared_by(MANAGER)}
@@ -236,7 +236,7 @@ def _without_type(file: NamedFile) -> Iterator[Remark]:
                 yield remark_at(key, message, f"add {key.value}.type: PACKAGE/CLASS", WARNING)
 
 
-def renamed_nodes(file: NamedFile) -> Iterator[Remark]:
+def renamed_nodes(file: NamedFile) -> Iterator[Finding]:
     """Sections of nodes that have another name since a release before Humble."""
     now = plugin_bases()[NODE].older
     for name, section in older_nodes(file):

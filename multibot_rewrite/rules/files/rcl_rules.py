@@ -15,7 +15,7 @@ from collections.abc import Iterator
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import slip_of
@@ -25,7 +25,7 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rcl_parameters import typed, value_of
 from multibot_rewrite.companions.params.sections import ANY, PARAMETERS, ParamSection, scalars
 from multibot_rewrite.companions.yaml_text import pairs
-from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.places import remark_at
 
 _PLACE = lazy_compile(r"^.*?:\d+(?::\d+)?: ")
 _NEARLY = lazy_compile(r"_*ros_*param(?:eter)?s?_*", re.IGNORECASE)
@@ -35,7 +35,7 @@ _FILLED_IN = lazy_compile(r"[<$%]|\{\{")
 _TIME = "use_sim_time"
 
 
-def rejected_values(file: NamedFile) -> Iterator[Remark]:
+def rejected_values(file: NamedFile) -> Iterator[Finding]:
     """Lists of several types, of lists or of maps."""
     document = file.document
     if document is None:
@@ -51,7 +51,7 @@ def rejected_values(file: NamedFile) -> Iterator[Remark]:
                 yield remark_at(node, f"rcl rejects the file: {message}", "", ERROR)
 
 
-def outside_of_marks(file: NamedFile) -> Iterator[Remark]:
+def outside_of_marks(file: NamedFile) -> Iterator[Finding]:
     """Values that are below no ``ros__parameters``: the first one of each top key."""
     for key, below in pairs(file.document.root if file.document else None):
         value = None if file.kind != PARAMS else next(_outside(key, below), None)
@@ -85,7 +85,7 @@ def _is_read(node: yaml.Node) -> bool:
     return not maps or any(len(it.value) > 1 for it in maps)
 
 
-def misspelt_marks(file: NamedFile) -> Iterator[Remark]:
+def misspelt_marks(file: NamedFile) -> Iterator[Finding]:
     """Keys that are nearly ``ros__parameters``: what is below is part of a name, and no parameter."""
     root = file.document.root if file.document else None
     for key in _keys(root, _DEEP):
@@ -111,7 +111,7 @@ def _keys(node: yaml.Node | None, deep: int) -> Iterator[yaml.ScalarNode]:
             yield from _keys(value, deep - 1)
 
 
-def mixed_clocks(file: NamedFile) -> Iterator[Remark]:
+def mixed_clocks(file: NamedFile) -> Iterator[Finding]:
     """Nodes of one file of which some are on simulated time and some say that they are not."""
     found: list[tuple[str, yaml.Node, bool]] = []
     for section, _ in file.pages:

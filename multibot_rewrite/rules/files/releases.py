@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.companions.kinds import PARAMS
@@ -18,7 +18,7 @@ from multibot_rewrite.companions.yaml_text import items, pairs
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters, Param
 from multibot_rewrite.rules.files.declared import of_other_releases
-from multibot_rewrite.rules.files.records import Remark, remark_at
+from multibot_rewrite.rules.places import remark_at
 
 _FORWARD = "forward_command_controller/ForwardCommandController"
 _BROADCASTER = "joint_state_broadcaster"
@@ -28,7 +28,7 @@ _GONE_SINCE = "lyrical+"
 
 
 @rule("MB869", "deprecated-in-release", NOTE, formats=(PARAMS,), options={"distro": "lyrical"})
-def deprecated(file: NamedFile) -> Iterator[Remark]:
+def deprecated(file: NamedFile) -> Iterator[Finding]:
     """Parameters of known nodes, and types of controllers."""
     release = file.context.distro
     for section, _ in file.pages:
@@ -39,7 +39,7 @@ def deprecated(file: NamedFile) -> Iterator[Remark]:
 @rule(
     "MB871", "interfaces-not-published", WARNING, formats=(PARAMS,), options={"distro": "lyrical"}
 )
-def not_sent(file: NamedFile) -> Iterator[Remark]:
+def not_sent(file: NamedFile) -> Iterator[Finding]:
     """Interfaces of joint_state_broadcaster that no topic holds."""
     if has_release(_GONE_SINCE, file.context.distro):
         for section, _ in file.pages:
@@ -50,19 +50,19 @@ def not_sent(file: NamedFile) -> Iterator[Remark]:
 @rule(
     "MB870", "parameter-of-another-release", NOTE, formats=(PARAMS,), options={"distro": "lyrical"}
 )
-def of_another_release(file: NamedFile) -> Iterator[Remark]:
+def of_another_release(file: NamedFile) -> Iterator[Finding]:
     """Nodes and parameters that only other releases have."""
     yield from elsewhere(file)
 
 
-def elsewhere(file: NamedFile) -> Iterator[Remark]:
+def elsewhere(file: NamedFile) -> Iterator[Finding]:
     """The nodes and parameters of a file that its release does not have and another one has."""
     for section, _ in file.pages:
         yield from _of_another_release(section, file.context.distro)
     yield from of_other_releases(file)
 
 
-def _deprecated_parameters(section: ParamSection, release: str) -> Iterator[Remark]:
+def _deprecated_parameters(section: ParamSection, release: str) -> Iterator[Finding]:
     for name, key in flattened(section.body):
         param = section.node.params.get(name) if section.node else None
         if param and param.deprecated and has_release(param.deprecated, release):
@@ -73,7 +73,7 @@ def _deprecated_parameters(section: ParamSection, release: str) -> Iterator[Rema
             yield remark_at(key, message, f"{instead}{_source(param.source)}")
 
 
-def _of_another_release(section: ParamSection, release: str) -> Iterator[Remark]:
+def _of_another_release(section: ParamSection, release: str) -> Iterator[Finding]:
     """Nodes and parameters that only other releases have; what is called deprecated is told there."""
     node = section.node
     if node is None or section.wild:
@@ -95,7 +95,7 @@ def _source(places: Sequence[str]) -> str:
 
 def _elsewhere(
     key: yaml.ScalarNode, what: str, known: NodeParameters | Param, release: str
-) -> Remark:
+) -> Finding:
     others = ", ".join(releases_with(known.releases))
     message = f"{what} is not in {release}, only in {others}"
     hint = (
@@ -104,7 +104,7 @@ def _elsewhere(
     return remark_at(key, message, f"{hint}{_source(known.source)}")
 
 
-def _deprecated_types(body: yaml.Node, known: KnownNodes | None, release: str) -> Iterator[Remark]:
+def _deprecated_types(body: yaml.Node, known: KnownNodes | None, release: str) -> Iterator[Finding]:
     types = {
         type_: it
         for node in (known.nodes.values() if known else ())
@@ -119,7 +119,7 @@ def _deprecated_types(body: yaml.Node, known: KnownNodes | None, release: str) -
             yield remark_at(value, message, hint)
 
 
-def _not_sent(body: yaml.MappingNode) -> Iterator[Remark]:
+def _not_sent(body: yaml.MappingNode) -> Iterator[Finding]:
     """Interfaces that no topic holds."""
     given = {key.value: value for key, value in pairs(body)}
     mapped = {

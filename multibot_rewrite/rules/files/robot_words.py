@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from lxml.etree import _Element
 
 from multibot_rewrite.base.conventions import PARTS, USUAL_FRAMES
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.companions.engine import GRAPH
@@ -18,7 +18,7 @@ from multibot_rewrite.companions.sites import GZ_TOPIC, Site
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import BETWEEN
 from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
-from multibot_rewrite.rules.files.records import Remark, remark
+from multibot_rewrite.rules.places import remark
 
 # Only where such letters begin, or a line of dashes would be looked at from each of them.
 _TOKEN = lazy_compile(r"(?<![A-Za-z0-9_~/.-])[A-Za-z0-9_~/.-]*[A-Za-z0-9_]")
@@ -32,7 +32,7 @@ _NOT_A_NAME = lazy_compile(
 @rule(
     "MB863", "robot-in-name-beside", ERROR, formats=EVERY, options={"robots": ("robot1", "robot2")}
 )
-def robot_in_name(file: NamedFile) -> Iterator[Remark]:
+def robot_in_name(file: NamedFile) -> Iterator[Finding]:
     """The first name that holds one of the robots."""
     if not file.robots:
         return

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.markup import IN_SUBSTITUTION
 from multibot_rewrite.base.rosnames import check_node_name, check_topic_name
@@ -16,7 +16,7 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_filled, is_plain
 from multibot_rewrite.companions.names.placeholders import is_robot
 from multibot_rewrite.companions.sites import SECTION, Site
-from multibot_rewrite.rules.files.records import Remark, remark
+from multibot_rewrite.rules.places import remark
 
 _IN_VALUE = re.compile(rf"<[^<>]*>|\$\({IN_SUBSTITUTION}\)|\$?\{{[^{{}}]*\}}|%\w+")
 # Stand for whole names of nodes.
@@ -25,7 +25,7 @@ _ANY = ("*", "**")
 _FIXED = "<Fixed Frame>"
 
 
-def invalid_names(file: NamedFile) -> Iterator[Remark]:
+def invalid_names(file: NamedFile) -> Iterator[Finding]:
     """Names in the graph, and those of sections."""
     for site in file.names:
         fault = _section_fault(site) if site.kind == SECTION else _fault(site)
@@ -55,7 +55,7 @@ def _section_fault(site: Site) -> str:
 
 
 @rule("MB876", "name-in-text-block", WARNING, formats=(PARAMS, MOVEIT))
-def text_block(file: NamedFile) -> Iterator[Remark]:
+def text_block(file: NamedFile) -> Iterator[Finding]:
     """Each name in a block."""
     for site in file.names:
         if site.slot.is_block and site.kind in (*GRAPH, *SPELLERS):
@@ -65,7 +65,7 @@ def text_block(file: NamedFile) -> Iterator[Remark]:
             yield remark(site, message, f"write it on one line: {name}", level)
 
 
-def placeholders(file: NamedFile) -> Iterator[Remark]:
+def placeholders(file: NamedFile) -> Iterator[Finding]:
     """The first placeholder of each name."""
     level = "" if file.is_certain else NOTE
     for site in file.names:
@@ -83,7 +83,7 @@ def _placeholder(site: Site) -> str:
     return found[0] if found else ""
 
 
-def slashes(file: NamedFile) -> Iterator[Remark]:
+def slashes(file: NamedFile) -> Iterator[Finding]:
     """Values that are known to be frames."""
     for site in _frames(file):
         if site.text.startswith("/") and is_plain(site.text) and not _is_spaced(site.text):
@@ -95,7 +95,7 @@ def slashes(file: NamedFile) -> Iterator[Remark]:
 
 
 @rule("MB865", "frame-with-white-space", WARNING, formats=EVERY)
-def frame_with_white_space(file: NamedFile) -> Iterator[Remark]:
+def frame_with_white_space(file: NamedFile) -> Iterator[Finding]:
     """Values that are known to be frames."""
     for site in _frames(file):
         if _is_spaced(site.text) and is_filled(site.text):

@@ -5,17 +5,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import RVIZ
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.rviz.read_config import rviz_data, text_of, value
 from multibot_rewrite.companions.yaml_text import pairs
-from multibot_rewrite.rules.files.records import Remark, of_robots, remark_at
+from multibot_rewrite.rules.declaration import of_robots
+from multibot_rewrite.rules.places import remark_at
 
 
 @rule("MB872", "rviz-ros1-property", WARNING, formats=(RVIZ,))
-def ros1_property(file: NamedFile) -> Iterator[Remark]:
+def ros1_property(file: NamedFile) -> Iterator[Finding]:
     """Each such property of each display."""
     for one in file.shown:
         for key, _ in pairs(one.node):
@@ -25,7 +26,7 @@ def ros1_property(file: NamedFile) -> Iterator[Remark]:
 
 
 @rule("MB873", "rviz-description-volatile", WARNING, formats=(RVIZ,))
-def volatile_description(file: NamedFile) -> Iterator[Remark]:
+def volatile_description(file: NamedFile) -> Iterator[Finding]:
     """Reported once: nearly every saved config has it."""
     found = [
         one
@@ -47,7 +48,7 @@ def volatile_description(file: NamedFile) -> Iterator[Remark]:
     options={"robots": ("robot1", "robot2")},
 )
 @of_robots
-def unknown_display(file: NamedFile) -> Iterator[Remark]:
+def unknown_display(file: NamedFile) -> Iterator[Finding]:
     """Each such display."""
     for one in file.shown:
         if not one.known:

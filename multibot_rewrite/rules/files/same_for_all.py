@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.context import Context
@@ -20,8 +20,9 @@ from multibot_rewrite.companions.rviz.values import LINK, TF_PREFIX
 from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PORT, RUN_TIME
 from multibot_rewrite.producers.addresses import held_by
+from multibot_rewrite.rules.declaration import of_robots
 from multibot_rewrite.rules.files.given import given_in
-from multibot_rewrite.rules.files.records import Remark, of_robots, remark, remark_at
+from multibot_rewrite.rules.places import remark, remark_at
 from multibot_rewrite.system.records import COMPUTER
 
 _TWO = ("robot1", "robot2")
@@ -32,7 +33,7 @@ _OWN_VALUE = "set it for each robot, in a parameter file that is loaded after th
 
 
 @of_robots
-def _exclusive(file: NamedFile) -> Iterator[Remark]:
+def _exclusive(file: NamedFile) -> Iterator[Finding]:
     """Each parameter that is set and that only one node can have so, in a file for several robots."""
     if file.is_for_one:
         return
@@ -61,7 +62,7 @@ def _same(key: str, text: str) -> str:
 
 @rule("MB881", "value-not-renamed", WARNING, formats=(PARAMS, RVIZ), options={"robots": _TWO})
 @of_robots
-def not_renamed(file: NamedFile) -> Iterator[Remark]:
+def not_renamed(file: NamedFile) -> Iterator[Finding]:
     """Patterns and expressions of nodes; values of displays."""
     for site in file.names if file.kind == PARAMS else ():
         sure = site.kind == "pattern"
@@ -78,7 +79,7 @@ def _mentions(context: Context, value: str) -> bool:
     return any(is_declared(context.names, kind, it) for it in words for kind in ("link", "joint"))
 
 
-def _in_display(file: NamedFile, one: RvizItem, place: Site) -> Iterator[Remark]:
+def _in_display(file: NamedFile, one: RvizItem, place: Site) -> Iterator[Finding]:
     there = _why_not(file.context, one, place) if place.slot.value else None
     if there:
         message, hint = there
@@ -102,7 +103,7 @@ def _why_not(context: Context, one: RvizItem, place: Site) -> tuple[str, str] | 
 
 @rule("MB882", "robot-twice-in-value", ERROR, formats=(PARAMS, RVIZ), options={"robots": _TWO})
 @of_robots
-def robot_twice(file: NamedFile) -> Iterator[Remark]:
+def robot_twice(file: NamedFile) -> Iterator[Finding]:
     """Prefixes that a node or a display puts before frames."""
     layout = file.context.names.naming.layout
     certain = frames_differ(file.context)
@@ -125,7 +126,7 @@ def prefix_twice(key: str, value: str) -> str:
 
 
 @of_robots
-def prefix_only(file: NamedFile) -> Iterator[Remark]:
+def prefix_only(file: NamedFile) -> Iterator[Finding]:
     """Prefixes that cannot hold the robot's name at the end, set or left to their default."""
     for site in file.names if file.kind in (PARAMS, MOVEIT) else ():
         if not expressible(file.context, site.kind):
@@ -137,7 +138,7 @@ def prefix_only(file: NamedFile) -> Iterator[Remark]:
             yield from _default_prefixes(file, section)
 
 
-def _default_prefixes(file: NamedFile, section: ParamSection) -> Iterator[Remark]:
+def _default_prefixes(file: NamedFile, section: ParamSection) -> Iterator[Finding]:
     every = section.node.defaults if section.node else ()
     open_ = [it.path for it in every if not expressible(file.context, it.kind)]
     given = [it for it in given_in(file) if it.name == section.path] if open_ else []
@@ -147,7 +148,7 @@ def _default_prefixes(file: NamedFile, section: ParamSection) -> Iterator[Remark
             yield _prefix_only(path, remark_at(section.keys[-1], ""))
 
 
-def _prefix_only(name: str, at: Remark) -> Remark:
+def _prefix_only(name: str, at: Finding) -> Finding:
     message = f"{name} is put in front of names by the node, so a postfix cannot be added"
     return at._replace(message=message, hint="set affix: prefix")
 
@@ -159,7 +160,7 @@ _SCHEMES = ("file://", "package://")
 
 
 @of_robots
-def _calibrations(file: NamedFile) -> Iterator[Remark]:
+def _calibrations(file: NamedFile) -> Iterator[Finding]:
     """Each calibration that all robots of a file read; a file for one robot has its own."""
     # Source: image_common, camera_info_manager.cpp (humble to rolling). A camera_info_url is file:///,
     # package:// or flash:///, with ${NAME} and ${ROS_HOME} filled in; the file has no robot's name.
@@ -174,7 +175,7 @@ def _calibrations(file: NamedFile) -> Iterator[Remark]:
             yield remark_at(url, message, hint, NOTE)
 
 
-def one_device(file: NamedFile) -> Iterator[Remark]:
+def one_device(file: NamedFile) -> Iterator[Finding]:
     """What only one node can have, and calibrations of cameras."""
     yield from _exclusive(file)
     yield from _calibrations(file)

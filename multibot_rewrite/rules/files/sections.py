@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.context import Context
@@ -13,21 +13,22 @@ from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import ANY, ParamSection, flattened, scalars
 from multibot_rewrite.knowledge.parameters import is_absolute
-from multibot_rewrite.rules.files.records import Remark, of_robots, remark_at
+from multibot_rewrite.rules.declaration import of_robots
+from multibot_rewrite.rules.places import remark_at
 
 _TWO = ("robot1", "robot2")
 
 
 @rule("MB883", "section-of-one-robot", ERROR, formats=(PARAMS,), options={"robots": _TWO})
 @of_robots
-def section_of_one_robot(file: NamedFile) -> Iterator[Remark]:
+def section_of_one_robot(file: NamedFile) -> Iterator[Finding]:
     """A namespace in a section's name: that of one robot, or one below each robot's."""
     for section, _ in file.pages:
         if not section.shared:
             yield from _namespace(section, file.context)
 
 
-def _namespace(section: ParamSection, context: Context) -> Iterator[Remark]:
+def _namespace(section: ParamSection, context: Context) -> Iterator[Finding]:
     tokens = section.path.split("/")
     key = section.keys[0]
     if section.path in context.nodes or tokens[0] == "**" or section.full == section.path:
@@ -55,7 +56,7 @@ def _namespace(section: ParamSection, context: Context) -> Iterator[Remark]:
     formats=(PARAMS,),
     options={"build": True, "stack": "own", "nodes": "nodes.yaml"},
 )
-def shared_section(file: NamedFile) -> Iterator[Remark]:
+def shared_section(file: NamedFile) -> Iterator[Finding]:
     """Each node that serves all robots, at its first section."""
     shared = (it for it, _ in reversed(file.pages) if it.shared and file.is_certain)
     first = {it.path: it for it in shared}
@@ -72,7 +73,7 @@ def shared_section(file: NamedFile) -> Iterator[Remark]:
     options={"robots": _TWO, "distro": "jazzy"},
 )
 @of_robots
-def source_without_topic(file: NamedFile) -> Iterator[Remark]:
+def source_without_topic(file: NamedFile) -> Iterator[Finding]:
     """Observation sources of a costmap layer without a topic: their id is the topic."""
     for section, _ in file.pages:
         if not section.shared and _resolves_below(section, file.context):
@@ -86,7 +87,7 @@ def _resolves_below(section: ParamSection, context: Context) -> bool:
     return param is not None and (not namespaced or is_absolute(param, context.distro))
 
 
-def _without_topic(section: ParamSection) -> Iterator[Remark]:
+def _without_topic(section: ParamSection) -> Iterator[Finding]:
     names = dict(flattened(section.body))
     values = {id(key): str(value.value) for key, value in scalars(section.body)}
     for name, key in names.items():

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import WARNING
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
@@ -28,8 +28,8 @@ from multibot_rewrite.rules.facts.drives import (
     separation,
     wheel_of,
 )
-from multibot_rewrite.rules.files.records import Remark, remark_at
 from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Robots, Subject, subject_of
 
@@ -52,7 +52,7 @@ def with_description(file: NamedFile, description: Document) -> NamedFile:
 
 
 @rule("MB856", "controller-wheels", WARNING, formats=(PARAMS,))
-def controller_sizes_of(file: NamedFile) -> Iterator[Remark]:
+def controller_sizes_of(file: NamedFile) -> Iterator[Finding]:
     """What no description of the package with these wheels fits."""
     for section in sections(file):
         if section.node is None or section.node.name != CONTROLLER:
@@ -64,7 +64,7 @@ def controller_sizes_of(file: NamedFile) -> Iterator[Remark]:
             yield from faults[0]
 
 
-def _faults(subject: Subject, section: Section) -> list[Remark] | None:
+def _faults(subject: Subject, section: Section) -> list[Finding] | None:
     """What one description does not fit; None if it has not all of the wheels."""
     values = {it.name: it for it in section.given}
     left, right = (_wheels(subject, values.get(it)) for it in (LEFT, _RIGHT))
@@ -89,7 +89,7 @@ def _wheels(subject: Subject, given: Given | None) -> list[Wheel]:
 
 def _sizes(
     subject: Subject, values: _Values, left: Sequence[Wheel], right: Sequence[Wheel]
-) -> Iterator[Remark]:
+) -> Iterator[Finding]:
     many = bool(left[1:])
     apart = separation(subject.robot, left[0], right[0], many)
     round_ = radius(subject.robot, (*left, *right))
@@ -114,7 +114,7 @@ def _multiplier(values: _Values, name: str) -> float:
     return next((it for it in found if isinstance(it, float)), 1.0)
 
 
-def _ways(node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]) -> Iterator[Remark]:
+def _ways(node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]) -> Iterator[Finding]:
     one, other = left[0], right[0]
     names = f"{one.joint.name!r} and {other.joint.name!r}"
     if are_opposite(one, other):

@@ -16,7 +16,8 @@ from multibot_rewrite.base.rosnames import check_node_name
 from multibot_rewrite.producers.launch.bridges import refused_rows
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.programs import programs
-from multibot_rewrite.rules.launch.declaration import at, launch_rule
+from multibot_rewrite.rules.declaration import launch_rule
+from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 

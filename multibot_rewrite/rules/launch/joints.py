@@ -11,7 +11,8 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.producers.launch.launched import Launched
-from multibot_rewrite.rules.launch.declaration import at, launch_rule
+from multibot_rewrite.rules.declaration import launch_rule
+from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 

@@ -17,10 +17,8 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.footprint import filled_by
 from multibot_rewrite.producers.launch.launched import InSimulator, Launched
-from multibot_rewrite.rules.launch.declaration import (
-    at,
-    launch_rule,
-)
+from multibot_rewrite.rules.declaration import launch_rule
+from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE, BridgedTopic
 
 _POSE = ("-x", "-y", "-z")

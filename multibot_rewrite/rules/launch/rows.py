@@ -14,10 +14,8 @@ from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.producers.launch.bridges import bridged_by
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.running import bound_of
-from multibot_rewrite.rules.launch.declaration import (
-    at,
-    launch_rule,
-)
+from multibot_rewrite.rules.declaration import launch_rule
+from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 

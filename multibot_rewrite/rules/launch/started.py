@@ -20,12 +20,9 @@ from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
 from multibot_rewrite.producers.launch import spawner_managers
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_of
-from multibot_rewrite.rules.launch.declaration import (
-    LAUNCH,
-    at,
-    launch_rule,
-)
+from multibot_rewrite.rules.declaration import LAUNCH, launch_rule
 from multibot_rewrite.rules.launch.joints import read_by_joints
+from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.records import GivenNode, Run
 from multibot_rewrite.system.records import SERVICE
 

@@ -18,8 +18,9 @@ from multibot_rewrite.producers.launch.launched import (
     World,
     worlds,
 )
+from multibot_rewrite.rules.declaration import launch_rule
 from multibot_rewrite.rules.facts.simulators import needed_systems
-from multibot_rewrite.rules.launch.declaration import at, launch_rule
+from multibot_rewrite.rules.places import at
 
 
 @launch_rule("MG706", "world-without-system")

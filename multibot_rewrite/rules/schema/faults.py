@@ -12,7 +12,7 @@ from lxml import etree
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import MISTYPED, nearest
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.problem import Problem, fault
 from multibot_rewrite.description.steps.document import Document, tag_end
 from multibot_rewrite.rules.schema.sections import (
     ROBOT,
@@ -48,21 +48,7 @@ _ASSIGNED = lazy_compile(rb"(?<![\w.-])([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
 _AXIS_FREE = ("fixed", "floating")
 
 
-class Fault(NamedTuple):
-    """A fault of a document's structure; each ``kind`` has a rule that reports it.
-
-    ``attribute`` and ``level`` are as in ``Problem``.
-    """
-
-    kind: str
-    element: etree._Element
-    attribute: str | None
-    message: str
-    hint: str = ""
-    level: str = ""
-
-
-def read_faults(document: Document) -> tuple[Fault, ...]:
+def read_faults(document: Document) -> tuple[Problem, ...]:
     """Every fault of a URDF; what is not a ``<robot>`` has none."""
     root = document.root
     if root.tag != ROBOT:
@@ -85,7 +71,7 @@ def _sorted_children(
     name: str,
     parents: Iterable[etree._Element],
     below: dict[str, list[etree._Element]],
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """Sorts the children of elements into their sections; yields what is wrong with the children."""
     families: dict[tuple[str, ...], list[list[etree._Element]]] = defaultdict(list)
     for parent in parents if name in known.parents else filter(len, parents):
@@ -136,7 +122,7 @@ def _with_odd_values(
     return found
 
 
-def _attributes(element: etree._Element, section: Section, version: Version) -> Iterator[Fault]:
+def _attributes(element: etree._Element, section: Section, version: Version) -> Iterator[Problem]:
     """All faults of an element's attributes."""
     keys = [str(key) for key in element.attrib]
     yield from _unknown_attributes(element, section, keys)
@@ -146,16 +132,16 @@ def _attributes(element: etree._Element, section: Section, version: Version) -> 
             yield from _value(element, kind, key, version)
         if kind is not None and kind.instead_of in keys:
             message = f"<{element.tag}> has both {kind.instead_of} and {key}"
-            yield Fault("rotation-twice", element, key, message)
+            yield fault("rotation-twice", element, key, message)
         since = section.later.get(f"@{key}")
         if since and section.name != "limit":  # MB129 reports those of a limit together
             message = f"{key} of <{element.tag}> is not read: it needs URDF {since}"
-            yield Fault("needs-later-version", element, key, message)
+            yield fault("needs-later-version", element, key, message)
 
 
 def _unknown_attributes(
     element: etree._Element, section: Section, keys: Sequence[str]
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """Attributes that are missing, and those that no parser knows."""
     known = section.attributes
     there = frozenset(keys)
@@ -171,17 +157,17 @@ def _unknown_attributes(
         where = f"<{element.tag}> has an attribute {key!r}, which no URDF parser reads"
         if meant in missing:
             missing.remove(meant)
-            yield Fault("missing", element, key, f"<{element.tag}> has no {meant!r}", hint)
+            yield fault("missing", element, key, f"<{element.tag}> has no {meant!r}", hint)
         elif meant:
-            yield Fault("misspelt", element, key, where, hint)
+            yield fault("misspelt", element, key, where, hint)
         else:
-            yield Fault("not-read", element, key, where)
+            yield fault("not-read", element, key, where)
     if missing:
         names = " and no ".join(map(repr, missing))
-        yield Fault("missing", element, None, f"<{element.tag}> has no {names}")
+        yield fault("missing", element, None, f"<{element.tag}> has no {names}")
 
 
-def _children(element: etree._Element, section: Section, schema: Schema) -> Iterator[Fault]:
+def _children(element: etree._Element, section: Section, schema: Schema) -> Iterator[Problem]:
     """Children that are missing, repeated, or that no parser knows, or not yet."""
     known = section.children
     tags = [child.tag for child in element.iterchildren("*")]
@@ -190,18 +176,18 @@ def _children(element: etree._Element, section: Section, schema: Schema) -> Iter
     for child in element.iterchildren("*"):
         if child.tag in section.later:
             message = f"<{child.tag}> is not read: it needs URDF {section.later[str(child.tag)]}"
-            yield Fault("needs-later-version", child, None, message)
+            yield fault("needs-later-version", child, None, message)
         if child.tag in known or not is_own(child.tag):
             continue
         meant = _near(str(child.tag), _CORE if section.name == ROBOT else known)
         if meant in missing:
             missing.remove(meant)
             message = f"<{element.tag}> has no <{meant}>"
-            yield Fault("missing", child, None, message, f"is <{child.tag}> misspelled?")
+            yield fault("missing", child, None, message, f"is <{child.tag}> misspelled?")
         else:
             yield from _unknown_child(element, child, section, schema, meant)
     for tag in missing:
-        yield Fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
+        yield fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
     yield from _repeated(element, section, count)
     yield from _shapes(element, section)
 
@@ -212,27 +198,27 @@ def _unknown_child(
     section: Section,
     schema: Schema,
     meant: str,
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """A child that the schema does not have in its parent."""
     message = f"no parser reads <{child.tag}> inside <{element.tag}>"
     hint = f"did you mean <{meant}>?" if meant else ""
     if section.name == "ros2_control":
         message = f"<{child.tag}> in <ros2_control> is no component"
-        yield Fault("not-read", child, None, message, hint, ERROR)
+        yield fault("not-read", child, None, message, hint, ERROR)
     elif section.name == "geometry":
         return  # MB615 reports it
     elif meant:
-        yield Fault("misspelt", child, None, message, hint)
+        yield fault("misspelt", child, None, message, hint)
     elif child.tag in schema.tags:
         homes = [it.name for it in schema.sections.values() if child.tag in it.children]
         tags = sorted({home.rpartition("_")[2] for home in homes} - {str(element.tag)})
         hint = f"move it into {' or '.join(f'<{tag}>' for tag in tags)}" if tags else "delete it"
-        yield Fault("misplaced", child, None, message, hint)
+        yield fault("misplaced", child, None, message, hint)
     elif section.name != ROBOT:
-        yield Fault("not-read", child, None, message)
+        yield fault("not-read", child, None, message)
 
 
-def _repeated(element: etree._Element, section: Section, count: Counter[str]) -> Iterator[Fault]:
+def _repeated(element: etree._Element, section: Section, count: Counter[str]) -> Iterator[Problem]:
     """Children that are read once and come again with other content."""
     for tag, times in count.items():
         child = section.children.get(tag)
@@ -242,20 +228,20 @@ def _repeated(element: etree._Element, section: Section, count: Counter[str]) ->
         other = next((it for it in others if _canonical(it) != _canonical(first)), None)
         if other is not None:
             message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
-            yield Fault("repeated", other, None, message)
+            yield fault("repeated", other, None, message)
 
 
 def _canonical(element: etree._Element) -> bytes:
     return etree.tostring(element, method="c14n", with_tail=False)
 
 
-def _shapes(element: etree._Element, section: Section) -> Iterator[Fault]:
+def _shapes(element: etree._Element, section: Section) -> Iterator[Problem]:
     """Shapes after the first one of a geometry."""
     known = [tag for tag, child in section.children.items() if child.times == "either"]
     shapes = list(element.iterchildren(*known)) if known else []
     if len(shapes) > 1:
         message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads only the first"
-        yield Fault("repeated", shapes[1], None, message)
+        yield fault("repeated", shapes[1], None, message)
 
 
 def _near(name: str, known: Collection[str]) -> str:
@@ -268,7 +254,7 @@ def _near(name: str, known: Collection[str]) -> str:
 
 def _value(
     element: etree._Element, kind: Kind, attribute: str, version: Version
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """What is wrong with a value."""
     value = element.get(attribute, "")
     where = f"{element.tag}@{attribute} is {shortened(value)!r}"
@@ -277,28 +263,28 @@ def _value(
             meant = _near(value.strip(), kind.choices)
             hint = f"did you mean {meant!r}?" if meant else ""
             message = f"{where}, not one of {', '.join(kind.choices)}"
-            yield Fault("word", element, attribute, message, hint)
+            yield fault("word", element, attribute, message, hint)
     elif kind.type == "version":
         if not is_known(value):
             message = f"{where}, urdfdom reads 1.0, 1.1 and 1.2"
-            yield Fault("word", element, attribute, message, "leave it out for 1.0")
+            yield fault("word", element, attribute, message, "leave it out for 1.0")
     elif kind.type == "filled":
         if not value:
-            yield Fault("missing", element, attribute, f"{attribute} of <{element.tag}> is empty")
+            yield fault("missing", element, attribute, f"{attribute} of <{element.tag}> is empty")
     elif not _is_unread(element):
         yield from _numbers(element, kind, attribute, version)
 
 
 def _numbers(
     element: etree._Element, kind: Kind, attribute: str, version: Version
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     value = element.get(attribute, "")
     named, problem, hint = wrong_numbers(value, kind.type)
     if named:
         # Readers go on without a colour, and take a number out of range before it is refused.
         mild = kind.type == "rgba" or (named == "range" and kind.refused > version)
         message = f"{element.tag}@{attribute} is {shortened(value)!r}{problem}"
-        yield Fault(named, element, attribute, message, hint, WARNING if mild else "")
+        yield fault(named, element, attribute, message, hint, WARNING if mild else "")
 
 
 def _is_unread(element: etree._Element) -> bool:
@@ -307,7 +293,7 @@ def _is_unread(element: etree._Element) -> bool:
     return element.tag == "axis" and joint is not None and joint.get("type") in _AXIS_FREE
 
 
-def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Fault]:
+def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Problem]:
     """Text where no parser expects any, mostly a stray ``>``."""
     for element in (it for top in _found(_TOPS, root) for it in _elements_with_text(top)):
         section = section_of(element, known)
@@ -317,7 +303,7 @@ def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Fault]:
         found = next(" ".join(it.split()) for it in pieces if it and it.strip())
         inside = "" if element.text and element.text.strip() else None
         message = f"text {shortened(found)!r} in <{element.tag}>, which no parser reads"
-        yield Fault("not-read", element, inside, message)
+        yield fault("not-read", element, inside, message)
 
 
 def _elements_with_text(top: etree._Element) -> list[etree._Element]:
@@ -328,7 +314,7 @@ def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:
     return path(element)  # type: ignore[return-value]
 
 
-def _broken_numbers(document: Document, known: Schema) -> Iterator[Fault]:
+def _broken_numbers(document: Document, known: Schema) -> Iterator[Problem]:
     """Line breaks and tabs after a number: white space for XML, but not for urdfdom."""
     source, elements, starts = document.source, document.elements, document.starts
     seen: set[int] = set()
@@ -343,4 +329,4 @@ def _broken_numbers(document: Document, known: Schema) -> Iterator[Fault]:
         key = found[1].decode() if found else ""
         if section and key in section.attributes and section.attributes[key].type in COUNTS:
             message = f"{elements[number].tag}@{key} has a tab or a line break after a number"
-            yield Fault("value", elements[number], key, message, "write one space")
+            yield fault("value", elements[number], key, message, "write one space")

@@ -16,10 +16,10 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.nearest import fold, nearest, slip_of
 from multibot_rewrite.base.releases import has_release, releases_with
+from multibot_rewrite.description.checks.problem import Problem, fault
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import values_of_plugin
 from multibot_rewrite.description.rewriters.vocabulary import Value, Values, Vocabulary
-from multibot_rewrite.rules.schema.faults import Fault
 from multibot_rewrite.rules.schema.sdf_values import TURN, misread, number_in
 from multibot_rewrite.rules.schema.sections import is_own
 from multibot_rewrite.rules.schema.values import shortened
@@ -31,7 +31,7 @@ CLASSIC = "Plugin"
 
 def plugin_faults(
     element: _Element, vocabulary: Vocabulary, of_ros_1: bool = False
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """The faults of a plugin's parameters; none where the plugin is not known."""
     section = values_of_plugin(element, vocabulary, of_ros_1)
     if section is None:
@@ -43,7 +43,7 @@ def plugin_faults(
 
 def _children(
     element: _Element, above: str, section: Values, vocabulary: Vocabulary
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """The faults of what is in a plugin, or in the parameter ``above`` of it."""
     for child in element.iterchildren("*"):
         if not is_own(child.tag):
@@ -54,7 +54,7 @@ def _children(
             yield from _children(child, f"{path}/", section, vocabulary)
 
 
-def hardware_faults(hardware: _Element, vocabulary: Vocabulary) -> Iterator[Fault]:
+def hardware_faults(hardware: _Element, vocabulary: Vocabulary) -> Iterator[Problem]:
     """The faults of the parameters in a ``<hardware>``."""
     section = vocabulary.values(text_at(hardware, "plugin"))
     if section is None:
@@ -69,7 +69,7 @@ def hardware_faults(hardware: _Element, vocabulary: Vocabulary) -> Iterator[Faul
 
 def _parameter(
     child: _Element, name: str, text: str, section: Values, vocabulary: Vocabulary
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     row, release = section.rows.get(name), vocabulary.release
     above, _, own = name.rpartition("/")
     if row is None:
@@ -78,27 +78,27 @@ def _parameter(
     elif not has_release(row.releases, release):
         message = f"{title(section)} of {release} does not read {name!r}"
         hint = f"that of {', '.join(releases_with(row.releases))} does"
-        yield Fault("later", child, None, message, hint)
+        yield fault("later", child, None, message, hint)
     elif text and "$" not in text:
         yield from _value(child, row, text, section)
 
 
-def _value(child: _Element, row: Value, text: str, section: Values) -> Iterator[Fault]:
+def _value(child: _Element, row: Value, text: str, section: Values) -> Iterator[Problem]:
     where = f"{row.name} {shortened(text)!r}"
     wrong = misread(row.type, text)
     if not wrong:
         yield from _measure(child, row, text, where)
     if wrong:
         instead = f", and counts as {'false' if row.type == 'boolean' else 0}" * wrong.fails
-        yield Fault("value", child, "", f"{where} {wrong.problem}{instead}", "", WARNING)
+        yield fault("value", child, "", f"{where} {wrong.problem}{instead}", "", WARNING)
     elif row.words and text not in row.words:
         near = nearest(text, row.words)
         if near:
             message = f"{where} is not a word that {title(section)} knows"
-            yield Fault("word", child, "", message, f"did you mean {near!r}?", WARNING)
+            yield fault("word", child, "", message, f"did you mean {near!r}?", WARNING)
 
 
-def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Fault]:
+def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Problem]:
     """A number outside of what makes sense, or an angle of more than a turn."""
     value = number_in(text)
     if value is None:
@@ -110,16 +110,16 @@ def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Fau
         yield _out_of_range(child, f"{where} may be {row.high:g} at most{_in(row.checked)}")
     elif row.unit == "rad" and abs(value) > TURN:
         hint = f"{value:g} degrees are {radians(value):.4g}"
-        yield Fault("degrees", child, "", f"{where} is more than a turn: it is in radians", hint)
+        yield fault("degrees", child, "", f"{where} is more than a turn: it is in radians", hint)
 
 
-def _out_of_range(child: _Element, message: str) -> Fault:
-    return Fault("range", child, "", message, "", WARNING)
+def _out_of_range(child: _Element, message: str) -> Problem:
+    return fault("range", child, "", message, "", WARNING)
 
 
 def _unread(
     child: _Element, above: str, name: str, section: Values, vocabulary: Vocabulary
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """What is not read where it is. Code may ask for it through a function that is given an element,
     so what is read anywhere counts as read, unless the block that it belongs to is there."""
     blocks = section.blocks_of.get(name)
@@ -131,12 +131,12 @@ def _unread(
     beside = next(there, "")
     if beside:
         message = f"{title(section)} reads {name!r} in <{beside}>, not beside it"
-        yield Fault("misplaced", child, None, message, f"move it into <{beside}>")
+        yield fault("misplaced", child, None, message, f"move it into <{beside}>")
 
 
 def _unknown(
     child: _Element, above: str, name: str, section: Values, vocabulary: Vocabulary
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     inside = f" in <{above}>" if above else ""
     message = f"{title(section)} does not read {name!r}{inside}"
     parent, near = child.getparent(), slip_of(name, section.blocks[above])
@@ -145,12 +145,12 @@ def _unknown(
     other = "" if above else _of_another(name, section, vocabulary)
     if other:
         hint = f"{other} does; did you mean {near!r}?" if near else f"{other} does"
-        yield Fault("simulator", child, None, message, hint)
+        yield fault("simulator", child, None, message, hint)
     elif near:
-        yield Fault("misspelt", child, None, message, f"did you mean {near!r}?")
+        yield fault("misspelt", child, None, message, f"did you mean {near!r}?")
     elif child.tag != "param":
         # Hardware may have the names of its parameters where nobody looked: in constants, in libraries.
-        yield Fault("not-read", child, None, message)
+        yield fault("not-read", child, None, message)
 
 
 def _of_another(name: str, section: Values, vocabulary: Vocabulary) -> str:
@@ -189,11 +189,11 @@ def _subject(library: str) -> str:
 
 def _missing(
     element: _Element, section: Values, given: Iterable[str], release: str
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     for name, row in section.rows.items():
         if row.required and name not in given and has_release(row.releases, release):
             message = f"{title(section)} needs {name!r}"
-            yield Fault(
+            yield fault(
                 "missing", element, None, message, f"without it, it is not loaded{_in(row.place)}"
             )
 

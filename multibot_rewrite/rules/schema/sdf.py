@@ -18,10 +18,10 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.description.checks.links_and_joints import Robot
+from multibot_rewrite.description.checks.problem import Problem, fault
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.rules.schema.classics import may_be_classics
 from multibot_rewrite.rules.schema.described import WORDS, Described, Row, chunks, described
-from multibot_rewrite.rules.schema.faults import Fault
 from multibot_rewrite.rules.schema.readers import SDFORMAT, reader_of
 from multibot_rewrite.rules.schema.sdf_values import QUATERNION, TURN, misread, number_in
 from multibot_rewrite.rules.schema.sections import is_own
@@ -63,34 +63,31 @@ def version_of_release(release: str) -> Version:
     return tuple(found)
 
 
-def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tuple[Fault, ...]:
+def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tuple[Problem, ...]:
     """Every fault in these ``<gazebo>`` elements."""
     version, taken = version_of_release(release), described("urdf")
     assert taken
     filled = (it for it in blocks if len(it))
-    found = tuple(fault for block in filled for fault in _block(block, robot, version, taken))
+    found = tuple(it for block in filled for it in _block(block, robot, version, taken))
     return _by_reader(found, blocks[0].getroottree().getroot(), release)
 
 
-def model_faults(root: _Element, release: str) -> tuple[Fault, ...]:
+def model_faults(root: _Element, release: str) -> tuple[Problem, ...]:
     """Every fault in the models and worlds of an ``<sdf>``."""
     version = version_of_release(release)
     tops = root.iterchildren("model", "world")
-    found = tuple(fault for it in tops for fault in _element(it, str(it.tag), version))
+    found = tuple(it for top in tops for it in _element(top, str(top.tag), version))
     return _by_reader(found, root, release)
 
 
-def _by_reader(found: tuple[Fault, ...], root: _Element, release: str) -> tuple[Fault, ...]:
+def _by_reader(found: tuple[Problem, ...], root: _Element, release: str) -> tuple[Problem, ...]:
     """libsdformat 9 has no ranges (a friction of -1 is endless), and reads what it can of a vector."""
-    mild = any(it.kind in _MILD for it in found) and may_be_classics(root, release)
-    return tuple(map(_mild, found)) if mild else found
+    if not any(it.code in _MILD for it in found) or not may_be_classics(root, release):
+        return found
+    return tuple(it._replace(level=_MILD.get(it.code, it.level)) for it in found)
 
 
-def _mild(fault: Fault) -> Fault:
-    return fault._replace(level=_MILD.get(fault.kind, fault.level))
-
-
-def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Fault]:
+def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Problem]:
     name = block.get("reference", "")
     if name and name not in robot.link and name not in robot.joint:
         return  # MB202 reports it
@@ -105,7 +102,7 @@ def _block(block: _Element, robot: Robot, version: Version, taken: Described) ->
             yield from _child(child, home, known, version, taken.rows)
 
 
-def _taken(child: _Element, row: Row, home: str) -> Iterator[Fault]:
+def _taken(child: _Element, row: Row, home: str) -> Iterator[Problem]:
     """A tag that the converter itself reads."""
     at = "value" if child.get("value") else ""
     text = child.get("value") or text_of(child)
@@ -115,13 +112,13 @@ def _taken(child: _Element, row: Row, home: str) -> Iterator[Fault]:
     if home not in belongs:
         message = f"<{row.name}> in the <gazebo> of a {home} has no effect"
         hint = f"it is read in that of a {' or '.join(belongs)}: name it with reference="
-        yield Fault("misplaced", child, None, message, hint)
+        yield fault("misplaced", child, None, message, hint)
         return
     wrong = misread(row.type, text)
     if wrong:
         level = ERROR if row.type == "double" and wrong.fails else WARNING
         message = f"{row.name} {shortened(text)!r} {wrong.problem}"
-        yield Fault("value", child, at, message, "", level)
+        yield fault("value", child, at, message, "", level)
 
 
 def _belongs(tag: str) -> tuple[str, ...]:
@@ -134,7 +131,7 @@ def _belongs(tag: str) -> tuple[str, ...]:
 
 def _child(
     child: _Element, home: str, known: Described, version: Version, also: Mapping[str, object]
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """One child of an element whose section is ``known``; ``also`` are further tags it may have."""
     tag = str(child.tag)
     rows = known.rows.get(tag)
@@ -146,7 +143,7 @@ def _child(
     if row.first > version:
         message = f"<{tag}> in <{home}> is of SDF {_text(row.first)}"
         hint = f"Gazebo of this release reads up to SDF {_text(version)}"
-        yield Fault("later", child, None, message, hint)
+        yield fault("later", child, None, message, hint)
         return
     yield from _value(child, "", row, text_of(child), known, version)
     # The converter of sdformat leaves out what an older SDF had here, such as the <frame> of a sensor.
@@ -154,7 +151,7 @@ def _child(
         yield from _element(child, row.section, version)
 
 
-def _element(element: _Element, section: str, version: Version) -> Iterator[Fault]:
+def _element(element: _Element, section: str, version: Version) -> Iterator[Problem]:
     """Attributes and children of an element that has a section."""
     known = described(section)
     if known is None:
@@ -173,13 +170,13 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Faul
         yield from _child(child, str(element.tag), known, version, {})
 
 
-def _missing(element: _Element, known: Described, version: Version) -> Iterator[Fault]:
+def _missing(element: _Element, known: Described, version: Version) -> Iterator[Problem]:
     """Attributes without which sdformat refuses the model; those of plugins depend on the release."""
     for name in known.needed:
         if name[0] == "@" and not element.get(name[1:], "").strip():
             row = _of_version(known.rows[name], version)
             if row.required and row.first <= version and element.tag != "plugin":
-                yield Fault("missing", element, None, f"<{element.tag}> has no {name[1:]!r}")
+                yield fault("missing", element, None, f"<{element.tag}> has no {name[1:]!r}")
 
 
 def _of_version(rows: tuple[Row, ...], version: Version) -> Row:
@@ -192,7 +189,7 @@ def _of_version(rows: tuple[Row, ...], version: Version) -> Row:
 
 def _value(
     element: _Element, at: str, row: Row, text: str, known: Described, version: Version
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """What is wrong with a value: of the attribute ``at``, or the text."""
     text = text.strip()
     if not text or "$" in text:
@@ -204,7 +201,7 @@ def _value(
     wrong = misread(QUATERNION if turned else row.type, text)
     if wrong:
         level = ERROR if wrong.fails else WARNING
-        yield Fault("value", element, at, f"{_where(element, at, text)} {wrong.problem}", "", level)
+        yield fault("value", element, at, f"{_where(element, at, text)} {wrong.problem}", "", level)
     elif row.low is not None or row.high is not None:
         yield from _range(element, at, row, text)
     elif row.type == "pose" or row.name in ANGLES:
@@ -220,7 +217,7 @@ def _named(element: _Element, at: str) -> str:
     return f"{element.tag}@{at}" if at else f"<{element.tag}>"
 
 
-def _degrees(element: _Element, at: str, row: Row, text: str) -> Iterator[Fault]:
+def _degrees(element: _Element, at: str, row: Row, text: str) -> Iterator[Problem]:
     """An angle of more than a turn; a pose may say that its are in degrees, or be a quaternion."""
     if element.get("degrees", "").lower() in ("true", "1") or element.get("rotation_format"):
         return
@@ -228,20 +225,20 @@ def _degrees(element: _Element, at: str, row: Row, text: str) -> Iterator[Fault]
     worst = max(angles, key=abs, default=0.0)
     if abs(worst) > TURN:
         message = f"{_where(element, at, text)} is more than a turn: it is in radians"
-        yield Fault("degrees", element, at, message, f"{worst:g} degrees are {radians(worst):.4g}")
+        yield fault("degrees", element, at, message, f"{worst:g} degrees are {radians(worst):.4g}")
 
 
-def _range(element: _Element, at: str, row: Row, text: str) -> Iterator[Fault]:
+def _range(element: _Element, at: str, row: Row, text: str) -> Iterator[Problem]:
     value = number_in(text)
     if value is None:
         return
     if row.low is not None and value < row.low:
         message = f"is below {row.low:.10g}, the least that SDF allows"
-        yield Fault("range", element, at, f"{_where(element, at, text)} {message}")
+        yield fault("range", element, at, f"{_where(element, at, text)} {message}")
     elif row.high is not None and value > row.high:
         message = f"is above {row.high:.10g}, the most that SDF allows"
         hint = _in_radians(row, value)
-        yield Fault("range", element, at, f"{_where(element, at, text)} {message}", hint)
+        yield fault("range", element, at, f"{_where(element, at, text)} {message}", hint)
 
 
 def _in_radians(row: Row, value: float) -> str:
@@ -250,7 +247,7 @@ def _in_radians(row: Row, value: float) -> str:
     return f"{value:g} degrees are {radians(value):.4g} radians" if is_angle else ""
 
 
-def _word(element: _Element, at: str, name: str, text: str, version: Version) -> Iterator[Fault]:
+def _word(element: _Element, at: str, name: str, text: str, version: Version) -> Iterator[Problem]:
     """A word that has to be one of those that the library knows."""
     known = words(name)
     if not known or text in known or (text.lower() in known and _is_folded(name)):
@@ -262,7 +259,7 @@ def _word(element: _Element, at: str, name: str, text: str, version: Version) ->
         return  # Gazebo Classic lets plugins add types of sensors
     hint = f"did you mean {near!r}?" if near else ""
     message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
-    yield Fault("word", element, at, message, hint)
+    yield fault("word", element, at, message, hint)
 
 
 def _is_for_classic(element: _Element) -> bool:
@@ -286,7 +283,7 @@ def _is_folded(name: str) -> bool:
 
 def _unknown(
     child: _Element, known: Described, home: str, also: Mapping[str, object]
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     tag = str(child.tag)
     if tag in READ_BESIDES:
         return
@@ -296,11 +293,11 @@ def _unknown(
         near = ""  # that one is there already
     message = f"Gazebo reads no <{tag}> in <{home}>"
     if near:
-        yield Fault("misspelt", child, None, message, f"did you mean <{near}>?")
+        yield fault("misspelt", child, None, message, f"did you mean <{near}>?")
     else:
         homes = [it for it in _homes(tag) if it != home] or _beside(child, known)
         hint = f"move it into <{'> or <'.join(homes)}>" if homes else ""
-        yield Fault("misplaced" if homes else "not-read", child, None, message, hint)
+        yield fault("misplaced" if homes else "not-read", child, None, message, hint)
 
 
 def _beside(child: _Element, known: Described) -> tuple[str, ...]:
@@ -324,12 +321,12 @@ def _homes(tag: str) -> tuple[str, ...]:
     return tuple(sorted(found)) if 0 < len(found) <= 3 else ()
 
 
-def _unknown_attribute(element: _Element, key: str, known: Described) -> Iterator[Fault]:
+def _unknown_attribute(element: _Element, key: str, known: Described) -> Iterator[Problem]:
     free = [it[1:] for it in known.rows if it[0] == "@" and it[1:] not in element.attrib]
     near = nearest(key, free)
     if near:
         message = f"Gazebo reads no attribute {key!r} of <{element.tag}>"
-        yield Fault("misspelt", element, key, message, f"did you mean {near!r}?")
+        yield fault("misspelt", element, key, message, f"did you mean {near!r}?")
 
 
 def _text(version: Version) -> str:

@@ -15,7 +15,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.checks.planning_groups import is_pinocchios, text_of
-from multibot_rewrite.rules.schema.faults import Fault
+from multibot_rewrite.description.checks.problem import Problem, fault
 
 # Element -> required attributes, other attributes, children.
 _PAIR = (("link1", "link2"), ("reason",), ())
@@ -44,7 +44,7 @@ _SIZES = {"fixed": 0, "planar": 3, "floating": 7}
 _PROPERTIES = ("angular_distance_weight", "motion_model", "min_translational_distance")
 
 
-def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Fault]:
+def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Problem]:
     """Every fault of an SRDF; ``robot`` is that of its URDF, if it was found."""
     yield from _misspelt(root, _TOP, ("name", "version"))
     pinocchios = is_pinocchios(root)
@@ -53,7 +53,7 @@ def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Fault]:
         for attribute in ("name",) if path == "group_state" and pinocchios else required:
             if attribute not in it.attrib:
                 message = f"<{it.tag}> has no {attribute}"
-                yield Fault("missing", it, None, message, f"add {attribute}")
+                yield fault("missing", it, None, message, f"add {attribute}")
         yield from _misspelt(it, children, (*required, *others))
     for it in root.iterchildren("joint_property"):
         yield from _word(it, "property_name", text_of(it, "property_name"), _PROPERTIES, WARNING)
@@ -74,30 +74,30 @@ def _elements(root: _Element) -> Iterator[tuple[_Element, str]]:
 
 def _misspelt(
     parent: _Element, children: tuple[str, ...], attributes: tuple[str, ...]
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """Elements and attributes almost like a known one; all others belong to other tools."""
     for it in parent.iterchildren("*"):
         tag = str(it.tag)
         if tag not in children and (near := nearest(tag, children)):
-            yield Fault("misspelt", it, None, f"<{tag}> is not known", f"did you mean <{near}>?")
+            yield fault("misspelt", it, None, f"<{tag}> is not known", f"did you mean <{near}>?")
     for name in map(str, parent.attrib):
         if name not in attributes and (near := nearest(name, attributes)):
             message = f"{name} of <{parent.tag}> is not known"
-            yield Fault("misspelt", parent, name, message, f"did you mean {near}?")
+            yield fault("misspelt", parent, name, message, f"did you mean {near}?")
 
 
 def _word(
     it: _Element, attribute: str, word: str, known: tuple[str, ...], level: str
-) -> Iterator[Fault]:
+) -> Iterator[Problem]:
     """A word that MoveIt does not know; a type is read as fixed then, a property is left out."""
     if attribute in it.attrib and word not in known:
         near = nearest(word, known)
         hint = f"did you mean {near!r}?" if near else f"use one of {', '.join(known)}"
         message = f"{attribute} {text_of(it, attribute)!r} is not known"
-        yield Fault("word", it, attribute, message, hint, level)
+        yield fault("word", it, attribute, message, hint, level)
 
 
-def _values(root: _Element, robot: Robot | None) -> Iterator[Fault]:
+def _values(root: _Element, robot: Robot | None) -> Iterator[Problem]:
     """Values of joints in states: no numbers, or not as many as the joint has positions."""
     types = {text_of(it): text_of(it, "type").lower() for it in root.iterchildren("virtual_joint")}
     types |= {name: joint.type for name, joint in robot.joint.items()} if robot else {}
@@ -106,11 +106,11 @@ def _values(root: _Element, robot: Robot | None) -> Iterator[Fault]:
         values, size = numbers_in(text), _SIZES.get(types.get(name, ""), 1)
         if values is None:
             message = f"the value of {name!r} is {text!r}, not a number"
-            yield Fault("value", it, "value", message, "write a number")
+            yield fault("value", it, "value", message, "write a number")
         elif name in types and size and len(values) != size:
             message = f"{name!r} has {len(values)} values, a {types[name]} joint has {size}"
             hint = "write one number for each degree of freedom"
-            yield Fault("value", it, "value", message, hint)
+            yield fault("value", it, "value", message, hint)
 
 
 def numbers_in(text: str) -> list[float] | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from lxml import etree
 
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.context import Context
@@ -17,7 +18,6 @@ from multibot_rewrite.producers.evidence.hardware import exported
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.rules.files.controllers import undeclared_controller
 from multibot_rewrite.rules.files.given import Beside
-from multibot_rewrite.rules.files.records import Remark
 from multibot_rewrite.rules.system.interfaces import Missing, missing
 from multibot_rewrite.spelling.records import Given, GivenNode
 from multibot_rewrite.system.records import Interface, Place
@@ -106,7 +106,7 @@ move_group:
 """
 
 
-def moved(*given: GivenNode) -> list[Remark]:
+def moved(*given: GivenNode) -> list[Finding]:
     """What is wrong with MoveIt's file beside what the parameter files set."""
     names = CompanionNames({}, make_naming("postfix"), "")
     document = read_yaml(MOVEIT.encode(), "moveit.yaml")

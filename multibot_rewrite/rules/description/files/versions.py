@@ -171,5 +171,5 @@ def _raised(subject: Subject) -> tuple[Edit, ...]:
 
 @memoized
 def _lowered(subject: Subject) -> tuple[Edit, ...]:
-    refused = any(it.kind in _REFUSED and it.level != WARNING for it in urdf_faults(subject))
+    refused = any(it.code in _REFUSED and it.level != WARNING for it in urdf_faults(subject))
     return () if refused else lowered(_text(subject))
