@@ -64,7 +64,7 @@ def plugin_ends(reading: Reading) -> Iterator[End]:
     """The ends of the nodes that a description starts."""
     for node in reading.nodes:
         for it in node.endpoints:
-            own = (it.kind, it.role, it.full, it.type, "", node.full_name, None, "", it.name)
+            own = (it.kind, it.role, it.name, it.type, "", node.full_name, None, "", it.code_name)
             yield from either_way(End(*own, sure=MAY if it.off else RUNS))
 
 

@@ -251,7 +251,7 @@ def plugin_nodes(reading: Reading, robot: str) -> Iterator[Run]:
 
 def _facts(node: ReadNode) -> NodeFacts:
     endpoints = (
-        Endpoint(it.kind, it.role, it.name, it.type, parameter=it.parameter, when=it.off)
+        Endpoint(it.kind, it.role, it.code_name, it.type, parameter=it.parameter, when=it.off)
         for it in node.endpoints
     )
     frames = tuple(FrameParameter(*frame) for frame in node.frames)

@@ -22,9 +22,9 @@ from multibot_rewrite.description.readback.meeting import (
     said,
     same_for_all,
 )
-from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC
+from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC, RuntimeName
 from multibot_rewrite.description.readback.pairs import CAMERA_INFO, parted, undescribed
-from multibot_rewrite.description.readback.reading import Reading, RuntimeName, read, read_tree
+from multibot_rewrite.description.readback.reading import Reading, read, read_tree
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.document import Document

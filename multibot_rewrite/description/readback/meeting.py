@@ -20,8 +20,8 @@ from multibot_rewrite.description.readback.nodes import (
     SERVICE,
     TOPIC,
     TRANSFORMS,
-    ReadEndpoint,
     ReadNode,
+    RuntimeName,
     full_name,
     itself,
 )
@@ -30,7 +30,6 @@ from multibot_rewrite.description.readback.reading import (
     IN_CODE,
     NODE,
     Reading,
-    RuntimeName,
 )
 
 TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
@@ -197,16 +196,16 @@ def _lost(node: ReadNode, new: ReadNode) -> Iterator[LostRule]:
             yield LostRule(node.number, f"{rule.source}:={rule.target}", name)
 
 
-def _applied(node: ReadNode, end: ReadEndpoint) -> tuple[str, int | None]:
+def _applied(node: ReadNode, end: RuntimeName) -> tuple[str, int | None]:
     """The full name of an endpoint without rules for topics, and the number of the one that gives it
     another; None where it keeps its own.
 
     Those of ``<remapping>`` are counted from the end: what is inserted stands before them.
     """
     bound = itself(node)
-    name = full_name(end.name, end.kind, bound)
+    name = full_name(end.code_name, end.kind, bound)
     sources = [expand(it.rule.source, bound.namespace, bound.node) for it in node.rules]
-    if end.full == name or name not in sources:
+    if end.name == name or name not in sources:
         return name, None
     at = sources.index(name)
     return name, at if node.rules[at].tag == "argument" else at - len(sources)

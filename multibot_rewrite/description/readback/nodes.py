@@ -47,22 +47,27 @@ PAIR = 2
 _SOME_TURNS = 10 * pi
 
 
-class ReadEndpoint(NamedTuple):
-    """A topic or service of a node: its name in the code or in a parameter, and in the graph.
+class RuntimeName(NamedTuple):
+    """A name in the running system: its kind (topic, service, node, frame, or what a plugin looks up
+    in the whole world), its text, and where it comes from: the ``number``-th element with this
+    ``tag``, and ``path``, the parameter. ``type`` is empty where it is not known.
 
-    ``off`` are parameters that would turn it on. ``type`` is empty where it is not known.
-    ``of_controllers`` is true for what the controllers
-    have that it loads, where they take no rules of it.
+    An end of a ROS node has ``role`` and ``code_name``, its name in the code or in the ``parameter``;
+    ``off`` are parameters that would turn it on. ``of_controllers`` is true for what the controllers
+    have that the node loads, where they take no rules of it.
     """
 
     kind: str
-    role: str
     name: str
-    full: str
-    parameter: str = ""
-    off: str = ""
+    tag: str
+    number: int
+    path: str
     of_controllers: bool = False
     type: str = ""
+    role: str = ""
+    code_name: str = ""
+    parameter: str = ""
+    off: str = ""
 
 
 class ReadRule(NamedTuple):
@@ -88,7 +93,7 @@ class ReadNode(NamedTuple):
     name: str
     namespace: str
     rules: tuple[ReadRule, ...]
-    endpoints: tuple[ReadEndpoint, ...]
+    endpoints: tuple[RuntimeName, ...]
     stems: tuple[tuple[str, str], ...]
     frames: tuple[tuple[str, str], ...]
     sends: tuple[tuple[str, str], ...]
@@ -120,7 +125,8 @@ def node_of(
     name, namespace = bound.node, bound.namespace
     rules = tuple(it for it in rules if not it.rule.source.startswith("__"))
     frames = tuple(frames_of(plugin, section))
-    endpoints, bare = _endpoints(plugin, section, bound, rules), _bound(name, namespace, ())
+    endpoints = _endpoints(plugin, number, section, bound, rules)
+    bare = _bound(name, namespace, ())
     return ReadNode(
         section,
         number,
@@ -237,9 +243,27 @@ def full_name(name: str, kind: str, bound: BoundNode) -> str:
         return expand(name, bound.namespace, bound.node)
 
 
+def _end(
+    number: int,
+    bound: BoundNode,
+    kind: str,
+    role: str,
+    name: str,
+    parameter: str = "",
+    type_: str = "",
+    off: str = "",
+) -> RuntimeName:
+    full, path = full_name(name, kind, bound), parameter or name
+    return RuntimeName(kind, full, "plugin", number, path, False, type_, role, name, parameter, off)
+
+
 def _endpoints(
-    plugin: _Element, section: VocabularySection, bound: BoundNode, rules: tuple[ReadRule, ...]
-) -> Iterator[ReadEndpoint]:
+    plugin: _Element,
+    number: int,
+    section: VocabularySection,
+    bound: BoundNode,
+    rules: tuple[ReadRule, ...],
+) -> Iterator[RuntimeName]:
     off = switched_off(plugin, section)
     for_all = [it.rule for it in rules if not it.rule.node]
     of_others = _bound(bound.node, bound.namespace, for_all) if section.process_wide else bound
@@ -249,26 +273,25 @@ def _endpoints(
         kind = SERVICE if it.role == SERVES else TOPIC
         # Controllers publish, by names of their own: a rule for the manager's node is none for them.
         under = of_others if it.role == PUBLISHES else bound
-        own = (kind, it.role, it.name, full_name(it.name, kind, under))
-        yield ReadEndpoint(*own, path, off.get(it.name, ""), type=it.type)
+        is_off = off.get(it.name, "")
+        yield _end(number, under, kind, it.role, it.name, path, it.type, is_off)
     for site in filter(holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         for name in (it for it in values_of(plugin, site) if site.does or it not in named):
-            own = (kind, site.does, name, full_name(name, kind, bound))
-            yield ReadEndpoint(*own, site.path, type=site.type)
+            yield _end(number, bound, kind, site.does, name, site.path, site.type)
     # Other topics below the plugin's own name are not in the vocabulary, but in its remap rules.
     for source in (it.rule.source for it in rules):
         if source.startswith("~") and source not in named:
-            yield ReadEndpoint(TOPIC, "", source, full_name(source, TOPIC, bound))
+            yield _end(number, bound, TOPIC, "", source)
 
 
 def _by_themselves(
-    endpoints: Iterable[ReadEndpoint],
+    endpoints: Iterable[RuntimeName],
     section: VocabularySection,
     bare: BoundNode,
     release: str,
     plugin: _Element,
-) -> Iterator[ReadEndpoint]:
+) -> Iterator[RuntimeName]:
     """The endpoints with what controllers publish under the names they have without any rule, in a
     release in which they take none of the plugin that loads them."""
     if not section.process_wide:
@@ -276,10 +299,10 @@ def _by_themselves(
         return
     may_drive, of_manager = wheels_in(plugin), controller_way(release).of_manager
     for it in endpoints:
-        if it.name in TF_TOPICS and not may_drive:
+        if it.code_name in TF_TOPICS and not may_drive:
             continue
         if not of_manager and it.role == PUBLISHES:
-            yield it._replace(full=full_name(it.name, it.kind, bare), of_controllers=True)
+            yield it._replace(name=full_name(it.code_name, it.kind, bare), of_controllers=True)
         else:
             yield it
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC
-from multibot_rewrite.description.readback.reading import Reading, RuntimeName
+from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC, RuntimeName
+from multibot_rewrite.description.readback.reading import Reading
 
 CAMERA_INFO = "camera_info"
 # The element of a name, its parameter, and the how manieth it is there.

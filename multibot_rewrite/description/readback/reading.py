@@ -14,6 +14,7 @@ from multibot_rewrite.description.readback.nodes import (
     BELOW,
     TOPIC,
     ReadNode,
+    RuntimeName,
     frames_of,
     node_of,
 )
@@ -42,20 +43,6 @@ WITH_TOPICS = (
     ("sdf.link", "particle_emitter"),
     ("webots", "webots"),
 )
-
-
-class RuntimeName(NamedTuple):
-    """A name in the running system: its kind (topic, service, node, frame, or what a plugin looks up
-    in the whole world), its text, and where it comes from: the ``number``-th element with this
-    ``tag``, and ``path``, the parameter; ``of_controllers`` and ``type`` as in ``ReadEndpoint``."""
-
-    kind: str
-    name: str
-    tag: str
-    number: int
-    path: str
-    of_controllers: bool = False
-    type: str = ""
 
 
 class Reading(NamedTuple):
@@ -195,10 +182,7 @@ def _without_rules(
 def _endpoints(node: ReadNode, below: bool) -> Iterator[RuntimeName]:
     """Those that are on and ``below`` one of its stems, or the others."""
     stems = {path for path, _ in node.stems}
-    for it in node.endpoints:
-        if not it.off and (it.parameter in stems) == below:
-            path, of = it.parameter or it.name, it.of_controllers
-            yield RuntimeName(it.kind, it.full, "plugin", node.number, path, of, it.type)
+    yield from (it for it in node.endpoints if not it.off and (it.parameter in stems) == below)
 
 
 def _of_plugins(

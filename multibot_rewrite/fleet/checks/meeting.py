@@ -21,7 +21,8 @@ from multibot_rewrite.description.readback.meeting import (
     meetings,
     said,
 )
-from multibot_rewrite.description.readback.reading import NODE, RuntimeName
+from multibot_rewrite.description.readback.nodes import RuntimeName
+from multibot_rewrite.description.readback.reading import NODE
 from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.fleet.robots.member import Member, line_of

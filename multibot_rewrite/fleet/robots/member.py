@@ -122,7 +122,7 @@ def _check_names(reading: Reading, document: Document) -> None:
         try:
             bound = bind(node.name, node.namespace, [it.rule for it in node.rules])
             for it in node.endpoints:
-                resolve_bound(it.name, it.kind, bound)
+                resolve_bound(it.code_name, it.kind, bound)
         except UsageError as error:
             place = f"{document.file}:{line_of(document, 'plugin', node.number)}"
             raise InputError(f"{place}: {error}; change it in the description") from None

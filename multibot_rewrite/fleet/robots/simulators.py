@@ -172,7 +172,7 @@ def _has_drive(robot: RewrittenRobot, parts: Iterable[ActivePart]) -> bool:
     topics, _ = bridged_topics({"": robot.member.inventory}, robot.topics.naming)
     return (
         any(it.is_known and "joint " in _named(it, root) for it in parts if not _is_state(it))
-        or any(moves(it.name, it.type) for it in ends if it.role != PUBLISHES)
+        or any(moves(it.code_name, it.type) for it in ends if it.role != PUBLISHES)
         or any(it.direction == DIRECTIONS["out"] for it in topics)
     )
 

@@ -168,7 +168,7 @@ def sent_by_plugins(models: Iterable[Model]) -> dict[str, list[tuple[str, Edge]]
     (gazebo_ros_pkgs ros2 gazebo_plugins/src/gazebo_ros_diff_drive.cpp, PublishOdometryTf)."""
     found: dict[str, list[tuple[str, Edge]]] = {}
     for node in (node for it in models if it.spawned for node in it.reading.nodes):
-        topic = next((it.full for it in node.endpoints if it.name == _CLASSIC_TF), "")
+        topic = next((it.name for it in node.endpoints if it.code_name == _CLASSIC_TF), "")
         frames = dict(node.frames)
         for parent, child in node.sends if topic else ():
             name = expand(node.name, node.namespace or "/", "")

@@ -69,7 +69,7 @@ def _moves(model: Model, launched: Launched, seen: Index) -> bool:
     nodes = model.reading.nodes
     inside = (one for it in launched.simulated if it.text == model.text for one in it.topics)
     orders = [(f"/{one.ros.lstrip('/')}", one.ros_type) for one in inside]
-    orders += [(end.full, end.type) for it in nodes for end in it.endpoints]
+    orders += [(end.name, end.type) for it in nodes for end in it.endpoints]
     if any(it.manager or it.sends for it in nodes):
         return True
     return any(words.moves(seen.plain(name), type_) for name, type_ in orders)

@@ -7,7 +7,7 @@ import pytest
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.readback.meeting import advice, meetings, said, same_for_all
-from multibot_rewrite.description.readback.reading import RuntimeName
+from multibot_rewrite.description.readback.nodes import RuntimeName
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 

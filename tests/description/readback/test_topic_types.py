@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.readback.nodes import ReadEndpoint
+from multibot_rewrite.description.readback.nodes import RuntimeName
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.vocabulary import check_vocabulary, load_vocabulary
 
@@ -25,7 +25,7 @@ Ends = set[tuple[str, str, str]]
 
 def endpoints(
     library: str, inside: str = "", sensor: str = "", more: str = ""
-) -> list[ReadEndpoint]:
+) -> list[RuntimeName]:
     plugin = f'<plugin name="p" filename="lib{library}.so">{inside}</plugin>'
     if sensor:
         plugin = f'<sensor name="s" type="{sensor}">{more}{plugin}</sensor>'
@@ -35,7 +35,7 @@ def endpoints(
 
 
 def ends(library: str, inside: str = "", sensor: str = "", more: str = "") -> Ends:
-    return {(it.role, it.full, it.type) for it in endpoints(library, inside, sensor, more)}
+    return {(it.role, it.name, it.type) for it in endpoints(library, inside, sensor, more)}
 
 
 @pytest.mark.parametrize(
@@ -139,7 +139,7 @@ def test_a_type_that_an_element_chooses(inside: str, type_: str) -> None:
 def test_a_remapped_topic_keeps_its_type() -> None:
     inside = "<ros><namespace>a</namespace><remapping>~/out:=scan</remapping></ros>"
     found = endpoints("gazebo_ros_imu_sensor", inside)
-    assert [(it.role, it.full, it.type) for it in found] == [
+    assert [(it.role, it.name, it.type) for it in found] == [
         (PUB, "/a/scan", "sensor_msgs/msg/Imu")
     ]
 
