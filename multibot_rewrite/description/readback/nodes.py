@@ -125,15 +125,13 @@ def node_of(
     name, namespace = bound.node, bound.namespace
     rules = tuple(it for it in rules if not it.rule.source.startswith("__"))
     frames = tuple(frames_of(plugin, section))
-    endpoints = _endpoints(plugin, number, section, bound, rules)
-    bare = _bound(name, namespace, ())
     return ReadNode(
         section,
         number,
         name,
         namespace,
         rules,
-        tuple(_by_themselves(endpoints, section, bare, release, plugin)),
+        tuple(_endpoints(plugin, number, section, bound, rules, release)),
         tuple(_stems(plugin, section, bound)),
         frames,
         tuple(_sends(plugin, section, frames)),
@@ -243,68 +241,47 @@ def full_name(name: str, kind: str, bound: BoundNode) -> str:
         return expand(name, bound.namespace, bound.node)
 
 
-def _end(
-    number: int,
-    bound: BoundNode,
-    kind: str,
-    role: str,
-    name: str,
-    parameter: str = "",
-    type_: str = "",
-    off: str = "",
-) -> RuntimeName:
-    full, path = full_name(name, kind, bound), parameter or name
-    return RuntimeName(kind, full, "plugin", number, path, False, type_, role, name, parameter, off)
-
-
 def _endpoints(
     plugin: _Element,
     number: int,
     section: VocabularySection,
     bound: BoundNode,
     rules: tuple[ReadRule, ...],
+    release: str,
 ) -> Iterator[RuntimeName]:
+    """Those of the node, and those of the controllers that it loads. They publish by names of their
+    own: a rule for the manager's node is none for them, and in some releases they take none at all."""
+    wide = section.process_wide
+    alone = wide and not controller_way(release).of_manager
+    taken = (it.rule for it in rules if not (alone or it.rule.node))
+    of_others = _bound(bound.node, bound.namespace, taken) if wide else bound
+    for kind, role, name, parameter, type_, off in _asked_for(plugin, section, rules):
+        if wide and name in TF_TOPICS and not wheels_in(plugin):
+            continue
+        is_other = role == PUBLISHES
+        full = full_name(name, kind, of_others if is_other else bound)
+        own = (alone and is_other, type_, role, name, parameter, off)
+        yield RuntimeName(kind, full, "plugin", number, parameter or name, *own)
+
+
+def _asked_for(
+    plugin: _Element, section: VocabularySection, rules: tuple[ReadRule, ...]
+) -> Iterator[tuple[str, str, str, str, str, str]]:
+    """Kind, role, name, parameter and type of what a node asks for, and what would turn it on."""
     off = switched_off(plugin, section)
-    for_all = [it.rule for it in rules if not it.rule.node]
-    of_others = _bound(bound.node, bound.namespace, for_all) if section.process_wide else bound
     wired = list(wired_of(plugin, section))
     named = {it.name for it, _ in wired}
     for it, path in wired:
         kind = SERVICE if it.role == SERVES else TOPIC
-        # Controllers publish, by names of their own: a rule for the manager's node is none for them.
-        under = of_others if it.role == PUBLISHES else bound
-        is_off = off.get(it.name, "")
-        yield _end(number, under, kind, it.role, it.name, path, it.type, is_off)
+        yield kind, it.role, it.name, path, it.type, off.get(it.name, "")
     for site in filter(holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         for name in (it for it in values_of(plugin, site) if site.does or it not in named):
-            yield _end(number, bound, kind, site.does, name, site.path, site.type)
+            yield kind, site.does, name, site.path, site.type, ""
     # Other topics below the plugin's own name are not in the vocabulary, but in its remap rules.
     for source in (it.rule.source for it in rules):
         if source.startswith("~") and source not in named:
-            yield _end(number, bound, TOPIC, "", source)
-
-
-def _by_themselves(
-    endpoints: Iterable[RuntimeName],
-    section: VocabularySection,
-    bare: BoundNode,
-    release: str,
-    plugin: _Element,
-) -> Iterator[RuntimeName]:
-    """The endpoints with what controllers publish under the names they have without any rule, in a
-    release in which they take none of the plugin that loads them."""
-    if not section.process_wide:
-        yield from endpoints
-        return
-    may_drive, of_manager = wheels_in(plugin), controller_way(release).of_manager
-    for it in endpoints:
-        if it.code_name in TF_TOPICS and not may_drive:
-            continue
-        if not of_manager and it.role == PUBLISHES:
-            yield it._replace(name=full_name(it.code_name, it.kind, bare), of_controllers=True)
-        else:
-            yield it
+            yield TOPIC, "", source, "", "", ""
 
 
 def holds_topic(site: Site) -> bool:
