@@ -37,7 +37,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.library import rewrite_all
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.apply import cut, fill
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document

@@ -22,9 +22,8 @@ from multibot_rewrite.cli.walk import find_files
 from multibot_rewrite.description.checks.mentions import MENTIONED, unclaimed_mentions
 from multibot_rewrite.description.reports.paths import tag_path
 from multibot_rewrite.description.reports.suggest import Loaded, loaded_by
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.spelling import ResolvedName
-from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import Document, read_document, slot_values

@@ -19,8 +19,8 @@ from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.reports.suggest import suggest, vocabulary_text
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.lookup import block_of, facts, look_up, near_names
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import (
     TYPES,
     Vocabulary,

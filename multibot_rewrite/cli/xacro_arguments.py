@@ -23,7 +23,7 @@ from multibot_rewrite.description.reports.xacro_arguments import (
     as_json,
     find_arguments,
 )
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import is_xacro

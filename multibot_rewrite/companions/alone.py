@@ -14,12 +14,11 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge import rewrite_bridge
 from multibot_rewrite.companions.bridge_entry import MODEL_SLOT
-from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.formats import made_for_any, read_named
 from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, kind_of
 from multibot_rewrite.companions.moveit.file_kind import find_kind
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
 from multibot_rewrite.companions.rviz.rewrite import read_rviz, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import RvizRobot

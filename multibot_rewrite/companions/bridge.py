@@ -32,12 +32,11 @@ from multibot_rewrite.companions.bridge_entry import (
     row_of,
     text_in,
 )
-from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import splices_of
 from multibot_rewrite.companions.engine import text_of as spelled_text
 from multibot_rewrite.companions.kinds import BRIDGE
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic

@@ -7,12 +7,11 @@ from collections.abc import Callable, Iterable, Mapping
 
 from multibot_rewrite.companions.behavior_tree.rewrite import named_tree, rewrite_behavior_tree
 from multibot_rewrite.companions.bridge import read_bridge
-from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
 from multibot_rewrite.companions.lua import read_lua, rewrite_lua
 from multibot_rewrite.companions.moveit.rewrite import read_moveit, rewrite_moveit
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.params.rewrite import read_params, rewrite_params
 from multibot_rewrite.companions.rviz.rewrite import read_rviz
 from multibot_rewrite.companions.yaml_text import read_yaml

@@ -14,16 +14,12 @@ from functools import partial
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import name_splices, text_of
 from multibot_rewrite.companions.kinds import LUA
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.sites import AS_IS, Site, Slot
-from multibot_rewrite.companions.template import (
-    check_no_slots,
-    make_template,
-)
+from multibot_rewrite.companions.template import check_no_slots, make_template
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
 # Cartographer's own files, which set no frames (cartographer/configuration_files).

@@ -6,8 +6,10 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.sites import Site
+from multibot_rewrite.companions.template import FileTemplate
 
 if TYPE_CHECKING:
     from multibot_rewrite.companions.context import Context
@@ -56,3 +58,11 @@ class NamedFile(NamedTuple):
     def declared(self) -> Mapping[str, Collection[str]]:
         """The names that the description declares, by kind; raises nothing."""
         return self.context.names.declared
+
+
+class Companion(NamedTuple):
+    """A companion file as a template for any robot, what was read, and what only its rewrite finds."""
+
+    template: FileTemplate
+    file: NamedFile
+    findings: tuple[Finding, ...] = ()

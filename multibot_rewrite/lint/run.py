@@ -45,7 +45,7 @@ def lint_files(
     unknown = [path for path in paths if found.get(path) is None]
     if unknown:
         # A faulty vocabulary is reported before anything is linted.
-        from multibot_rewrite.description.rewriters.builtin import builtin_tree
+        from multibot_rewrite.description.rewriters.tree import builtin_tree
 
         builtin_tree(settings.vocabulary, settings.distro)
         linted = _linted(unknown, settings, jobs, watch)

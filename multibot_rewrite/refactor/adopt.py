@@ -27,10 +27,9 @@ from multibot_rewrite.description.reports.xacro_arguments import (
     find_arguments,
     names_robots,
 )
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.insert import insertions
-from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.read import read_file

@@ -22,9 +22,9 @@ from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.spelling import ResolvedName
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.fleet.one_file import names_in_file

@@ -14,7 +14,6 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.system import (
-    addresses,
     clocks,
     commands,
     demands,
@@ -57,7 +56,7 @@ from multibot_rewrite.system.tf_copies import without_bridged
 _MODULES = (
     *(nodes, names, matching, commands, relays, sharing, transforms, tf_topics, tf_pieces),
     *(frame_ids, lookups, localized, refused, stamps, clocks, states, equal_robots, likes),
-    *(differing, unsent, interfaces, addresses, enclaves, planned_nodes, planned_ends, demands),
+    *(differing, unsent, interfaces, enclaves, planned_nodes, planned_ends, demands),
     *(planned_states, planned_frames),
 )
 _FOUND = (it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule))

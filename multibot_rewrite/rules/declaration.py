@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule, declare, rule
 
 if TYPE_CHECKING:
@@ -99,3 +99,16 @@ def of_robots(
             yield from find(file)
 
     return found
+
+
+NOT_EXPORTED = declare(
+    "MB229",
+    "interface-not-exported",
+    WARNING,
+    formats=(SYSTEM,),
+    options=system_options(absence=True),
+)
+CLAIMED_TWICE = declare(
+    "MB240", "interface-claimed-twice", WARNING, formats=(SYSTEM,), options=system_options()
+)
+ONE_DEVICE = declare("MB412", "one-device", WARNING, formats=(SYSTEM,), options=system_options())

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, Protocol
-
-import yaml
+from typing import TYPE_CHECKING, Any, Protocol
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.system.records import NOWHERE, Place
+
+if TYPE_CHECKING:
+    import yaml
 
 
 class Placed(Protocol):

@@ -18,8 +18,8 @@ from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.library import rewrite
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.lookup import look_up
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import TYPES, load_vocabulary
 from multibot_rewrite.lint import catalogue
 

@@ -25,7 +25,7 @@ from multibot_rewrite.companions.moveit.file_kind import file_kind
 from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 

@@ -16,7 +16,7 @@ import pytest
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.reports.xacro_arguments import find_arguments
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet

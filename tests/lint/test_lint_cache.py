@@ -21,7 +21,7 @@ from no_workers import lint_in_this_process
 from multibot_rewrite.base import outside
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.urdf_lint import main
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources import packages
 from multibot_rewrite.description.sources.known_arguments import KnownArguments
 from multibot_rewrite.lint.cache import cache as caches

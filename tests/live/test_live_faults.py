@@ -23,7 +23,7 @@ from plans import own
 
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.library import rewrite
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.spelling.transforms import edges_in

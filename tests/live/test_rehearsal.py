@@ -13,7 +13,7 @@ from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.description.readback.reading import read
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.checks.closed_plan import bridged_by

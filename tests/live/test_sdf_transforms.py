@@ -6,7 +6,7 @@ from __future__ import annotations
 from paths import FIXTURES
 
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.spelling.transforms import edges_in

@@ -17,7 +17,7 @@ from refusal_reasons import Outcome, is_true, reason
 from multibot_rewrite import MultibotError, ProofError, rewrite, rewrite_all, strip
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.checks.twice import already_rewritten
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 

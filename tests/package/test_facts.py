@@ -17,8 +17,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.model import Site
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
-from multibot_rewrite.description.rewriters.tree import TreeNode, qualified
+from multibot_rewrite.description.rewriters.tree import TreeNode, builtin_tree, qualified
 from multibot_rewrite.description.rewriters.vocabulary import (
     VocabularySection,
     load_vocabulary,

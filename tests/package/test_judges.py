@@ -16,7 +16,7 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.reading import read
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import make_fleet

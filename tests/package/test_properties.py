@@ -32,7 +32,7 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.base.rosnames import check_robot_name, propose_token
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 
 pytestmark = pytest.mark.slow
 

@@ -11,7 +11,7 @@ from multibot_rewrite.description.joining.join import Given, join_texts
 from multibot_rewrite.description.joining.part import Part
 from multibot_rewrite.description.joining.proof import prove
 from multibot_rewrite.description.joining.second_reading import check_read
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 
 BASE = """<robot name="base">
   <material name="grey"><color rgba="1 1 1 1"/></material>

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.refactor.declaring import NAMES, SPACES, free_name
 from multibot_rewrite.refactor.namespaces import namespaced, space_proved

@@ -5,11 +5,16 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.rules.schema.readers import RVIZ, highest_version, reader_of
 from multibot_rewrite.rules.schema.sdf_values import misread, number_in
 from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
 from multibot_rewrite.rules.schema.values import is_fine, shortened, wrong_numbers
-from multibot_rewrite.rules.schema.versions import is_known, read_version
+from multibot_rewrite.rules.schema.versions import (
+    RVIZ,
+    highest_version,
+    is_known,
+    read_version,
+    reader_of,
+)
 
 NO_NUMBER, LARGE = ("is not a number", True), ("is too large a number", True)
 BELOW = ("is below 0, and is read as a number above 4 billion", False)

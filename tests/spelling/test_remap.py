@@ -17,7 +17,7 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.readback.reading import Reading, read
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Run, Table

@@ -30,7 +30,7 @@ from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.part import prefixing
 from multibot_rewrite.description.readback.xml import plain
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.refactor.adopt import Adopted
 from multibot_rewrite.refactor.namespaces import spacing
 

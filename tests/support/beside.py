@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.companions.companion import Companion
+from multibot_rewrite.companions.named_file import Companion
 from multibot_rewrite.rules.files.judge import judged_once
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from tools.survey import Survey, survey

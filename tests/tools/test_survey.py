@@ -17,7 +17,7 @@ from multibot_rewrite.cli.tables import render
 from multibot_rewrite.description.checks.mentions import find_mentions
 from multibot_rewrite.description.pipeline import prepare
 from multibot_rewrite.description.reports.suggest import Loaded
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.document import slot_values
 from tools import unclaimed
 from tools.survey import (

@@ -19,11 +19,10 @@ from multibot_rewrite.companions.behavior_tree.ports import (
     port_data,
     ports_of,
 )
-from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import name_splices, text_of
 from multibot_rewrite.companions.kinds import TREE
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.companions.template import check_no_slots, make_template

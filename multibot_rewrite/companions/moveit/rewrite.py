@@ -13,13 +13,12 @@ from functools import partial
 import yaml
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import name_splices, text_of
 from multibot_rewrite.companions.kinds import MOVEIT
 from multibot_rewrite.companions.moveit.file_kind import OF_SERVO, find_kind
 from multibot_rewrite.companions.moveit.name_sites import FileKind, entries, find_names
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.template import check_no_slots, make_template

@@ -12,10 +12,9 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.gc_pause import gc_paused
-from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import PARAMS
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.params.lacking_sections import lacking_sections

@@ -20,7 +20,7 @@ from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import MISSED, Part
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.read import JOIN, SourceText, read_alone, read_file
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,

@@ -24,8 +24,12 @@ from multibot_rewrite.base.rosnames import (
     resolve_bound,
 )
 from multibot_rewrite.description.checks.numbers import value_of
-from multibot_rewrite.description.readback.parameters import sends_odometry, switched_off, values_of
-from multibot_rewrite.description.readback.wired import wired_of
+from multibot_rewrite.description.readback.parameters import (
+    sends_odometry,
+    switched_off,
+    values_of,
+    wired_of,
+)
 from multibot_rewrite.description.readback.xml import child_text, text_of
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT

@@ -20,8 +20,12 @@ from multibot_rewrite.description.readback.nodes import (
     holds_topic,
     is_of_others,
 )
-from multibot_rewrite.description.readback.parameters import around, switched_off, values_of
-from multibot_rewrite.description.readback.wired import wired_of
+from multibot_rewrite.description.readback.parameters import (
+    around,
+    switched_off,
+    values_of,
+    wired_of,
+)
 from multibot_rewrite.description.readback.xml import values_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 

@@ -12,6 +12,7 @@ whole, and only then put where others find it. Threads that make one thing at on
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.loose_xml import NAMESPACES
@@ -21,6 +22,8 @@ from multibot_rewrite.description.rewriters.vocabulary import (
     Values,
     Vocabulary,
     VocabularySection,
+    advice,
+    load_vocabulary,
     split_path,
     split_step,
 )
@@ -318,3 +321,17 @@ def _flavour(found: Sequence[VocabularySection], element: _Element) -> Vocabular
         return found[0] if found else None
     tags = {child.tag for child in element}
     return max(found, key=lambda section: (len(section.tags & tags), section.ros))
+
+
+@lru_cache(maxsize=16)
+def builtin_tree(vocabulary: tuple[str, ...], release: str) -> Tree:
+    """The tree of a release: of the vocabulary built in, installed, and named in ``vocabulary``; made
+    once."""
+    sections = load_vocabulary(vocabulary, release)
+    try:
+        tree = Tree(sections)
+        if sections.extended:
+            tree.check()
+        return tree
+    except VocabularyError as error:
+        raise VocabularyError(f"{error}{advice(str(error))}") from None

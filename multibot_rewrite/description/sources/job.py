@@ -10,9 +10,8 @@ from functools import cache
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import Naming, OwnNames
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.sources.own_names import (
     OF_ALL,
     Arguments,

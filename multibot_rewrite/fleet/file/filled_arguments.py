@@ -23,7 +23,7 @@ from multibot_rewrite.description.reports.xacro_arguments import (
     find_arguments,
     names_robots,
 )
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.own_names import ROBOT, filled, name_robot
 from multibot_rewrite.description.sources.read import is_xacro

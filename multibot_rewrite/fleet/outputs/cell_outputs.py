@@ -25,7 +25,7 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, read_config, targets
 from multibot_rewrite.companions.rviz.rewrite import RvizText
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, read_yaml, replaced, spliced
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP, Cell
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.moveit_parameters import (

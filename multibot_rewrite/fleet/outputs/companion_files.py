@@ -8,10 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
-from multibot_rewrite.companions.companion import Companion
 from multibot_rewrite.companions.formats import made_for_any
 from multibot_rewrite.companions.kinds import LUA, MOVEIT, PARAMS, TREE
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.params.lacking_sections import all_sections
 from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.sites import found_in

@@ -12,7 +12,7 @@ from lxml import etree
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import numbered_names
-from multibot_rewrite.description.checks.footprint import reach_of
+from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of

@@ -10,7 +10,7 @@ from functools import partial
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.packages import package_of

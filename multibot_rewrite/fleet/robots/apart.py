@@ -8,7 +8,7 @@ from itertools import combinations, pairwise
 from math import ceil, dist
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.description.checks.footprint import filled_by
+from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot

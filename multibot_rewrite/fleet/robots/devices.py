@@ -15,7 +15,7 @@ from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.rules.check import judge
-from multibot_rewrite.rules.system.addresses import one_device
+from multibot_rewrite.rules.system.sharing import one_device
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import DEVICE, Address, Place, Robot, System

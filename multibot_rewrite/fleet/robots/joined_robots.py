@@ -14,7 +14,7 @@ from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.companions.join import Joined, join_plain
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS, RVIZ
 from multibot_rewrite.description.joining.part import Part
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import JOIN, is_xacro
 from multibot_rewrite.fleet.file.fleet_file import FleetFile

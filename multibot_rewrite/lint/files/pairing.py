@@ -16,8 +16,8 @@ from multibot_rewrite.base.outside import is_file
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.kinds import is_beside
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.packages import package_folder
 from multibot_rewrite.description.sources.read import XACRO, is_xacro, read_file
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect

@@ -14,8 +14,8 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.rule import SRDF, XACRO
 from multibot_rewrite.base.model import NO_ARGUMENT, InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.packages import package_folder
 from multibot_rewrite.description.sources.read import JOIN, has_xacro
 from multibot_rewrite.description.sources.read import XACRO as ENDING

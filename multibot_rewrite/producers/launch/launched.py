@@ -14,7 +14,7 @@ from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.xml import read_xml
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document

@@ -11,7 +11,7 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.rules import of_both
+from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.description import rewriting
 from multibot_rewrite.rules.description.files import reading, shape, values
 from multibot_rewrite.rules.description.multirobot import named_robots
@@ -23,7 +23,6 @@ from multibot_rewrite.rules.files import (
     costmaps,
     declared,
     demands,
-    included,
     joystick,
     keys,
     limits,
@@ -52,7 +51,6 @@ THEMES = (
     bridges,
     rviz,
     moveit,
-    included,
     sections,
     same_for_all,
     wheels,
@@ -97,7 +95,7 @@ SHARED: tuple[Rule, ...] = (
     ),
     values.unknown_word._replace(check=plugin_names.unknown_classes),
     clocks.clocks_mixed._replace(check=rcl_rules.mixed_clocks, level=WARNING, formats=(PARAMS,)),
-    of_both.ONE_DEVICE._replace(check=same_for_all.one_device, formats=(PARAMS,)),
+    declaration.ONE_DEVICE._replace(check=same_for_all.one_device, formats=(PARAMS,)),
     named_robots.prefix_only._replace(check=same_for_all.prefix_only),
     values.out_of_range._replace(
         check=_each(declared.out_of_bounds, demands.above_others), level=WARNING

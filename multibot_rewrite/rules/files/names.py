@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names in files beside a description that the description does not have, or whose use is not known."""
+"""Names in files beside a description that the description does not have, whose use is not known, or
+that are in another file."""
 
 from __future__ import annotations
 
@@ -13,7 +14,12 @@ from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.companions.engine import GRAPH
 from multibot_rewrite.companions.kinds import BRIDGE, EVERY, LUA, MOVEIT, PARAMS, RVIZ, TREE
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.names.by_kind import is_component, is_plain, is_shared_frame
+from multibot_rewrite.companions.names.by_kind import (
+    frames_differ,
+    is_component,
+    is_plain,
+    is_shared_frame,
+)
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
 from multibot_rewrite.companions.params.guessed import in_doubt, is_guessed, stays
 from multibot_rewrite.companions.params.values import renamed
@@ -270,3 +276,30 @@ def _is_interface(file: NamedFile, value: str) -> bool:
     kinds = ("joint", "gpio", "sensor") if "." in interface else ("joint", "gpio")
     names = file.context.names
     return interface != "" and any(is_declared(names, kind, it) for kind in kinds for it in chain)
+
+
+@rule(
+    "MB887", "included-file", WARNING, formats=(LUA, TREE), options={"robots": ("robot1", "robot2")}
+)
+@of_robots
+def included_file(file: NamedFile) -> Iterator[Finding]:
+    """Each file that is included."""
+    key = "behavior_trees" if file.kind == TREE else "lua"
+    for site in file.included:
+        message = f"the included file {site.text!r} is not rewritten with this one"
+        yield remark(site, message, f"if it has names, list it under {key} as well")
+
+
+@rule(
+    "MB888",
+    "lua-frame-not-plain",
+    WARNING,
+    formats=(LUA,),
+    options={"robots": ("robot1", "robot2")},
+)
+@of_robots
+def computed_frame(file: NamedFile) -> Iterator[Finding]:
+    """Each such frame, where robots have frames of their own."""
+    for site in file.computed if frames_differ(file.context) else ():
+        message = f"{site.key} is not a plain string, so it stays unchanged"
+        yield remark(site, message, "each robot needs its own frame here; write the name in quotes")

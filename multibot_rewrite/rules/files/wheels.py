@@ -16,7 +16,7 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.rules.facts.drives import (

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with the models that a launch spawns: two of one name, at one place, on one topic.
+"""What is wrong with the models that a launch spawns: two of one name, at one place, on one topic,
+and in a world that does not run what they need.
 
 Source: ros_gz_sim jazzy create.cpp (``-name``, ``-x`` ... and ``-allow_renaming``); gz-sim8
-src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is not created).
+src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is not created); src/ServerConfig.cc and src/SimulationRunner.cc (a world without any plugin
+gets those of server.config: physics, user commands, scene broadcaster); src/systems/sensors and the
+systems of other sensors.
 """
 
 from __future__ import annotations
@@ -15,9 +18,17 @@ from math import dist
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.description.checks.footprint import filled_by
-from multibot_rewrite.producers.launch.launched import InSimulator, Launched
+from multibot_rewrite.description.checks.shapes import filled_by
+from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.knowledge.worlds import DEFAULTS
+from multibot_rewrite.producers.launch.launched import (
+    InSimulator,
+    Launched,
+    World,
+    worlds,
+)
 from multibot_rewrite.rules.declaration import launch_rule
+from multibot_rewrite.rules.facts.simulators import needed_systems
 from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE, BridgedTopic
 
@@ -138,3 +149,27 @@ def _read(model: InSimulator) -> Iterator[tuple[str, str]]:
 
 def _inputs(model: InSimulator) -> Iterator[BridgedTopic]:
     yield from (it for it in model.topics if it.direction == _INTO_GAZEBO)
+
+
+@launch_rule("MG706", "world-without-system")
+def without_system(launched: Launched) -> Iterator[Finding]:
+    """A robot may bring a system itself."""
+    models = launched.simulated
+    roots = [it.root for it in models]
+    brought = {_system(it.get("filename", "")) for root in roots for it in root.iter("plugin")}
+    for world in worlds(launched):
+        there = _systems(world)
+        for system, why in needed_systems((it.name, it.root) for it in models):
+            if system not in {*there, *brought}:
+                message = f"world {world.file} does not load the system {system}: {why}"
+                hint = f'add <plugin filename="gz-sim-{system}-system" .../> to the world'
+                yield at(without_system, world.place, message, hint)
+
+
+def _systems(world: World) -> set[str]:
+    found = list(world.root.iterfind("world/plugin"))
+    return {_system(it.get("filename", "")) for it in found} if found else set(DEFAULTS)
+
+
+def _system(library: str) -> str:
+    return library_key(library).removeprefix("gz-sim-").removesuffix("-system")

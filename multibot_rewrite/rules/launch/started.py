@@ -3,12 +3,13 @@
 
 Source: launch jazzy launch_service.py (an exception ends it); ros2_control spawner.py (it waits for the
 services of its manager; what is loaded already is not loaded again) and controller_manager.cpp (a
-controller without a type is not loaded); nav2_lifecycle_manager jazzy (``autostart``, ``node_names``).
+controller without a type is not loaded); nav2_lifecycle_manager jazzy (``autostart``, ``node_names``);
+joint_state_publisher humble to jazzy, joint_state_publisher.py (source_list).
 """
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
@@ -21,10 +22,9 @@ from multibot_rewrite.producers.launch import spawner_managers
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_of
 from multibot_rewrite.rules.declaration import LAUNCH, launch_rule
-from multibot_rewrite.rules.launch.joints import read_by_joints
 from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.records import GivenNode, Run
-from multibot_rewrite.system.records import SERVICE
+from multibot_rewrite.system.records import PUBLISHES, SERVICE, SUBSCRIBES
 
 START_MANAGER = (
     "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
@@ -229,3 +229,28 @@ def waits(launched: Launched) -> Iterator[Finding]:
         if _is(it, LIFECYCLE_MANAGER) and (given is None or given.value is False):
             message = f"{it.full_name} activates no node by itself: autostart is not true"
             yield at(waits, it.place, message, "set autostart to true")
+
+
+_KINDS = ("joint_state_publisher", "joint_state_publisher_gui")
+
+
+def read_by_joints(launched: Launched) -> Iterator[tuple[Run, str]]:
+    """What each joint_state_publisher subscribes to."""
+    known = {it.full_name: it for it in launched.nodes if it.fact.kind in _KINDS}
+    for end in launched.system.ends:
+        if end.role == SUBSCRIBES and end.node in known:
+            yield known[end.node], end.name
+
+
+@launch_rule("MG716", "joints-of-itself", level=WARNING)
+def of_itself(launched: Launched) -> Iterator[Finding]:
+    """Where all nodes are known."""
+    senders: dict[str, set[str]] = defaultdict(set)
+    for end in launched.system.ends:
+        if end.role == PUBLISHES:
+            senders[end.name].add(end.node)
+    for node, topic in read_by_joints(launched) if launched.whole else ():
+        if senders[topic] == {node.full_name}:
+            message = f"{node.full_name} reads {topic}, which it sends itself"
+            hint = "name another topic in source_list, or leave it out"
+            yield at(of_itself, node.place, message, hint, names=(topic,))

@@ -20,13 +20,16 @@ from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.checks.problem import Problem, fault
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.schema.classics import may_be_classics
 from multibot_rewrite.rules.schema.described import WORDS, Described, Row, chunks, described
-from multibot_rewrite.rules.schema.readers import SDFORMAT, reader_of
 from multibot_rewrite.rules.schema.sdf_values import QUATERNION, TURN, misread, number_in
 from multibot_rewrite.rules.schema.sections import is_own
 from multibot_rewrite.rules.schema.values import shortened
-from multibot_rewrite.rules.schema.versions import read_version
+from multibot_rewrite.rules.schema.versions import (
+    SDFORMAT,
+    may_be_classics,
+    read_version,
+    reader_of,
+)
 
 # What the converter takes out of the block of a joint; the others are for links, and static for
 # neither.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The version of URDF that a description declares, read as urdfdom reads it.
+"""The version of URDF that a description declares, read as urdfdom reads it, and who reads it in a
+release (``readers.schema``).
 
 Source: urdfdom 6.0.0, class ``URDFVersion`` in urdf_parser.h; without an attribute it is 1.0.
 """
@@ -12,6 +13,8 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import OF_OLD
+from multibot_rewrite.rules.schema.described import table_text
 
 # What strtol reads whole.
 _NUMBER = lazy_compile(r"[ \t\r\n\v\f]*([-+]?)([0-9]{1,9})")
@@ -52,3 +55,52 @@ def version_of(root: _Element) -> Version:
     """The version that a robot is read as: 1.0 where it declares none, or one that is not read."""
     declared = read_version(root.get("version", str(OLDEST)))
     return declared if declared in KNOWN else OLDEST
+
+
+# The newest SDF that Gazebo Classic wrote; what names a system of its successor.
+_NEWEST = (1, 7)
+_SYSTEMS = ("ignition-gazebo", "gz-sim", "ign_ros2_control", "gz_ros2_control")
+
+
+def may_be_classics(root: _Element, release: str) -> bool:
+    """May Gazebo Classic read it? Its libsdformat 9 has no ranges and reads what it can of poses and
+    colours (src/Param.cc), and it goes on with a model that it has errors about."""
+    version = read_version(root.get("version", "")) if root.tag == "sdf" else None
+    if release != OF_OLD and not (version and version <= _NEWEST):
+        return False
+    files = [it.get("filename", "") for it in root.iter("plugin")]
+    return not any(name in it for it in files for name in _SYSTEMS)
+
+
+_FILE = "readers.schema"
+URDFDOM, RVIZ, SDFORMAT, CAPSULE = "urdfdom", "RViz", "sdformat", "capsule"
+
+
+class Reader(NamedTuple):
+    """A program in a release; ``reads`` is a version of URDF or SDF, or an element."""
+
+    release: str
+    name: str
+    version: str
+    reads: str
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.version} of {self.release}"
+
+
+@lru_cache
+def readers() -> tuple[Reader, ...]:
+    """All rows of the table."""
+    lines = table_text(_FILE).splitlines()
+    rows = [line.split() for line in lines if line and not line.startswith("#")]
+    return tuple(Reader(*row) for row in rows)
+
+
+def reader_of(release: str, name: str) -> Reader:
+    """A program as a release has it."""
+    return next(it for it in readers() if (it.release, it.name) == (release, name))
+
+
+def highest_version(release: str) -> Version:
+    """The highest version of URDF that the urdfdom of a release reads."""
+    return read_version(reader_of(release, URDFDOM).reads) or OLDEST

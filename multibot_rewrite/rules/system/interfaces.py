@@ -15,7 +15,7 @@ from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules import of_both
+from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import CLAIMS, COMMAND, EXPORTS, JOINT, Interface, Place
@@ -53,7 +53,7 @@ def _not_exported(seen: Index) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-interface_not_exported = of_both.NOT_EXPORTED._replace(check=_not_exported)
+interface_not_exported = declaration.NOT_EXPORTED._replace(check=_not_exported)
 
 
 def _by_robot(seen: Index) -> dict[str, list[Interface]]:
@@ -116,7 +116,7 @@ def _claimed_twice(seen: Index) -> Iterator[Finding]:
         )  # fmt: skip
 
 
-interface_claimed_twice = of_both.CLAIMED_TWICE._replace(check=_claimed_twice)
+interface_claimed_twice = declaration.CLAIMED_TWICE._replace(check=_claimed_twice)
 
 
 def claimed_twice(known: Iterable[Interface]) -> Iterator[tuple[Interface, Interface]]:

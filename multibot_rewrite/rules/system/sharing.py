@@ -1,16 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of data: one topic written or read by several robots, a map or joint states twice."""
+"""Dangers of what two have: one topic of several robots, a map or joint states twice, a device, a port
+or a file that only one process can open."""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.wording import and_then, shorten
+from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of, robots_of
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.system.records import (
+    CALIBRATION,
+    COMPUTER,
+    DEVICE,
+    OWN,
+    PUBLISHES,
+    SUBSCRIBES,
+    Address,
+)
 from multibot_rewrite.system.tool_nodes import last_word
 
 
@@ -155,3 +167,31 @@ def _passes_on(seen: Index, node: str, ends: Ends) -> bool:
 
 def _is_of_one_sensor(ends: Ends) -> bool:
     return words.is_of_one_sensor(ends.type) or last_word(ends.name) == words.DESCRIPTION
+
+
+_ADVICE = {
+    DEVICE: "one device has one driver: give each robot its own",
+    CALIBRATION: "each device has its own: name the file that was measured with this one",
+    COMPUTER: "the second one on a computer cannot open it: give each robot its own, or a computer",
+    OWN: "only one node can have it: give each robot its own",
+}
+
+
+def _one_device(seen: Index) -> Iterator[Finding]:
+    """All that two nodes of two robots have, by kind, at the second one."""
+    first: dict[tuple[str, str, str], Address] = {}
+    met: dict[tuple[str, str, str], list[tuple[Address, Address]]] = defaultdict(list)
+    for it in seen.system.addresses:
+        other = first.setdefault((it.kind, it.name, it.value), it)
+        if seen.robot(it.node) != seen.robot(other.node):
+            met[it.kind, it.node, other.node].append((other, it))
+    for (kind, node, other_node), pairs in met.items():
+        given = ", ".join(f"{it.name} {it.value}" for _, it in pairs)
+        yield one_device.finding(
+            f"has the same as {other_node}: {given}", _ADVICE[kind] + see(pairs[0]),
+            level=NOTE if kind == COMPUTER else WARNING,
+            robot=seen.robot(node), node=node, names=(other_node,), **where(pairs[0]),
+        )  # fmt: skip
+
+
+one_device = declaration.ONE_DEVICE._replace(check=_one_device)

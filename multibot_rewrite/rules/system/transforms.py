@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of transforms: two parents, cycles, frames of several robots that collide."""
+"""Dangers of transforms: two parents, cycles, frames of several robots that collide; who can send one."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from multibot_rewrite.base.conventions import USUAL_FRAMES, WORLD_FRAMES
+from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
 from multibot_rewrite.rules.system.planned_frames import with_more_names
-from multibot_rewrite.rules.system.senders import who_can_send
+from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, robots_of
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.system.records import SUBSCRIBES, Edge
 from multibot_rewrite.system.tool_nodes import last_word
 
 _STATIC = "static_transform_publisher"
@@ -296,3 +296,29 @@ def robots_name_twice(seen: Index) -> Iterator[Finding]:
                 " by default), on top of a description that has the name: set them to '' and false"
             )
             yield robots_name_twice.finding(message, cause, robot=robot, names=tuple(frames))
+
+
+_STATE_PUBLISHER, _STATIC = "robot_state_publisher", "static_transform_publisher"
+# Of one transform.
+_TWO = 2
+
+
+def who_can_send(seen: Index, nodes: Sequence[str], edges: Sequence[Edge]) -> Sequence[str]:
+    """The nodes that can send one of these; all, where fewer than two would be left."""
+    found = [node for node in nodes if any(_can_send(seen, node, it) for it in edges)]
+    return found if len(found) >= _TWO else nodes
+
+
+def _can_send(seen: Index, node: str, edge: Edge) -> bool:
+    """A description has no odometry, amcl (it reads a start pose) sends map -> odom alone, a drive
+    nothing below the map."""
+    above, word = seen.plain_frame(edge.parent), last_word(node)
+    if word.startswith(_STATE_PUBLISHER):
+        return above not in SENT_FRAMES
+    if word.startswith(_STATIC):
+        return edge.static
+    read = [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
+    if any(words.is_start_pose(seen.plain(it.name), it.type) for it in read):
+        return above in WORLD_FRAMES
+    drives = any(words.moves(it.name, it.type) for it in read)
+    return not (drives and above in WORLD_FRAMES)

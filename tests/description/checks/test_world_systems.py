@@ -7,7 +7,7 @@ import pytest
 
 from multibot_rewrite.description.checks.hazards import world_systems
 from multibot_rewrite.description.library import rewrite
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 

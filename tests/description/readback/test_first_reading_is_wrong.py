@@ -16,8 +16,7 @@ import pytest
 from multibot_rewrite import rewrite
 from multibot_rewrite.base import naming
 from multibot_rewrite.description.rewriters import insert, remap_rules, tree
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
-from multibot_rewrite.description.rewriters.tree import TreeNode
+from multibot_rewrite.description.rewriters.tree import TreeNode, builtin_tree
 from multibot_rewrite.description.steps import collect, plan, verify
 
 ROVER = """\

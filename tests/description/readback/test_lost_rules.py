@@ -9,7 +9,7 @@ from multibot_rewrite import rewrite
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.readback.meeting import LostRule, lost_rules
 from multibot_rewrite.description.readback.reading import read
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 
 PLUGIN = (
     '<robot name="r"><link name="a"/><gazebo><plugin name="{}" filename="libgazebo_ros_{}.so">'

@@ -17,8 +17,7 @@ from multibot_rewrite.description.reports.suggest import (
     tag_kind,
     vocabulary_text,
 )
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
-from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, load_vocabulary
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document

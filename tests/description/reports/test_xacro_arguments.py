@@ -19,7 +19,7 @@ from multibot_rewrite.description.reports.xacro_arguments import (
     XacroArguments,
     find_arguments,
 )
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 
 XACROS = FIXTURES / "xacros"
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'

@@ -24,8 +24,8 @@ from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.meeting import SAME_TEXT
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.readback.meeting import LOOKUP, SHARED_CODES
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
 from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection, load_vocabulary
 from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.collect import declarations

@@ -17,7 +17,7 @@ from paths import FIXTURES
 
 from multibot_rewrite import VocabularyError, rewrite, strip
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.description.rewriters.vocabulary.installed import (
     advice,

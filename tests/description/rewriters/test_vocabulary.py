@@ -10,7 +10,7 @@ import pytest
 
 from multibot_rewrite import VocabularyError, rewrite
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import (
     TYPES,
     VocabularySection,

@@ -9,7 +9,7 @@ import pytest
 
 from multibot_rewrite.base.model import VocabularyError
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 
 TEXT = """

@@ -24,7 +24,7 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.rewriters.builtin import builtin_tree
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.apply import Template, cut, fill
 from multibot_rewrite.description.steps.collect import declarations
 

@@ -10,5 +10,4 @@ THEMES = (
     ".materials",
     ".text",
     ".libraries",
-    ".given_arguments",
 )

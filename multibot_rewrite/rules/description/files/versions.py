@@ -24,14 +24,17 @@ from multibot_rewrite.rules.convert.versions import (
 )
 from multibot_rewrite.rules.facts.faults import faults, urdf_faults
 from multibot_rewrite.rules.facts.memo import memoized
-from multibot_rewrite.rules.schema.readers import (
+from multibot_rewrite.rules.schema.versions import (
     CAPSULE,
+    KNOWN,
     RVIZ,
     URDFDOM,
+    Version,
     highest_version,
+    read_version,
     reader_of,
+    version_of,
 )
-from multibot_rewrite.rules.schema.versions import KNOWN, Version, read_version, version_of
 from multibot_rewrite.rules.subject import Subject
 
 QUATERNIONS = KNOWN[1]

@@ -16,15 +16,8 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.rules.description.multirobot.shared import AS_WRITTEN, ONE_TF, TWO
-from multibot_rewrite.rules.subject import Subject
-
-if TYPE_CHECKING:
-    from multibot_rewrite.description.steps.renames import RenameMap
-
-
-from typing import TYPE_CHECKING
-
 from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.subject import Subject
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap

@@ -12,7 +12,7 @@ from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback.active import RELATIVE, hardware_parts, opened
 from multibot_rewrite.description.readback.parameters import given_at
-from multibot_rewrite.rules import of_both
+from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.description.multirobot.shared import AS_WRITTEN, process_wide_plugins
 from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
@@ -58,7 +58,7 @@ def _usual_device(subject: Subject) -> Iterator[Problem]:
                     yield Problem(part.element, message, "", "make it a xacro argument")
 
 
-one_device = of_both.ONE_DEVICE._replace(
+one_device = declaration.ONE_DEVICE._replace(
     level=NOTE, check=_one_device, formats=(URDF,), options={}, examples="MB412-urdf"
 )
 

@@ -5,11 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from lxml.etree import _Element
+
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import is_keyword
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.names.shared import BLANK, name_of_robot, named
+from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
 WORLD = "world"
@@ -116,3 +119,30 @@ def name_not_ascii(subject: Subject) -> Iterator[Problem]:
             letter = next(it for it in name if not it.isascii())
             code = f"U+{ord(letter):04X}"
             yield Problem(element, f"{kind} {name!r} contains {letter!r} ({code})", "name")
+
+
+# Names with a substitution are skipped: MB105 reports them.
+SUBSTITUTION = "$"
+BLANK = lazy_compile(r"\s")
+
+
+@memoized
+def named(subject: Subject) -> list[tuple[str, str, _Element]]:
+    """(kind, name, element) of the links and joints that have a name attribute."""
+    links, joints = subject.robot.links, subject.robot.joints
+    every = [
+        *[("link", it.name, it.element) for it in links],
+        *[("joint", it.name, it.element) for it in joints],
+    ]
+    return [it for it in every if SUBSTITUTION not in it[1] and _has_name(*it[1:])]
+
+
+def _has_name(name: str, element: _Element) -> bool:
+    return bool(name) or element.get("name") is not None
+
+
+def name_of_robot(subject: Subject) -> str | None:
+    """The robot's own name; None where it has none, or a substitution."""
+    root = subject.document.root
+    name = root.get("name") if root.tag == "robot" else None
+    return None if name is None or SUBSTITUTION in name else name

@@ -15,7 +15,7 @@ from multibot_rewrite.base.rosnames import check_topic_name, propose_token, spli
 from multibot_rewrite.companions.kinds import EVERY
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import value_slot
-from multibot_rewrite.rules.description.names.shared import SUBSTITUTION, name_of_robot
+from multibot_rewrite.rules.description.names.links_and_joints import SUBSTITUTION, name_of_robot
 from multibot_rewrite.rules.subject import Subject
 
 # Interfaces that ros2_control has names for (hardware_interface_type_values.hpp).

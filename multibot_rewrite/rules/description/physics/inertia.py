@@ -23,7 +23,7 @@ from multibot_rewrite.rules.description.physics.shared import (
     sizes_of,
 )
 from multibot_rewrite.rules.facts.sensors import number_at
-from multibot_rewrite.rules.schema.classics import may_be_classics
+from multibot_rewrite.rules.schema.versions import may_be_classics
 from multibot_rewrite.rules.subject import Subject
 
 # Limits of the radius of gyration: no robot under HEAVY kg is LONG, no part as compact as SHORT; nor

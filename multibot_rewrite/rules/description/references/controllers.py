@@ -17,7 +17,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.rules import of_both
+from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.description.references.shared import (
     COMMAND,
     STATE,
@@ -63,10 +63,10 @@ def _place(element: _Element) -> str | None:
     return "" if element.tag == "parameters" else None
 
 
-interface_not_exported = of_both.NOT_EXPORTED._replace(
+interface_not_exported = declaration.NOT_EXPORTED._replace(
     check=_not_exported, formats=(URDF,), options={}, examples="MB229-urdf"
 )
-interface_claimed_twice = of_both.CLAIMED_TWICE._replace(
+interface_claimed_twice = declaration.CLAIMED_TWICE._replace(
     check=_claimed_twice, formats=(URDF,), options={}, examples="MB240-urdf"
 )
 

@@ -18,7 +18,7 @@ from multibot_rewrite.description.checks.references import where
 from multibot_rewrite.description.rewriters.own_defaults import frame_sites
 from multibot_rewrite.description.rewriters.spelling import must_be_declared, names_in
 from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.rules.description.references.lookup import references
+from multibot_rewrite.rules.description.references.undeclared import references
 from multibot_rewrite.rules.subject import Subject
 
 AS_WRITTEN = make_naming("tf-per-robot")

@@ -10,7 +10,7 @@ from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.checks.planning_groups import FREE_FLYER, text_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import repeated
-from multibot_rewrite.rules.description.references.lookup import undeclared
+from multibot_rewrite.rules.description.references.undeclared import undeclared
 from multibot_rewrite.rules.description.srdf.shared import (
     level_of,
     srdf_rule,

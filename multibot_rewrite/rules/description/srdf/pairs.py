@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.planning_groups import text_of
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.references.lookup import undeclared
+from multibot_rewrite.rules.description.references.undeclared import undeclared
 from multibot_rewrite.rules.description.srdf.shared import SHOWN, srdf_rule
 from multibot_rewrite.rules.subject import Subject
 

@@ -10,7 +10,7 @@ from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import SRDF, rule
 from multibot_rewrite.description.checks.planning_groups import is_pinocchios
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.references.lookup import undeclared
+from multibot_rewrite.rules.description.references.undeclared import undeclared
 from multibot_rewrite.rules.subject import Subject
 
 SHOWN = 5
