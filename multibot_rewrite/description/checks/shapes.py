@@ -126,7 +126,8 @@ def _round_way(start: Vector, along: Vector, radius: float) -> float:
 
 def reach_of(root: _Element) -> float:
     """The radius in metres of the upright cylinder around the root link that holds the robot's
-    collisions, else its visuals, with every joint at 0; 0 where nothing of it has a size, and for an SDF."""
+    collisions, else its visuals, with every joint at 0; 0 where nothing of it has a size,
+    and for an SDF."""
     robot = read_robot(root)
     corners = [*_corners(robot, "collision")] or [*_corners(robot, "visual")]
     return max((hypot(x, y) for x, y, _ in corners), default=0.0)

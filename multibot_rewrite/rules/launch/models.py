@@ -3,9 +3,10 @@
 and in a world that does not run what they need.
 
 Source: ros_gz_sim jazzy create.cpp (``-name``, ``-x`` ... and ``-allow_renaming``); gz-sim8
-src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is not created); src/ServerConfig.cc and src/SimulationRunner.cc (a world without any plugin
-gets those of server.config: physics, user commands, scene broadcaster); src/systems/sensors and the
-systems of other sensors.
+src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is not created);
+src/ServerConfig.cc and src/SimulationRunner.cc (a world without any plugin gets those of
+server.config: physics, user commands, scene broadcaster); src/systems/sensors and the systems of other
+sensors.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of transforms: two parents, cycles, frames of several robots that collide; who can send one."""
+"""Dangers of transforms: two parents, cycles, frames of several robots that collide; who sends one."""
 
 from __future__ import annotations
 
