@@ -20,6 +20,7 @@ from multibot_rewrite.fleet.checks.across_domains import one_launch_each
 from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of, sorted_out
 from multibot_rewrite.fleet.checks.for_another_robot import for_another_robot
 from multibot_rewrite.fleet.checks.lacking import lacking
+from multibot_rewrite.fleet.checks.named_twice import named_twice
 from multibot_rewrite.fleet.file.fleet_file import input_files
 from multibot_rewrite.fleet.fleet import Fleet, expected, possible
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -53,7 +54,6 @@ from multibot_rewrite.fleet.outputs.zenoh_configuration import ZENOH, configurat
 from multibot_rewrite.fleet.robots.apart import too_near
 from multibot_rewrite.fleet.robots.devices import one_device_each
 from multibot_rewrite.fleet.robots.hardware_services import moved_services
-from multibot_rewrite.fleet.robots.named_twice import named_twice
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
 from multibot_rewrite.fleet.robots.simulators import other_hardware
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes

@@ -15,7 +15,7 @@ from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
-from multibot_rewrite.fleet.checks.meeting import with_meetings
+from multibot_rewrite.fleet.checks.meeting import robots_meet
 from multibot_rewrite.fleet.checks.shared_names import shared_by_nothing
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart
 from multibot_rewrite.fleet.launch.launched_robot import (
@@ -141,12 +141,13 @@ def _with_bridge_and_findings(
     findings: Iterable[Finding],
 ) -> Fleet:
     """The fleet with where its robots meet, findings about their nodes, and what has to be bridged."""
-    table = with_meetings(fleet.table, members, fleet.naming)
+    table = fleet.table
+    met = dict.fromkeys(robots_meet(table, members, fleet.naming))
     simulated = filter(is_for_simulator, members)
     found = wrong_in_descriptions(members, vocabulary, simulated, members)
     # Nothing is started, and nothing says that they are simulated.
     wrong = (it._replace(level=WARNING) for it in found)
-    table = table._replace(problems=(*table.problems, *wrong, *findings))
+    table = table._replace(problems=(*table.problems, *met, *wrong, *findings))
     topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, table.runs)
     own = topics if any(it.robot for it in topics) else ()
     gaps = tuple(shared_by_nothing(fleet))

@@ -10,9 +10,9 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.fleet.checks.declared_twice import declared_twice
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
-from multibot_rewrite.fleet.checks.meeting import with_meetings
+from multibot_rewrite.fleet.checks.meeting import robots_meet
+from multibot_rewrite.fleet.checks.named_twice import declared_twice
 from multibot_rewrite.fleet.checks.other_manager import other_manager
 from multibot_rewrite.fleet.file.filled_arguments import with_own_arguments
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
@@ -170,14 +170,13 @@ def _fleet(
     members = [it.member for it in robots]
     written = {it.spec.namespace: it.written for it in robots}
     domains = {it.robot: it.number for it in file.apart.domains}
-    table = with_meetings(fleet.table, members, naming, written, domains)
+    table, never = fleet.table, _never_meet(file)
+    met = (*table.problems, *robots_meet(table, members, naming, written, domains))
+    every = (it for it in met if it.code != UNREACHABLE_NAME.code or not never)
     simulated = [it.member for it in robots if is_simulated(it)]
     said = [it.member for it in robots if is_said(it)]
     wrong = wrong_in_descriptions(members, file.vocabulary, simulated, said)
-    told = (*declared_twice(robots, naming, table), *other_manager(robots, table), *wrong)
-    every = (
-        it for it in table.problems if it.code != UNREACHABLE_NAME.code or not _never_meet(file)
-    )
+    told = (*declared_twice(robots, naming, met), *other_manager(robots, table), *wrong)
     problems = tuple(dict.fromkeys((*every, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))
 

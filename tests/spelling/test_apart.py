@@ -14,7 +14,7 @@ from named_ends import named_ends
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.base.rosnames import bind, parse_remap, resolve_bound
-from multibot_rewrite.fleet.checks.meeting import with_meetings
+from multibot_rewrite.fleet.checks.meeting import robots_meet
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.live.rehearsal import stub_nodes
@@ -102,9 +102,9 @@ def test_nodes_of_two_robots_with_one_name_are_reported() -> None:
     nodes = [NodeFacts("driver_left", "acme", ()), NodeFacts("driver", "acme", ())]
     naming = make_naming("L4")
     table = build_table(("robot1", "left_robot1"), nodes, naming, release="jazzy")
-    table = with_meetings(table, (), naming)
-    assert [it.code for it in table.problems] == ["MG301"]
-    assert "/driver_left_robot1" in table.problems[0].message
+    (met,) = (*table.problems, *robots_meet(table, (), naming))
+    assert met.code == "MG301"
+    assert "/driver_left_robot1" in met.message
 
 
 def test_nodes_of_one_robot_alone_share_nothing() -> None:

@@ -18,7 +18,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.readback.reading import Reading, read
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.fleet.checks.meeting import with_meetings
+from multibot_rewrite.fleet.checks.meeting import robots_meet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table, plugin_nodes
@@ -179,7 +179,7 @@ def test_a_shared_node_runs_once_as_it_is() -> None:
 @pytest.mark.parametrize("affix", ["prefix", "postfix"])
 def test_robots_meet_in_shared_names_only(layout: str, affix: str) -> None:
     found = table(layout, affix=affix)
-    assert with_meetings(found, (), make_naming(layout)).problems == found.problems
+    assert not [*robots_meet(found, (), make_naming(layout))]
     ours, theirs = ({name for run, _, name in found.ends if run.robot == robot} for robot in ROBOTS)
     shared = {"/clock", "/rosout"} | ({"/tf", "/tf_static"} if layout == "L2" else set())
     assert ours & theirs == shared
@@ -259,8 +259,8 @@ def plugin(*given: tuple[str, str]) -> dict[str, list[Run]]:
 def test_rules_that_do_harm_or_nothing(given: list[tuple[str, str]], codes: list[str]) -> None:
     naming = make_naming("L2")
     found = build_table(ROBOTS, (), naming, plugin(*given), release=NEWEST_LTS)
-    found = with_meetings(found, (), naming)
-    assert [problem.code for problem in found.problems] == codes
+    every = (*found.problems, *robots_meet(found, (), naming))
+    assert [problem.code for problem in every] == codes
 
 
 def test_one_robot_alone_has_no_other_in_its_table() -> None:
@@ -284,7 +284,7 @@ def test_plugins_of_a_rewritten_description_keep_robots_apart() -> None:
         for one in rewrite_all(source, ROBOTS, layout=layout):
             plugins[one.robot] = list(plugin_nodes(reading(one.data), one.robot))
         found = build_table(ROBOTS, (), make_naming(layout), plugins, release=NEWEST_LTS)
-        assert with_meetings(found, (), make_naming(layout)).problems == (), layout
+        assert not [*found.problems, *robots_meet(found, (), make_naming(layout))], layout
         drive = [
             name for run, end, name in found.ends if (run.robot, end.name) == ("robot1", "cmd_vel")
         ]

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import pytest
 
-from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.fleet.checks.meeting import with_meetings
+from multibot_rewrite.fleet.checks.meeting import robots_meet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
@@ -35,7 +35,11 @@ def node(name: str, *endpoints: Endpoint) -> NodeFacts:
 
 def table(layout: str, *nodes: NodeFacts) -> Table:
     naming = make_naming(layout)
-    return with_meetings(build_table(ROBOTS, nodes, naming, release=NEWEST_LTS), (), naming)
+    return with_meetings(build_table(ROBOTS, nodes, naming, release=NEWEST_LTS), naming)
+
+
+def with_meetings(made: Table, naming: Naming) -> Table:
+    return made._replace(problems=(*made.problems, *robots_meet(made, (), naming)))
 
 
 def rules(made: Table, robot: str = "robot1") -> dict[str, str]:
@@ -117,7 +121,7 @@ def alike(*pairs: tuple[str, Sequence[Endpoint]]) -> Table:
         for robot, ends in pairs
     }
     naming = make_naming("both")
-    return with_meetings(build_table(ROBOTS, (), naming, plugins, release=NEWEST_LTS), (), naming)
+    return with_meetings(build_table(ROBOTS, (), naming, plugins, release=NEWEST_LTS), naming)
 
 
 def both(first: Endpoint, second: Endpoint) -> list[tuple[str, str]]:

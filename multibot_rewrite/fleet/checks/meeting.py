@@ -36,29 +36,18 @@ ONE_DOMAIN: Mapping[str, int] = MappingProxyType({})
 _OF_ROS = frozenset((NODE, *KINDS))
 
 
-def with_meetings(
+def robots_meet(
     table: Table,
     members: Sequence[Member],
     naming: Naming,
     written: Mapping[str, Written] = NOTHING,
     domains: Mapping[str, int] = ONE_DOMAIN,
-) -> Table:
-    """The table with an error for each name that two robots have and that is not shared; ``written``
-    are the files of robots, by namespace, ``domains`` theirs where they are not in one.
+) -> Iterator[Finding]:
+    """An error for each name that two robots have and that is not shared; ``written`` are the files of
+    robots, by namespace, ``domains`` theirs where they are not in one.
 
     Controllers that a stack names are in the table, with their spawners' rules.
     """
-    found = tuple(dict.fromkeys(_meetings(table, members, naming, written, domains)))
-    return table._replace(problems=(*table.problems, *found))
-
-
-def _meetings(
-    table: Table,
-    members: Sequence[Member],
-    naming: Naming,
-    written: Mapping[str, Written],
-    domains: Mapping[str, int],
-) -> Iterator[Finding]:
     shared = [it for member in members for it in member.shared]
     spawned = {it.robot for it in table.runs if it.fact.is_controller}
     if not spawned.issuperset(it.robot for it in members):
@@ -84,11 +73,12 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
     found = {it.robot: [*_of_description(it, ruled[it.robot])] for it in members}
     for it in table.runs:
         if it.robot and not it.written:
-            found.setdefault(it.robot, []).append(_of_table(NODE, it.full_name, it.node))
+            its = RuntimeName(NODE, it.full_name, "", 0, it.node)
+            found.setdefault(it.robot, []).append(its)
     for run, end, name in table.ends:
         # That no rule reaches one is told of its node.
         if run.robot and not end.fixed:
-            its = _of_table(end.kind, name, run.full_name, end.type)
+            its = RuntimeName(end.kind, name, "", 0, run.full_name, type=end.type)
             found.setdefault(run.robot, []).append(its)
     return found
 
@@ -100,10 +90,6 @@ def _of_description(it: Member, ruled: Set[str]) -> Iterator[RuntimeName]:
         is_ruled = name.tag == "ros2_control" and name.name in ruled
         if not (is_ruled or name.of_controllers):
             yield name
-
-
-def _of_table(kind: str, name: str, node: str, type_: str = "") -> RuntimeName:
-    return RuntimeName(kind, name, "", 0, node, type=type_)
 
 
 def _finding(met: Meeting, member: Member | None, written: Written | None) -> Finding:

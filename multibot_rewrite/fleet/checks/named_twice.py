@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Names that two robots of a fleet declare, each in its own description; and topics that have a robot's
+name from an argument of its xacro, and once more from its namespace."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.naming import Naming
+from multibot_rewrite.description.readback.meeting import FRAMES
+from multibot_rewrite.description.sources.own_names import name_robot
+from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot, at_robot
+from multibot_rewrite.rules.description.multirobot.named_robots import robots_share_a_name
+from multibot_rewrite.rules.system.transforms import robots_name_twice
+
+# The kinds of declared names that differ from robot to robot.
+_DECLARED = ("link", "joint", "frame", "sensor", "hardware")
+_KINDS = ("topic", "service")
+
+
+def declared_twice(
+    robots: Iterable[RewrittenRobot], naming: Naming, told: Iterable[Finding]
+) -> Iterator[Finding]:
+    """What two robots declare though it is not shared, each in its description; but for frames of which
+    it is ``told`` that they meet."""
+    met = {name for it in told if it.code == FRAMES for name in it.names}
+    first: dict[tuple[str, str], RewrittenRobot] = {}
+    kinds = [it for it in _DECLARED if it in naming.separators]
+    for robot in robots:
+        declared = robot.member.inventory.declared
+        named = ((kind, name) for kind in kinds for name in declared.get(kind, ()))
+        for kind, name in named:
+            other = first.setdefault((kind, name), robot)
+            is_told = kind in ("link", "frame") and name in met
+            if other is robot or is_told or name in naming.shared_frames:
+                continue
+            message = f"{other.spec.name} and {robot.spec.name} would both have the {kind} {name!r}"
+            hint = "give one of them another name, prefix or postfix"
+            hint = SET_PREFIX if kind == "sensor" and robot.needs_prefix else hint
+            yield at_robot(robots_share_a_name, robot, message, hint)
+
+
+def named_twice(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
+    """Once for each description, with the first of its names."""
+    told = set()
+    for it in robots:
+        name = next(_twice(it), "")
+        if name and it.spec.description not in told:
+            told.add(it.spec.description)
+            given = it.spec.arguments
+            which = [key for key, text in given.items() if name_robot({key: text}, [it.spec.name])]
+            message = f"{name} has the name of robot {it.spec.name!r} twice"
+            hint = f"write {' or '.join(which)}: '' under arguments"
+            yield at_robot(robots_name_twice, it, message, hint)
+
+
+def _twice(robot: RewrittenRobot) -> Iterator[str]:
+    spec = robot.spec
+    if not name_robot(spec.arguments, [spec.name]):
+        return
+    starts = tuple(f"/{spec.namespace}/{spec.name}{it}" for it in "/_")
+    for it in robot.member.reading.names:
+        if it.kind in _KINDS and it.name.startswith(starts):
+            yield it.name
