@@ -16,7 +16,6 @@ launch/multi_uav_mavros_sitl.launch (1 for each instance); of hardware see its s
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import islice
 
 from lxml.etree import Comment, _Element
 
@@ -240,7 +239,7 @@ def judged_together(
     root = document.root
     met = [
         Problem(
-            next(islice(root.iter(it.name.tag), it.name.number, None), root),
+            it.name.element_in(root),
             said(f"{it.robot} and {it.other} would both", it.name, it.twin),
             hint=advice(it.name, together=True),
             code=OPENED,

@@ -14,7 +14,6 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, loca
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.rules.facts.source_values import is_argument
@@ -30,20 +29,11 @@ _BLANK = lazy_compile(rb"\s*")
 _ATTRIBUTE = lazy_compile(rb"\s((?:[^\s=:/>\"']+:)?([^\s=:/>\"']+))\s*=\s*(?:\"[^\"]*\"|'[^']*')")
 
 
-class Place(NamedTuple):
-    """A byte offset of a file that was read, and the macro calls that led there."""
-
-    file: str
-    source: bytes
-    offset: int
-    calls: tuple[Call, ...] = ()
-
-
 def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> Finding:
     """The finding for a problem; ``numbers`` are those of ``numbered``."""
     number, level = numbers[problem.element], problem.level or rule.level
-    it = _place(subject, number, problem.attribute)
-    line, column = locate(it.source, it.offset)
+    file, source, offset, calls = _place(subject, number, problem.attribute)
+    line, column = locate(source, offset)
     if level == ERROR and _is_argument(subject, number, problem.attribute):
         level = WARNING  # another one may be passed
     return Finding(
@@ -51,10 +41,10 @@ def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> 
         level_of(subject.settings, rule.code, level),
         " ".join(problem.message.split()),
         problem.hint or rule.advice,
-        it.file,
+        file,
         line,
         column,
-        tuple(_call_text(subject, call) for call in it.calls),
+        tuple(_call_text(subject, call) for call in calls),
         subject.arguments,
         # An edit is one of the text that was looked at.
         () if subject.sources else problem.edits,
@@ -69,16 +59,19 @@ def numbered(subject: Subject, problems: Iterable[Problem]) -> Numbers:
     return {it: elements.index(it) for it in asked}
 
 
-def _place(subject: Subject, number: int, attribute: str | None) -> Place:
+def _place(
+    subject: Subject, number: int, attribute: str | None
+) -> tuple[str, bytes, int, tuple[Call, ...]]:
+    """The file and its text, a byte offset in it, and the macro calls that led there."""
     origin = subject.origins.of(number) if subject.origins else None
     if origin is None:
         document = subject.document
         start = document.starts[number]
         offset = start + _within(document.source, start, attribute)
-        return Place(document.file, document.source, offset)
+        return document.file, document.source, offset, ()
     source = subject.sources[origin.file]
     offset = origin.start + _within(source, origin.start, attribute)
-    return Place(origin.file, source, offset, origin.calls)
+    return origin.file, source, offset, origin.calls
 
 
 def _is_argument(subject: Subject, number: int, attribute: str | None) -> bool:

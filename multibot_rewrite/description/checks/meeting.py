@@ -116,10 +116,10 @@ def _would_share(
         if it.of_controllers:
             of_plugins.setdefault(it.number, []).append(it)
         else:
-            element, message = _element(document, it), said(ALL, it)
+            element, message = it.element_in(document.root), said(ALL, it)
             yield Problem(element, message, None, advice(it), (), code_of(it))
     for names in of_plugins.values():
-        yield _of_controllers(_element(document, names[0]), names, naming, vocabulary.release)
+        yield _of_controllers(names[0].element_in(document.root), names, naming, vocabulary.release)
 
 
 def _same_text(document: Document, naming: Naming, vocabulary: Vocabulary) -> Iterator[Problem]:
@@ -153,12 +153,12 @@ def _changed(
         hint = (
             f"{left} stays as it is: {BY_HAND}" if left else f"write both the same way, or {BESIDE}"
         )
-        yield Problem(_element(document, it), message, None, hint, (), PARTED)
+        yield Problem(it.element_in(document.root), message, None, hint, (), PARTED)
     for it, *pair in undescribed(before, reading):
         image, asked, info = (name.replace(robot, ROBOT) for name in (it.name, *pair))
         message = f"image_transport and RViz look for {asked!r} beside {image!r}: it is {info!r}"
         hint = f'start what shows it with --ros-args -r "{asked}:={info}", or {BESIDE}'
-        yield Problem(_element(document, it), message, None, hint, (), ELSEWHERE)
+        yield Problem(it.element_in(document.root), message, None, hint, (), ELSEWHERE)
 
 
 def _alike(reading: Reading, robot: str) -> bool:
@@ -179,10 +179,6 @@ def _lost(
             message = f"{it.rule!r} is for {it.name}, and matches nothing after the rewrite"
             hint = "write the topic and the left side of its rule the same way"
             yield Problem(plugin, message, None, hint, (), LOST_RULE)
-
-
-def _element(document: Document, name: RuntimeName) -> _Element:
-    return next(islice(document.root.iter(name.tag), name.number, None), document.root)
 
 
 def _of_controllers(

@@ -98,16 +98,15 @@ def meeting(
     inventory: Inventory, renames: RenameMap, pairs: Collection[tuple[str, str, str]]
 ) -> Iterator[Problem]:
     """Names of two robots that become the same; ``pairs`` are from ``naming.overlap``."""
-    names = set(_changing(renames)) if pairs else set()
-    for robot, other, _ in pairs:
-        ours = {(name[0], renames.spelled(robot, *name)) for name in names}
-        for kind, both in sorted(ours & {(n[0], renames.spelled(other, *n)) for n in names}):
-            message = f"{robot} and {other} would both have the {kind} {both!r}"
-            hint = "rename a robot or choose another separator"
-            yield Problem(inventory.document.root, message, None, hint, (), "MB421")
+    for *pair, _ in pairs:
+        both = ((robot, inventory, renames) for robot in pair)
+        yield from meeting_descriptions(both, "rename a robot or choose another separator")
 
 
-def meeting_descriptions(made: Iterable[tuple[str, Inventory, RenameMap]]) -> Iterator[Problem]:
+def meeting_descriptions(
+    made: Iterable[tuple[str, Inventory, RenameMap]],
+    hint: str = "rename a robot, or give its xacro another argument",
+) -> Iterator[Problem]:
     """Names that two robots both have, each in a description of its own."""
     first: dict[tuple[str, str], str] = {}
     for robot, inventory, renames in made:
@@ -116,7 +115,6 @@ def meeting_descriptions(made: Iterable[tuple[str, Inventory, RenameMap]]) -> It
             other = first.setdefault((kind, name), robot)
             if other != robot:
                 message = f"{other} and {robot} would both have the {kind} {name!r}"
-                hint = "rename a robot, or give its xacro another argument"
                 yield Problem(inventory.document.root, message, None, hint, (), "MB421")
 
 

@@ -8,6 +8,7 @@ plugin's name is the node's, an empty namespace is the root), gz_ros2_control_pl
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import islice
 from math import pi
 
 from lxml.etree import _Element
@@ -72,6 +73,10 @@ class RuntimeName(NamedTuple):
     code_name: str = ""
     parameter: str = ""
     off: str = ""
+
+    def element_in(self, root: _Element) -> _Element:
+        """Return what it comes from in a text with the same elements, else the root."""
+        return next(islice(root.iter(self.tag), self.number, None), root)
 
 
 class ReadRule(NamedTuple):

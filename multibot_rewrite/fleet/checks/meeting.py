@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
-from itertools import islice
 from types import MappingProxyType
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -106,10 +105,9 @@ def _finding(met: Meeting, member: Member | None, written: Written | None) -> Fi
 
 def _own_value(name: RuntimeName, member: Member, written: Written | None) -> str:
     """How each robot gets its own of what only one can open."""
-    host = next(islice(member.source.root.iter(name.tag), name.number, None), None)
-    if code_of(name) != OPENED or written is None or host is None:
+    if code_of(name) != OPENED or written is None:
         return ""
-    there = elements_at(host, split_path(name.path)[0])
+    there = elements_at(name.element_in(member.source.root), split_path(name.path)[0])
     return own_value(sources_of(written, member, there))
 
 
