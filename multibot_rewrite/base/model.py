@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
 
-class Site(NamedTuple):
+class SiteRow(NamedTuple):
     """The rule that at ``path`` below its section's element lives a declaration or a reference.
 
     ``role`` is ``"declares"``, ``"uses"`` or ``"keep"`` (never renamed; ``note`` says why).
@@ -57,7 +57,7 @@ class Claim(NamedTuple):
     ``start`` is the byte offset of the element's start tag; ``value`` is the parsed value.
     """
 
-    site: Site
+    site: SiteRow
     element: _Element
     start: int
     attribute: str

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.findings.codes import near_name
-from multibot_rewrite.base.model import Site, UsageError
+from multibot_rewrite.base.model import SiteRow, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli import explain, xacro_arguments
@@ -118,7 +118,7 @@ def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
             yield Grid(("path", "role", "kinds", "form", "default", "note", "from"), rows)
 
 
-def _row(site: Site, section: VocabularySection) -> tuple[str, ...]:
+def _row(site: SiteRow, section: VocabularySection) -> tuple[str, ...]:
     not_inserted = " (not inserted)" if site.default and not section.inserts else ""
     block = block_of(site)
     shared = f" [block {block}]" if block else ""
@@ -154,7 +154,7 @@ def as_json(section: VocabularySection) -> dict[str, object]:
     }
 
 
-def _row_json(site: Site, section: VocabularySection) -> dict[str, object]:
+def _row_json(site: SiteRow, section: VocabularySection) -> dict[str, object]:
     return {
         "path": site.path,
         "role": site.role,

@@ -15,7 +15,7 @@ import pytest
 from lxml import etree
 from paths import FIXTURES
 
-from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.tree import TreeNode, builtin_tree, qualified
 from multibot_rewrite.description.rewriters.vocabulary import (
@@ -119,7 +119,7 @@ def host_trouble(fact: Fact) -> str:
     return ""
 
 
-def host_site(section: VocabularySection, path: str) -> Site | None:
+def host_site(section: VocabularySection, path: str) -> SiteRow | None:
     """The row of a plugin or hardware class for a path, its own or one that holds for all."""
     common = {"plugin": "plugin", "hardware": "ros2_control"}[section.type]
     (shared,) = load_vocabulary((), NEWEST_LTS).find("element", common)
@@ -142,7 +142,7 @@ def element_trouble(fact: Fact) -> str:
     return site_trouble(fact, sites.get(attribute))
 
 
-def site_trouble(fact: Fact, site: Site | None) -> str:
+def site_trouble(fact: Fact, site: SiteRow | None) -> str:
     """Whether a row, or its absence, says what the fact says."""
     if fact.kind == "-":
         return ""

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import groupby
 
-from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.rewriters.lookup import facts
 from multibot_rewrite.description.rewriters.vocabulary import (
     VocabularySection,
@@ -64,7 +64,7 @@ def _section(section: VocabularySection) -> str:
     return "".join(lines)
 
 
-def _note(site: Site) -> str:
+def _note(site: SiteRow) -> str:
     end = f"{site.does} {site.type}" if site.does else ""
     return "; ".join(filter(None, (end, site.releases and f"in {site.releases}", site.note)))
 

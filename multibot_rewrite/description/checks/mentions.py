@@ -13,7 +13,7 @@ from lxml import etree
 from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import TF_TOPICS, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
@@ -220,7 +220,7 @@ def _has_one(element: etree._Element, suspects: set[str]) -> bool:
     return any(it.strip() in suspects for it in texts if it)
 
 
-def kept(element: etree._Element, attribute: str, tree: Tree, known: Nodes) -> Site | None:
+def kept(element: etree._Element, attribute: str, tree: Tree, known: Nodes) -> SiteRow | None:
     """The ``keep`` site for a value, if the vocabulary has one; ``known`` serves the next call."""
     node = node_of(element, tree, known)
     return node.keeps.get(attribute) if node else None

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Iterator
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import WARNING, locate
-from multibot_rewrite.base.model import Claim, Site
+from multibot_rewrite.base.model import Claim, SiteRow
 from multibot_rewrite.base.naming import CLOSED_KINDS, is_keyword
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.record import NamedTuple
@@ -82,13 +82,13 @@ def _fault(part: NamePart, declared: Declared) -> str:
     return f"which is a {other}" if other else "which is not declared"
 
 
-def _ends_the_loading(site: Site) -> bool:
+def _ends_the_loading(site: SiteRow) -> bool:
     """Is a description rejected for a name that nothing declares there?"""
     of_system = site.section == "element ros2_control" and not site.path.startswith("hardware/")
     return of_system or site.section == "element joint"
 
 
-def _code(site: Site, part: NamePart) -> str:
+def _code(site: SiteRow, part: NamePart) -> str:
     if site.form in ("scoped", "member"):
         return _SCOPE
     other = JOINT if part.kinds[0] == "joint" else _LINK

@@ -13,7 +13,7 @@ from math import pi
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.model import Site, UsageError
+from multibot_rewrite.base.model import SiteRow, UsageError
 from multibot_rewrite.base.naming import TOPIC_KINDS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import (
@@ -293,13 +293,13 @@ def _asked_for(
             yield TOPIC, "", source, "", "", ""
 
 
-def holds_topic(site: Site) -> bool:
+def holds_topic(site: SiteRow) -> bool:
     """Is its value a topic or service? Where a word topics are made of is set, they are below it."""
     whole = site.form == "whole" and site.role != "keep" and site.when != SENT
     return whole and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
 
 
-def is_of_others(site: Site) -> bool:
+def is_of_others(site: SiteRow) -> bool:
     """Is its value a topic that the robot does not have for itself: of the world, or left as it is?"""
     return site.when == SENT or (site.role == "keep" and "topic" in site.path.lower())
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.readback.model_namespaces import reads_it, scoped_namespace
 from multibot_rewrite.description.readback.nodes import (
     BELOW,
@@ -77,7 +77,7 @@ def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str,
 
 
 def _full(
-    host: _Element, section: VocabularySection, site: Site, above: str | None
+    host: _Element, section: VocabularySection, site: SiteRow, above: str | None
 ) -> Iterator[str]:
     """The full names that a site holds, below what is put in front of relative ones; without those that
     are below a node or model which the simulator names."""
@@ -90,7 +90,7 @@ def _full(
             yield _joined(above, name)
 
 
-def _of_nobody(host: _Element, stems: Iterable[Site]) -> Iterator[tuple[str, str, str]]:
+def _of_nobody(host: _Element, stems: Iterable[SiteRow]) -> Iterator[tuple[str, str, str]]:
     """A word that topics are made of and that is there and empty: it takes the place of the model's
     name, so that no robot is in them (gz-sim Thruster.cc: HasElement("namespace"))."""
     for site in stems:

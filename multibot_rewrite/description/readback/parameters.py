@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.readback.xml import child_text, is_on, values_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT
@@ -21,7 +21,7 @@ from multibot_rewrite.description.rewriters.vocabulary.wired import WiredTopic, 
 MODEL = "{model}/"
 
 
-def values_of(host: _Element, site: Site) -> list[str]:
+def values_of(host: _Element, site: SiteRow) -> list[str]:
     """Its values, in order, or the default; none where an empty element means something else."""
     if site.when not in ("", SENT) and not _applies(host, site):
         return []
@@ -31,7 +31,7 @@ def values_of(host: _Element, site: Site) -> list[str]:
     return [value for value in given if value]
 
 
-def _applies(host: _Element, site: Site) -> bool:
+def _applies(host: _Element, site: SiteRow) -> bool:
     """Has the sibling that decides this text? It stands beside the last step of the path."""
     sibling, _, text = site.when.partition("=")
     above = site.path.rpartition("/")[0]

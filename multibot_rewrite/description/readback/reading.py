@@ -7,7 +7,7 @@ from collections.abc import Container, Iterable, Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.active import opened
 from multibot_rewrite.description.readback.nodes import (
@@ -140,7 +140,7 @@ def _sends_frames(host: _Host) -> bool:
     return any(default_of(host.element, it.default) for it in _frame_sites(host))
 
 
-def _frame_sites(host: _Host) -> list[Site]:
+def _frame_sites(host: _Host) -> list[SiteRow]:
     sites = host.section.sites
     return [it for it in sites if MODEL in it.default and it.kinds[0] == FRAME]
 

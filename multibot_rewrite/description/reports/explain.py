@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.findings.finding import locate
-from multibot_rewrite.base.model import Claim, Site
+from multibot_rewrite.base.model import Claim, SiteRow
 from multibot_rewrite.base.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.mentions import MENTIONED, kept, mentioned
@@ -34,7 +34,7 @@ class Explanation(NamedTuple):
     column: int
     path: str
     value: str
-    site: Site | None
+    site: SiteRow | None
     reason: str
     new: str
     inserted: tuple[str, ...] = ()
@@ -54,7 +54,7 @@ def explain_line(
     return sorted(found, key=lambda item: (item.column, item.path))
 
 
-def _source(tree: Tree, site: Site) -> str:
+def _source(tree: Tree, site: SiteRow) -> str:
     """The source of the section that has the site."""
     type_, name, *_ = site.section.split(" ")
     sections = tree.vocabulary.find(type_, name)

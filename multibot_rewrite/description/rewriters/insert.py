@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from lxml import etree
 
 from multibot_rewrite.base.loose_xml import ESCAPES
-from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, RemapRule, expand
@@ -183,7 +183,7 @@ def _defaults(
         yield made if there is None else _filling(made, there, path)
 
 
-def _without(site: Site, default: str, naming: Naming) -> str:
+def _without(site: SiteRow, default: str, naming: Naming) -> str:
     """What the consumer has where nothing is inserted: a sensor may be renamed itself."""
     if site.default != SENSOR:
         return default

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.nearest import nearest_few
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
@@ -42,7 +42,7 @@ def near_names(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[
     return [known[word] for word in list(dict.fromkeys(near + parts))[:3]]
 
 
-def block_of(site: Site) -> str:
+def block_of(site: SiteRow) -> str:
     """The block that a row comes from, shared by several sections; empty for an own row."""
     type_, _, name = site.section.partition(" ")
     return name if type_ == "block" else ""

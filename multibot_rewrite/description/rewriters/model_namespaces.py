@@ -15,7 +15,7 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.base.model import Claim, Site
+from multibot_rewrite.base.model import Claim, SiteRow
 from multibot_rewrite.base.naming import TOPIC_KINDS
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.description.rewriters.text import text_at
@@ -32,7 +32,7 @@ MODEL, INCLUDE = "model", "include"
 PLACES = {("element sdf.model", "@namespace"), ("element sdf.include", "namespace")}
 
 
-def is_model_namespace(site: Site) -> bool:
+def is_model_namespace(site: SiteRow) -> bool:
     """Does this site hold the namespace of a model?"""
     return (site.section, site.path) in PLACES
 
@@ -57,7 +57,7 @@ def below_models(claims: list[Claim], source: bytes, release: str) -> list[Claim
 
 
 @cache
-def _subtopic(site: Site) -> Site:
+def _subtopic(site: SiteRow) -> SiteRow:
     """The same one each time: the proof knows sites by identity."""
     return site._replace(kinds=("subtopic",))
 
@@ -89,7 +89,7 @@ def has_own_names(section: VocabularySection) -> bool:
 
 
 @cache
-def _word(site: Site) -> Site:
+def _word(site: SiteRow) -> SiteRow:
     return site._replace(kinds=("stem",), namespaced=False)
 
 

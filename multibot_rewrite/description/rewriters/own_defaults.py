@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from lxml import etree
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import POSTFIX, Naming
 from multibot_rewrite.description.rewriters.switches import is_true
 from multibot_rewrite.description.rewriters.text import end_of, text_at
@@ -110,11 +110,11 @@ def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
     return frozenset(second)
 
 
-def frame_sites(host: etree._Element, section: VocabularySection, naming: Naming) -> list[Site]:
+def frame_sites(host: etree._Element, section: VocabularySection, naming: Naming) -> list[SiteRow]:
     """Where the frames of a transform are, of a system that sends one with these parameters."""
     return [it for it in _of_model(section) if default_of(host, it.default, naming)]
 
 
-def _of_model(section: VocabularySection) -> list[Site]:
+def _of_model(section: VocabularySection) -> list[SiteRow]:
     """Where the frames are that are below the model's name by default."""
     return [it for it in section.sites if MODEL in it.default and it.kinds[:1] == ("frame",)]

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 
 from lxml import etree
 
-from multibot_rewrite.base.model import Claim, Site
+from multibot_rewrite.base.model import Claim, SiteRow
 from multibot_rewrite.base.naming import (
     CLOSED_KINDS,
     FRAME_KINDS,
@@ -111,13 +111,13 @@ def is_reached(claim: Claim, naming: Naming) -> bool:
     return naming.affix == PREFIX and bool(claim.value or takes_empty(site))
 
 
-def takes_empty(site: Site) -> bool:
+def takes_empty(site: SiteRow) -> bool:
     """An empty text is a value too: the prefix of names that have none yet."""
     is_one = site.form == "prefix" and site.role == "uses" and site.empty == "itself"
     return is_one and "@" not in site.path.rpartition("]")[2]
 
 
-def spell_default(site: Site, value: str, declared: Declared, naming: Naming) -> Spelling:
+def spell_default(site: SiteRow, value: str, declared: Declared, naming: Naming) -> Spelling:
     """What changes in a value that would be at a site if the file had it."""
     if site.form in IN_FRONT and naming.affix != PREFIX:
         return ()
@@ -135,7 +135,7 @@ def renamed_at(at: int, kind: str, text: str, namespaced: bool, there: Affix) ->
     return Renamed(kind, text, namespaced, there._replace(at=at + there.at) if at else there)
 
 
-def must_be_declared(site: Site) -> bool:
+def must_be_declared(site: SiteRow) -> bool:
     """A use of a name that this file must declare."""
     if site.form in ("scoped", "member"):
         return True

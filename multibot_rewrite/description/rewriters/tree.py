@@ -16,7 +16,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.loose_xml import NAMESPACES
-from multibot_rewrite.base.model import Site, VocabularyError
+from multibot_rewrite.base.model import SiteRow, VocabularyError
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.vocabulary import (
     Values,
@@ -63,16 +63,16 @@ class TreeNode:
     __slots__ = ("_make", "element_name", "visit", *_CONTENT)
 
     def __init__(
-        self, section: VocabularySection | None = None, sites: tuple[Site, ...] = ()
+        self, section: VocabularySection | None = None, sites: tuple[SiteRow, ...] = ()
     ) -> None:
         self._make: Callable[[str], TreeNode] | None = None
         self.element_name = ""
         self.section = section
         self.children: dict[str, TreeNode] = {}
         self.active: dict[str, TreeNode] = {}
-        self.attributes: tuple[tuple[str, Site], ...] = ()
-        self.text: Site | None = None
-        self.keeps: dict[str, Site] = {}
+        self.attributes: tuple[tuple[str, SiteRow], ...] = ()
+        self.text: SiteRow | None = None
+        self.keeps: dict[str, SiteRow] = {}
         self.select: Callable[[_Element], TreeNode] | None = None
         self.asked = ""
         self.values: dict[str, TreeNode] = {}
@@ -99,7 +99,7 @@ class TreeNode:
             setattr(self, slot, getattr(whole, slot))
         return getattr(whole, name)
 
-    def _add(self, site: Site) -> None:
+    def _add(self, site: SiteRow) -> None:
         steps, attribute = split_path(site.path)
         attribute = qualified(attribute)
         node = self

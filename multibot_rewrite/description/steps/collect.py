@@ -8,7 +8,7 @@ from lxml import etree
 
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.findings.finding import locate
-from multibot_rewrite.base.model import FOR_OLD_GAZEBO, Claim, InputError, Site
+from multibot_rewrite.base.model import FOR_OLD_GAZEBO, Claim, InputError, SiteRow
 from multibot_rewrite.base.naming import (
     DECLARED_KINDS,
     DEFAULT_LAYOUT,
@@ -150,7 +150,7 @@ def _format(document: Document, tree: Tree, likely: str) -> str:
     return found
 
 
-def _text_claim(site: Site, element: etree._Element, start: int) -> list[Claim]:
+def _text_claim(site: SiteRow, element: etree._Element, start: int) -> list[Claim]:
     text = text_of(element)
     is_name = (text or takes_empty(site)) and _applies(site, element)
     return [Claim(site, element, start, "", text)] if is_name else []
@@ -166,7 +166,7 @@ def _of_the_robot(claims: list[Claim]) -> list[Claim]:
     return [it for it in claims if it.site.when != SENT or it.value.strip("/ ") in sent]
 
 
-def _applies(site: Site, element: etree._Element) -> bool:
+def _applies(site: SiteRow, element: etree._Element) -> bool:
     if site.when in ("", SENT):
         return True
     sibling, _, text = site.when.partition("=")

@@ -16,7 +16,7 @@ from lxml import etree
 
 from multibot_rewrite import Rewrite, RewriteRefused, rewrite, strip
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.model import Site
+from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import POSTFIX, make_naming
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -313,7 +313,7 @@ def test_every_row_of_the_vocabulary_renames_something() -> None:
     assert left == UNEXERCISED
 
 
-def rows(rewriter: VocabularySection) -> list[Site]:
+def rows(rewriter: VocabularySection) -> list[SiteRow]:
     """The rows of its own section at which something may be renamed."""
     own = f"{rewriter.type} {rewriter.names[0]}"
     return [site for site in rewriter.sites if site.role != "keep" and site.section == own]
@@ -329,7 +329,7 @@ def touched_rows(case: Case) -> Iterator[Row]:
         yield place(claim.site)
 
 
-def place(site: Site) -> Row:
+def place(site: SiteRow) -> Row:
     """Where the vocabulary has this site; two flavours of a plugin share section and path."""
     return site.section, site.path, site.line
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import Site, VocabularyError
+from multibot_rewrite.base.model import SiteRow, VocabularyError
 from multibot_rewrite.base.naming import SEPARATORS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES as KNOWN
@@ -96,7 +96,7 @@ class VocabularySection(NamedTuple):
 
     type: str
     names: tuple[str, ...]
-    sites: tuple[Site, ...]
+    sites: tuple[SiteRow, ...]
     at: tuple[str, ...]
     blocks: tuple[str, ...]
     select: str
@@ -147,15 +147,17 @@ def read_header(place: str, row: str) -> tuple[str, ...]:
     return tuple(words)
 
 
-def read_section(file: str, line: int, rows: list[str]) -> tuple[dict[str, str], dict[str, Site]]:
+def read_section(
+    file: str, line: int, rows: list[str]
+) -> tuple[dict[str, str], dict[str, SiteRow]]:
     """Settings and sites of a section whose header is at ``line``.
 
     The sites are by path, and by release where one path has several.
     """
     section = " ".join(read_header(f"{file}:{line}", rows[0])[:2])
     settings: dict[str, str] = {}
-    sites: dict[str, Site] = {}
-    at_path: dict[str, list[Site]] = {}
+    sites: dict[str, SiteRow] = {}
+    at_path: dict[str, list[SiteRow]] = {}
     for number, row in enumerate(rows[1:], line + 1):
         words = row.split()
         if not words or row.startswith("#") or words[1:2] == [VALUE]:
@@ -176,7 +178,11 @@ def read_section(file: str, line: int, rows: list[str]) -> tuple[dict[str, str],
 
 
 def assemble(
-    file: str, line: int, header: tuple[str, ...], settings: dict[str, str], sites: Sequence[Site]
+    file: str,
+    line: int,
+    header: tuple[str, ...],
+    settings: dict[str, str],
+    sites: Sequence[SiteRow],
 ) -> VocabularySection:
     """A section from its parts; ``sites`` include those of its blocks."""
     if header[0] == "element" and "at" not in settings:
@@ -221,7 +227,7 @@ def _read_in(words: str) -> str:
     return f"{repository} {rest.partition(' ')[2]}".strip()
 
 
-def _tags(sites: Iterable[Site]) -> frozenset[str]:
+def _tags(sites: Iterable[SiteRow]) -> frozenset[str]:
     paths = (split_path(site.path)[0] for site in sites if site.path[0] != "@")
     return frozenset(split_step(steps[0])[0] for steps in paths)
 
@@ -250,7 +256,7 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     settings[key] = value
 
 
-def _site(place: str, section: str, line: int, row: str) -> Site:
+def _site(place: str, section: str, line: int, row: str) -> SiteRow:
     file = place.rpartition(":")[0]
     spec, _, note = row.partition(" # ")
     path, *words = spec.split()
@@ -268,7 +274,7 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
             raise VocabularyError(f"{place}: {path} keep: say why it must stay")
         why = " ".join(rest)
         more = {"file": file, "releases": releases}
-        return Site(path, role, (), "whole", "", False, section, why, line, **more)
+        return SiteRow(path, role, (), "whole", "", False, section, why, line, **more)
     options = dict(word.split("=", 1) for word in rest if "=" in word)
     kinds = tuple(word for word in rest if "=" not in word)
     _check_words(place, path, kinds, options)
@@ -280,7 +286,7 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     own = (path, role, kinds, form, default, False, section, note, line)
     fill = options.get("fill", "")
     does, type_ = role_and_type(place, options)
-    return Site(*own, plain, when, file, empty, "", releases, fill, does, type_)
+    return SiteRow(*own, plain, when, file, empty, "", releases, fill, does, type_)
 
 
 def _no_releases(words: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.model import Site, VocabularyError
+from multibot_rewrite.base.model import SiteRow, VocabularyError
 from multibot_rewrite.base.releases import RELEASES, has_release, is_release_words
 from multibot_rewrite.description.rewriters.vocabulary.grammar import (
     OF_VALUES,
@@ -98,7 +98,7 @@ class Vocabulary:
         """Every name and alias of that type."""
         return (name for of, name in self._raw if of == type_)
 
-    def rows_elsewhere(self, type_: str, name: str) -> Iterator[Site]:
+    def rows_elsewhere(self, type_: str, name: str) -> Iterator[SiteRow]:
         """The rows that this release lacks, each with the words for the releases that have it."""
         for file, line, chunk in self._raw.get((type_, name), ()):
             if "releases" in chunk:
@@ -176,7 +176,7 @@ class Vocabulary:
     def _read(self, file: str, line: int, chunk: str, within: tuple[str, ...]) -> VocabularySection:
         rows = chunk.split("\n")
         settings, own = read_section(file, line, rows)
-        sites: dict[str, Site] = {}
+        sites: dict[str, SiteRow] = {}
         for name in settings.get("with", "").split():
             sites |= {site.path: site for site in self._block(f"{file}:{line}", name, within)}
         header = read_header(f"{file}:{line}", rows[0])
@@ -187,7 +187,7 @@ class Vocabulary:
         }
         return assemble(file, line, header, settings, list(sites.values()))
 
-    def _block(self, place: str, name: str, within: tuple[str, ...]) -> tuple[Site, ...]:
+    def _block(self, place: str, name: str, within: tuple[str, ...]) -> tuple[SiteRow, ...]:
         if name in within:
             raise VocabularyError(f"{place}: with: {name}: [block {name}] includes itself")
         if not self.has("block", name):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from multibot_rewrite.base.model import Site, VocabularyError
+from multibot_rewrite.base.model import SiteRow, VocabularyError
 from multibot_rewrite.base.releases import share_release
 from multibot_rewrite.description.rewriters.vocabulary.grammar import VocabularySection
 
@@ -15,7 +15,7 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
 
     Raises VocabularyError where both say something of one path or set one setting differently.
     """
-    there: dict[str, list[Site]] = {}
+    there: dict[str, list[SiteRow]] = {}
     for site in first.sites:
         there.setdefault(site.path, []).append(site)
     new = [it for it in second.sites if not _same_block(it, there.get(it.path, ()))]
@@ -44,7 +44,7 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
     )
 
 
-def _same_block(site: Site, others: Iterable[Site]) -> bool:
+def _same_block(site: SiteRow, others: Iterable[SiteRow]) -> bool:
     """Two sections with one block: its lines are not there twice."""
     is_block = site.section[:6] == "block "
     return is_block and any(site.section == it.section for it in others)

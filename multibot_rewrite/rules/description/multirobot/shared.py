@@ -8,7 +8,7 @@ from operator import itemgetter
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.model import Claim, Site
+from multibot_rewrite.base.model import Claim, SiteRow
 from multibot_rewrite.base.naming import NOT_PLAIN, make_naming
 from multibot_rewrite.description.rewriters.insert import Insertion, insertions
 from multibot_rewrite.rules.facts.memo import memoized
@@ -86,5 +86,5 @@ def _insertions(subject: Subject) -> list[tuple[_Element, Insertion]]:
     return found
 
 
-def _may_insert(site: Site) -> bool:
+def _may_insert(site: SiteRow) -> bool:
     return bool(site.default) and "namespace" not in site.kinds
