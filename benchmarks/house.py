@@ -46,7 +46,7 @@ SHAPES = {
     "a finding": ("Problem", "Fault", "Remark", "LaunchNote", "Caveat", "Finding"),
 }
 NAMESAKES = (
-    *("description/checks/sdf_frames.py", "lint/catalogue.py", "producers/rosgraph/messages.py"),
+    *("lint/catalogue.py", "producers/rosgraph/messages.py"),
     "producers/launch/stand_in/ros.py",
 )
 # A test that imports so many modules besides commands and public names knows how the house is built.

@@ -27,7 +27,7 @@ from multibot_rewrite.fleet.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
 from multibot_rewrite.pages.view.heard import moved
 from multibot_rewrite.pages.view.page import Meshes, bare, meshes_of, title_of, to_frame, to_html
-from multibot_rewrite.pages.view.scene import Scene, ViewedRobot, scene_of
+from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot, scene_of
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
 from multibot_rewrite.producers.snapshot_file import read_snapshots
@@ -100,7 +100,7 @@ def framed(options: argparse.Namespace, graph: System) -> Framed | None:
         return None
 
 
-def _meshes(scene: Scene) -> Meshes:
+def _meshes(scene: ShownScene) -> Meshes:
     show = status()
     try:
         return meshes_of(scene, show)

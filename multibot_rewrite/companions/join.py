@@ -16,7 +16,7 @@ from multibot_rewrite.companions.params.joined import JoinedFiles, joined_files,
 from multibot_rewrite.companions.rviz.joined import JoinedRviz, joined_rviz, part_rviz
 from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
-from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
+from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, prefixing
 from multibot_rewrite.description.joining.proof import split_text
 from multibot_rewrite.description.joining.semantic import (
@@ -85,7 +85,7 @@ def join(
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
     pairs = zip(given, texts, strict=True)
-    made = join_texts([Given(it, text.data, text.file) for it, text in pairs], tree)
+    made = join_texts([GivenPart(it, text.data, text.file) for it, text in pairs], tree)
     found = _with_beside(given, made, tree, trust, samples)
     return found._replace(notes=(*_unread(given, texts), *found.notes))
 

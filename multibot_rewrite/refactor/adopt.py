@@ -54,8 +54,8 @@ from multibot_rewrite.refactor.package import (
 from multibot_rewrite.refactor.parameters import fillable
 from multibot_rewrite.refactor.placing import Left, placed
 from multibot_rewrite.refactor.source_edits import (
-    Change,
     SourceEdit,
+    ValueEdit,
     change_of,
     edited,
     expected,
@@ -292,7 +292,7 @@ def _as_xacro(it: Description, tree: Tree, how: Expanding) -> Description:
     return Description(path, inventory_of(data, path, tree), read)
 
 
-def _changes(it: Description) -> Iterator[Change]:
+def _changes(it: Description) -> Iterator[ValueEdit]:
     """Where the prefix goes in the values of a description. A link or joint that it does not have is
     one of another description that includes the same file."""
     document, claims, _, declared, *_ = it.inventory
@@ -327,7 +327,7 @@ def _not_written(it: Description) -> Iterator[Left]:
 
 def _fault(
     it: Description,
-    changes: Collection[Change],
+    changes: Collection[ValueEdit],
     after: Mapping[str, bytes],
     argument: str,
     how: Expanding,

@@ -29,7 +29,7 @@ from multibot_rewrite.description.steps.inserted import elements_of, lead_of
 from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
 from multibot_rewrite.refactor.package import Description, Expanding, read_text
 from multibot_rewrite.refactor.placing import Left, Spot, placed
-from multibot_rewrite.refactor.source_edits import Change, SourceEdit, change_of, place
+from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, change_of, place
 
 # No robot is called so: a description with robot1_ before its names can be tried with it.
 TRIED_SPACE = "ns1"
@@ -169,7 +169,7 @@ def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]
     ]
 
 
-def _changes(template: Template) -> Iterator[Change]:
+def _changes(template: Template) -> Iterator[ValueEdit]:
     """Where the namespace goes in the values that are there."""
     document, claims, *_ = template.inventory
     for claim, spelling in zip(claims, template.plan.renames.values, strict=True):
@@ -177,7 +177,7 @@ def _changes(template: Template) -> Iterator[Change]:
             yield change_of(document, claim, at, at, f"{before}{TRIED_SPACE}{after}")
 
 
-def _written(change: Change, argument: str) -> bytes:
+def _written(change: ValueEdit, argument: str) -> bytes:
     """An expression that is empty without a namespace."""
     before, after = change.new.split(TRIED_SPACE)
     words = [f"'{before}'"] * bool(before) + [argument] + [f"'{after}'"] * bool(after)

@@ -19,7 +19,7 @@ from multibot_rewrite.description.sources.expand import Expansion
 from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.steps.document import attribute_slots, tag_end
 from multibot_rewrite.refactor.package import Description
-from multibot_rewrite.refactor.source_edits import Change, SourceEdit, place_of
+from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, place_of
 
 # A file and an offset in it.
 Spot = tuple[str, int]
@@ -32,11 +32,11 @@ class Left(NamedTuple):
     why: str
 
 
-class Placed(NamedTuple):
+class PlacedNames(NamedTuple):
     """The edits, the changes that they make in each description, and what is left."""
 
     edits: list[SourceEdit]
-    changes: list[list[Change]]
+    changes: list[list[ValueEdit]]
     left: list[Left]
 
 
@@ -49,14 +49,14 @@ class _Name(NamedTuple):
     used: Spot | None
     made: Spot | None
     other: frozenset[Spot]
-    change: Change | None
+    change: ValueEdit | None
 
 
 def placed(
     found: Sequence[Description],
-    changes: Sequence[Sequence[Change]],
-    written: Callable[[Change], bytes],
-) -> Placed:
+    changes: Sequence[Sequence[ValueEdit]],
+    written: Callable[[ValueEdit], bytes],
+) -> PlacedNames:
     """The edits of the sources for the changes of each description. They have sources in common: what
     one of them needs at a place, the others get. ``written`` is what a change is in the source."""
     both = enumerate(zip(found, changes, strict=True))
@@ -64,7 +64,7 @@ def placed(
     deep = _made_elsewhere(names)
     stay = {it.made for it in names if it.made and it.change is None}
     others = stay.union(*(it.other for it in names))
-    made = Placed([], [[] for _ in found], [])
+    made = PlacedNames([], [[] for _ in found], [])
     for name in names:
         if name.change is None:
             continue
@@ -77,17 +77,17 @@ def placed(
     return made
 
 
-def _left(it: Description, change: Change, stays: bool) -> Left:
+def _left(it: Description, change: ValueEdit, stays: bool) -> Left:
     why = "stays with other arguments or elsewhere" if stays else "is put together"
     return Left(place_of(it.read, change.element) or it.path, f"{change.value!r} {why}")
 
 
-def _names(of: int, it: Description, changes: Iterable[Change]) -> Iterator[_Name]:
+def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_Name]:
     """Each change, and each value that is made at the same places and does not change."""
     assert it.read is not None
     read = it.read
     real = {file: os.path.realpath(file) for file in read.sources}
-    wanted: dict[tuple[int, str], dict[int, Change]] = defaultdict(dict)
+    wanted: dict[tuple[int, str], dict[int, ValueEdit]] = defaultdict(dict)
     for change in changes:
         wanted[change.element, change.attribute][change.start] = change
     for number, element in enumerate(it.inventory.document.elements):

@@ -40,9 +40,9 @@ from multibot_rewrite.refactor.package import (
 )
 from multibot_rewrite.refactor.parameters import respelled, starts_of
 from multibot_rewrite.refactor.source_edits import (
-    Change,
     Composed,
     SourceEdit,
+    ValueEdit,
     change_of,
     edited,
     expected,
@@ -159,7 +159,9 @@ def _known(it: Description, kinds: Collection[str]) -> Iterator[ResolvedName]:
     return (one for one in chain.from_iterable(it.inventory.names) if one.kind in kinds)
 
 
-def _check_free(symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[Change]]) -> None:
+def _check_free(
+    symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[ValueEdit]]
+) -> None:
     """Nothing in the folder has or uses the new name: it would be one with the old. A link is a frame,
     too."""
     kinds = next(it for it in KINDS.values() if symbol.kind in it)
@@ -174,7 +176,7 @@ def _check_free(symbol: _Symbol, package: Package, changes: Mapping[str, Sequenc
         raise UsageError(f"{path}:{line} uses the {symbol.kind} {symbol.new!r} already")
 
 
-def _changes(it: Description, symbol: _Symbol) -> Iterator[Change]:
+def _changes(it: Description, symbol: _Symbol) -> Iterator[ValueEdit]:
     document, claims, _, declared, *_ = it.inventory
     renames = make_renames(it.inventory, symbol.naming)
     for claim, spelling in zip(claims, renames.values, strict=True):
@@ -185,7 +187,7 @@ def _changes(it: Description, symbol: _Symbol) -> Iterator[Change]:
         yield change_of(document, claim, 0, len(claim.value), text)
 
 
-def _edits(it: Description, changes: Sequence[Change]) -> Iterator[SourceEdit]:
+def _edits(it: Description, changes: Sequence[ValueEdit]) -> Iterator[SourceEdit]:
     document = it.inventory.document
     for change in changes:
         if it.read is None:
@@ -198,7 +200,7 @@ def _edits(it: Description, changes: Sequence[Change]) -> Iterator[SourceEdit]:
         yield found._replace(file=os.path.realpath(found.file))
 
 
-def _in_place(it: Description, change: Change) -> SourceEdit:
+def _in_place(it: Description, change: ValueEdit) -> SourceEdit:
     document = it.inventory.document
     span = next(spans(document, [change]))
     if span is None:
@@ -211,7 +213,7 @@ def _in_place(it: Description, change: Change) -> SourceEdit:
 
 def _prove(
     package: Package,
-    changes: Mapping[str, Sequence[Change]],
+    changes: Mapping[str, Sequence[ValueEdit]],
     after: Mapping[str, bytes],
     how: Expanding,
 ) -> None:
@@ -233,7 +235,7 @@ def _difference(made: bytes, wanted: bytes | None) -> str:
 def _beside(
     package: Package,
     symbol: _Symbol,
-    changes: Mapping[str, Sequence[Change]],
+    changes: Mapping[str, Sequence[ValueEdit]],
     after: Mapping[str, bytes],
 ) -> Iterator[tuple[str, tuple[bytes, int]]]:
     """The files beside the descriptions that change, with their bytes and in how many places."""
@@ -248,7 +250,7 @@ def _files_with(
     name: str,
     kinds: Collection[str],
     package: Package,
-    changes: Mapping[str, Sequence[Change]],
+    changes: Mapping[str, Sequence[ValueEdit]],
 ) -> Iterator[tuple[str, bytes, NamedFile, set[int]]]:
     """The files beside the descriptions that have a name of these kinds, and where in their text."""
     urdf = next(path for path, found in changes.items() if found)

@@ -18,7 +18,7 @@ from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.steps.document import Document, place_in, value_slot
 
 
-class Change(NamedTuple):
+class ValueEdit(NamedTuple):
     """In the value of an attribute of an element, or its text where ``attribute`` is empty: characters
     ``start`` to ``end`` become ``new``. ``element`` counts in the order of the document."""
 
@@ -30,12 +30,12 @@ class Change(NamedTuple):
     new: str
 
 
-def change_of(document: Document, claim: Claim, start: int, end: int, new: str) -> Change:
+def change_of(document: Document, claim: Claim, start: int, end: int, new: str) -> ValueEdit:
     """The change of a claimed value; a claim has a text without the white space around it."""
     number = bisect_left(document.starts, claim.start)
     value = claim.value if claim.attribute else claim.element.text or ""
     by = value.find(claim.value)
-    return Change(number, claim.attribute, value, by + start, by + end, new)
+    return ValueEdit(number, claim.attribute, value, by + start, by + end, new)
 
 
 class SourceEdit(NamedTuple):
@@ -55,7 +55,7 @@ class Composed(NamedTuple):
     why: str
 
 
-def source_edit(read: Expansion, document: Document, change: Change) -> SourceEdit | Composed:
+def source_edit(read: Expansion, document: Document, change: ValueEdit) -> SourceEdit | Composed:
     """The edit of a source that makes a change."""
     start, end, new = _trimmed(change)
     pieces = read.pieces.of(change.element, change.attribute, change.value)
@@ -73,7 +73,7 @@ def source_edit(read: Expansion, document: Document, change: Change) -> SourceEd
     return Composed(change.value, _place(read, document, change, touched), _why(touched))
 
 
-def _trimmed(change: Change) -> tuple[int, int, str]:
+def _trimmed(change: ValueEdit) -> tuple[int, int, str]:
     """What of a change is different: from, to, and the new characters."""
     _, _, value, start, end, new = change
     while start < end and new and value[start] == new[0]:
@@ -83,7 +83,7 @@ def _trimmed(change: Change) -> tuple[int, int, str]:
     return start, end, new
 
 
-def _place(read: Expansion, document: Document, change: Change, touched: list[Piece]) -> str:
+def _place(read: Expansion, document: Document, change: ValueEdit, touched: list[Piece]) -> str:
     known = next((it for it in touched if it.file in read.sources), None)
     if known:
         return place(known.file, read.sources[known.file], known.start)
@@ -108,7 +108,7 @@ def _why(touched: list[Piece]) -> str:
     return f"an {made} makes it" if made == EXPRESSION else f"it is a {made}"
 
 
-def expected(document: Document, changes: Iterable[Change]) -> bytes | None:
+def expected(document: Document, changes: Iterable[ValueEdit]) -> bytes | None:
     """The text of a document with the changes made in it; None where escapes hide one of them."""
     found = list(spans(document, changes))
     if None in found:
@@ -117,7 +117,9 @@ def expected(document: Document, changes: Iterable[Change]) -> bytes | None:
     return edited({"": document.source}, edits).get("", document.source)
 
 
-def spans(document: Document, changes: Iterable[Change]) -> Iterator[tuple[int, int, bytes] | None]:
+def spans(
+    document: Document, changes: Iterable[ValueEdit]
+) -> Iterator[tuple[int, int, bytes] | None]:
     """Where in the bytes of a document each change is, and its new bytes; None where that is hidden."""
     for element, attribute, value, start, end, new in changes:
         slot = value_slot(document.source, document.starts[element], attribute, value)

@@ -7,7 +7,7 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite import ProofError
-from multibot_rewrite.description.joining.join import Given, join_texts
+from multibot_rewrite.description.joining.join import GivenPart, join_texts
 from multibot_rewrite.description.joining.part import Part
 from multibot_rewrite.description.joining.proof import prove
 from multibot_rewrite.description.joining.second_reading import check_read
@@ -48,7 +48,7 @@ PARTS = (
     Part(ARM, "plate", (0, 0, 0.5, 0, 0, 1), "a_", "arm"),
     Part(STAND, "plate", (0, 1, 0, 0, 0, 0), "s_", "stand"),
 )
-MADE = join_texts([Given(it, str(it.description).encode(), it.name) for it in PARTS], TREE)
+MADE = join_texts([GivenPart(it, str(it.description).encode(), it.name) for it in PARTS], TREE)
 # What is changed in the joined text.
 FAULTS = {
     "a mount at another pose": ("0 0 0.5", "0 0 0.6"),

@@ -11,7 +11,7 @@ from multibot_rewrite import InputError, UsageError, rename_symbol
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.pieces import Piece
 from multibot_rewrite.refactor import source_edits
-from multibot_rewrite.refactor.source_edits import Change, SourceEdit, edited, first_difference
+from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, edited, first_difference
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ROBOT = f"""<robot name="r" {SPACE}>
@@ -257,7 +257,7 @@ def test_why_no_edit_makes_a_change(touched: list[Piece], why: str) -> None:
 def test_only_what_differs_is_changed(
     start: int, end: int, new: str, left: tuple[int, int, str]
 ) -> None:
-    assert source_edits._trimmed(Change(0, "name", "abcd", start, end, new)) == left
+    assert source_edits._trimmed(ValueEdit(0, "name", "abcd", start, end, new)) == left
 
 
 def test_edits_are_made_in_their_order_and_do_not_meet() -> None:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import yaml
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.moveit.name_sites import FileKind, entries, kinds
+from multibot_rewrite.companions.moveit.name_sites import MoveitKind, entries, kinds
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, line_of
 
@@ -38,7 +38,7 @@ def file_kind(document: YamlText) -> str:
     return kind.name if kind else EMPTY
 
 
-def find_kind(document: YamlText) -> FileKind | None:
+def find_kind(document: YamlText) -> MoveitKind | None:
     """The kind of a file, None if it is empty; InputError if it is not a MoveIt file."""
     root = document.root
     if root is None or root.tag == "tag:yaml.org,2002:null":
@@ -64,7 +64,7 @@ def pipeline_of(path: str) -> str:
     return stem.removesuffix(_PIPELINE) if stem.endswith(_PIPELINE) else ""
 
 
-def parameter_above(kind: FileKind, document: YamlText) -> str:
+def parameter_above(kind: MoveitKind, document: YamlText) -> str:
     """What stands before the names of a file's parameters: ``ompl.``, or nothing."""
     keys = {str(key.value) for key, _ in entries(document.root)}
     above = ABOVE.get(kind.name, "")
@@ -95,7 +95,7 @@ def _paths(root: yaml.Node) -> Iterator[str]:
             yield from (f"{first}.{word}", f"*.{word}")
 
 
-def _by_values(root: yaml.Node) -> FileKind | None:
+def _by_values(root: yaml.Node) -> MoveitKind | None:
     """A file of numbers only holds joint positions."""
     values = [value for _, value in entries(root)]
     if values and all(it.tag.endswith((":float", ":int", "!degrees", "!radians")) for it in values):
@@ -103,6 +103,6 @@ def _by_values(root: yaml.Node) -> FileKind | None:
     return None
 
 
-def _by_name(file: str) -> FileKind | None:
+def _by_name(file: str) -> MoveitKind | None:
     name = os.path.basename(file).lower()
     return next((kind for kind in kinds() if any(it in name for it in kind.files)), None)

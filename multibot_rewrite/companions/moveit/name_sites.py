@@ -27,7 +27,7 @@ _EVALUATOR = lazy_compile(r"\s*(?P<kind>joint|link)s?\s*\((?P<names>[^()]*)\)\s*
 _NAME = lazy_compile(r"[^\s,](?:[^,]*[^\s,])?")
 
 
-class FileKind(NamedTuple):
+class MoveitKind(NamedTuple):
     """A kind of file: keys that identify it, words in its file name, and the shape of its names."""
 
     name: str
@@ -48,11 +48,11 @@ _Match = tuple[tuple[tuple[int, str, str], ...], Shape]
 
 
 @cache
-def kinds() -> tuple[FileKind, ...]:
+def kinds() -> tuple[MoveitKind, ...]:
     """All kinds of files, in the order in which they are tried."""
     data = load_own_yaml(__file__, "moveit.yaml")
     return tuple(
-        FileKind(name, tuple(it["marks"]), tuple(it["files"]), {**data["common"], **it["names"]})
+        MoveitKind(name, tuple(it["marks"]), tuple(it["files"]), {**data["common"], **it["names"]})
         for name, it in data["kinds"].items()
     )
 

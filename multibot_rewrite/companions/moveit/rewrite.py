@@ -17,7 +17,7 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import name_splices, text_of
 from multibot_rewrite.companions.kinds import MOVEIT
 from multibot_rewrite.companions.moveit.file_kind import OF_SERVO, find_kind
-from multibot_rewrite.companions.moveit.name_sites import FileKind, entries, find_names
+from multibot_rewrite.companions.moveit.name_sites import MoveitKind, entries, find_names
 from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.names.node_topics import facts_by_name
@@ -84,7 +84,7 @@ def asks_below_root(document: YamlText) -> yaml.ScalarNode | None:
 MOVE_GROUP, SERVO = "move_group", "servo_node"
 
 
-def node_of(kind: FileKind | None) -> str:
+def node_of(kind: MoveitKind | None) -> str:
     """Which node's parameters a file of this kind has."""
     return SERVO if kind and kind.name == OF_SERVO else MOVE_GROUP
 

@@ -103,7 +103,7 @@ def written_pose(written: _Element | None) -> Pose:
     return sdf_pose(written.text or "") or HERE
 
 
-class Ends(NamedTuple):
+class JointEnds(NamedTuple):
     """A joint, and the links that it is between."""
 
     joint: str
@@ -111,14 +111,14 @@ class Ends(NamedTuple):
     child: str
 
 
-def ends_of(frames: Frames) -> dict[str, Ends]:
+def ends_of(frames: Frames) -> dict[str, JointEnds]:
     """The joint above each link. A second joint of a link closes a loop, a tree has the first."""
-    found: dict[str, Ends] = {}
+    found: dict[str, JointEnds] = {}
     for it in frames.named.values():
         if it.tag == "joint":
             parent, child = (frames.link(it.within(it.text(end))) for end in ("parent", "child"))
             if {parent, child} <= frames.named.keys():
-                found.setdefault(child, Ends(it.name, parent, child))
+                found.setdefault(child, JointEnds(it.name, parent, child))
     return found
 
 

@@ -17,7 +17,7 @@ from typing import Any
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
+from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import MISSED, Part
 from multibot_rewrite.description.rewriters.tree import builtin_tree
@@ -78,11 +78,11 @@ def read_joined(path: str, trust: bool) -> SourceText:
     return SourceText(plain_text(made, path), f"{path} (expanded)", (path, *read))
 
 
-def plain_texts(parts: Sequence[Part], trust: bool) -> tuple[list[Given], tuple[str, ...]]:
+def plain_texts(parts: Sequence[Part], trust: bool) -> tuple[list[GivenPart], tuple[str, ...]]:
     """The texts of parts for a description that others read, and the files that were read."""
     texts = [read_alone(it.description, it.xacro_args, trust) for it in parts]
     both = zip(parts, texts, strict=True)
-    given = [Given(it, _without_banner(text), text.file) for it, text in both]
+    given = [GivenPart(it, _without_banner(text), text.file) for it, text in both]
     return given, tuple(file for text in texts for file in text.read)
 
 

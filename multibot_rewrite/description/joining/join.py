@@ -20,7 +20,7 @@ from multibot_rewrite.description.joining import materials
 from multibot_rewrite.description.joining.blocks import said_once
 from multibot_rewrite.description.joining.fixing import fixed
 from multibot_rewrite.description.joining.kept import (
-    Section,
+    KeptText,
     is_joined_whole,
     placed,
     section,
@@ -60,7 +60,7 @@ class JoinedText(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-class Given(NamedTuple):
+class GivenPart(NamedTuple):
     """A part and the bytes and name of its file."""
 
     part: Part
@@ -68,7 +68,7 @@ class Given(NamedTuple):
     file: str
 
 
-def join_texts(given: Sequence[Given], tree: Tree) -> JoinedText:
+def join_texts(given: Sequence[GivenPart], tree: Tree) -> JoinedText:
     """Join descriptions; raises UsageError and InputError in one line, ProofError."""
     if len(given) < 2:
         raise UsageError("one description alone: give those that are joined to it, too")
@@ -90,7 +90,7 @@ def join_texts(given: Sequence[Given], tree: Tree) -> JoinedText:
     return JoinedText(data, tuple(mounted), tuple(notes), findings)
 
 
-def _check_given(given: Sequence[Given], parts: Sequence[ReadPart]) -> None:
+def _check_given(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
     if given[0].part.at:
         raise UsageError(f"{given[0].file}: it is the first part, there is no link before it")
     first = parts[0]
@@ -128,7 +128,9 @@ def _added(
     repeated = materials.repeated(joined.document.root, spans)
     edits = [*mount.edits, *repeated, *once.part, *system.part]
     made = _edited(text, [*edits, *own_spaces(joined.document, spans, edits)])
-    more = section(Section(part.name, part.prefix, names, made), start, end + len(made) - len(text))
+    more = section(
+        KeptText(part.name, part.prefix, names, made), start, end + len(made) - len(text)
+    )
     base = _edited(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
     notes = (*mount.notes, *once.notes, *system.notes)

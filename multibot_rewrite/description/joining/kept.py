@@ -46,7 +46,7 @@ _MARKS = lazy_compile(
 _ESCAPED = lazy_compile(rb"%|-(?=-|\Z)|(?<=:) ")
 
 
-class Section(NamedTuple):
+class KeptText(NamedTuple):
     """A part as a joined text holds it: its ``text`` has its prefix still, and prefixed names of
     ``materials``."""
 
@@ -82,7 +82,7 @@ def left_out(spans: Spans, element: _Element) -> Edit:
     return was(spans.start_of(element), spans.end_of(element), spans.text_of(element))
 
 
-def section(it: Section, start: int, end: int) -> bytes:
+def section(it: KeptText, start: int, end: int) -> bytes:
     """A part for a joined text; ``start`` and ``end`` are those of what is in its root."""
     names = ",".join(quote(name, safe="") for name in it.materials).replace("--", "-%2D")
     words = _words(it.name, prefix=it.prefix, materials=names)
@@ -106,7 +106,7 @@ def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
     return text[:at] + mark + more + text[at:]
 
 
-def sections(text: bytes, file: str) -> list[Section]:
+def sections(text: bytes, file: str) -> list[KeptText]:
     """The parts of a joined text, the first one first; raises InputError."""
     before = _undone(text, file)
     mark = _BASE.search(before)
@@ -116,10 +116,10 @@ def sections(text: bytes, file: str) -> list[Section]:
     last = found[-1][1] if found else mark.end()
     base = before[: mark.start()] + before[last:]
     name, prefix = ((word or b"").decode() for word in mark.groups())
-    return [Section(name, prefix, (), base), *(it for it, _ in found)]
+    return [KeptText(name, prefix, (), base), *(it for it, _ in found)]
 
 
-def _behind(text: bytes, at: int, file: str) -> Iterator[tuple[Section, int]]:
+def _behind(text: bytes, at: int, file: str) -> Iterator[tuple[KeptText, int]]:
     """Each part that follows, and where it ends."""
     while part := _PART.match(text, at):
         name, prefix, materials, head = (word or b"" for word in part.groups())
@@ -133,7 +133,7 @@ def _behind(text: bytes, at: int, file: str) -> Iterator[tuple[Section, int]]:
         whole = _shown(head) + text[part.end() : close] + _shown(tail)
         names = tuple(unquote(it) for it in materials.decode().split(",") if it)
         at = stop + len(b" -->\n")
-        yield Section(name.decode(), prefix.decode(), names, whole), at
+        yield KeptText(name.decode(), prefix.decode(), names, whole), at
 
 
 def _undone(text: bytes, file: str) -> bytes:

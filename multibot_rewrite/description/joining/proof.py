@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from multibot_rewrite.base.model import InputError, ProofError
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.joining.kept import Section, is_joined_whole, sections
+from multibot_rewrite.description.joining.kept import KeptText, is_joined_whole, sections
 from multibot_rewrite.description.joining.materials import bare, word_of
 from multibot_rewrite.description.joining.part import in_one_line, prefixing
 from multibot_rewrite.description.joining.second_reading import Mounted, check_read
@@ -18,7 +18,7 @@ from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import Tree
 
 
-def taken_out(it: Section, file: str, tree: Tree) -> bytes:
+def taken_out(it: KeptText, file: str, tree: Tree) -> bytes:
     """A part of a joined text as it was before; raises InputError where the text
     was edited by hand."""
     word = word_of(it.name, it.prefix)

@@ -30,7 +30,7 @@ class Call(NamedTuple):
     start: int
 
 
-class Origin(NamedTuple):
+class WrittenAt(NamedTuple):
     """The file an element was written in, the byte offset of its tag, the innermost call first."""
 
     file: str
@@ -75,11 +75,11 @@ class Origins(NamedTuple):
 
     trace: Trace
 
-    def of(self, number: int) -> Origin | None:
+    def of(self, number: int) -> WrittenAt | None:
         """The origin of an element; None where xacro itself made it."""
         file, element, call = self.trace.result.origins[3 * number : 3 * number + 3]
         place = self.trace.place(file, element)
-        return Origin(*place, self.trace.calls(call)) if place else None
+        return WrittenAt(*place, self.trace.calls(call)) if place else None
 
 
 def _starts(source: bytes, count: int) -> Sequence[int]:

@@ -15,7 +15,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.joining.join import Given, JoinedText, join_texts
+from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import Part, ReadPart
 from multibot_rewrite.description.joining.semantic import PartSemantics, joined_srdf, xml_text
@@ -54,10 +54,10 @@ def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapp
     """
     root = etree.Element("robot", name=cell.name)
     etree.SubElement(root, "link", name=world)
-    parts = [Given(Part("", name=cell.name), etree.tostring(root), cell.name)]
+    parts = [GivenPart(Part("", name=cell.name), etree.tostring(root), cell.name)]
     for arm in arms:
         part = Part("", world, tuple(arm.pose or _STANDING), name=arm.tag)
-        parts.append(Given(part, arm.urdf, arm.where))
+        parts.append(GivenPart(part, arm.urdf, arm.where))
     made = join_texts(parts, tree)
     semantics = _semantics(made, world, arms)
     srdf = read_xml(joined_srdf(semantics, made.data, hint=_HINT).data, cell.place)

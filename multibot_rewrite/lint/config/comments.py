@@ -14,7 +14,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.config.directives import (
     ALWAYS_REPORTED,
     IGNORE_FILE,
-    Code,
+    CodeName,
     Directive,
     read_directives,
 )
@@ -71,7 +71,7 @@ def _apply(
     findings: Iterable[Finding], comments: Iterable[Comment]
 ) -> tuple[list[Finding], set[tuple[str, int]]]:
     """The findings that are left, and the codes that suppressed one, by file and offset."""
-    by_code: dict[str, list[tuple[Comment, Code]]] = {}
+    by_code: dict[str, list[tuple[Comment, CodeName]]] = {}
     for comment in comments:
         for code in comment.it.codes:
             by_code.setdefault(code.text, []).append((comment, code))
@@ -153,7 +153,7 @@ def _is_asked(code: str, file: str, settings: Settings) -> bool:
     return possible and is_on(settings, code) and not is_silent(settings, file, code)
 
 
-def _removals(comment: Comment, idle: Sequence[Code]) -> Iterator[tuple[Edit, ...]]:
+def _removals(comment: Comment, idle: Sequence[CodeName]) -> Iterator[tuple[Edit, ...]]:
     """For each of the codes the edit that removes it; all can be applied together."""
     codes = comment.it.codes
     if comment.it.faults or len(idle) == len(codes):

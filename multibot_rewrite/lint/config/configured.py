@@ -23,7 +23,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.config.values import (
     FIELDS,
     READERS,
-    Given,
+    KeyValue,
     checked_robots,
     find_lint_codes,
     targets,
@@ -107,7 +107,7 @@ def _configured(path: str, table: Mapping[str, object]) -> Configured:
         if key not in READERS:
             raise UsageError(f"{path}: unknown key {key!r}{_meant(key, READERS)}")
         field = FIELDS.get(key, key.replace("-", "_"))
-        values[field] = READERS[key](Given(f"{path}: {key}", folder, value))
+        values[field] = READERS[key](KeyValue(f"{path}: {key}", folder, value))
     naming_options = {name: values.pop(name) for name in NAMING if name in values}
     own = {name: values.pop(name) for name in Configured._fields if name in values}
     values["readable"] = tuple(it for it in values.get("roots", ()) if _is_below(it, folder))
@@ -152,11 +152,11 @@ def with_options(it: Configured, **given: Any) -> Configured:
     options = {name: value for name, value in given.items() if value not in (None, (), "")}
     naming_options = {name: options.pop(name) for name in NAMING if name in options}
     if "target" in options:
-        options["targets"] = targets(Given("--target", "", list(options.pop("target"))))
+        options["targets"] = targets(KeyValue("--target", "", list(options.pop("target"))))
     if "robots" in options:
         options["robots"] = checked_robots(options["robots"], "--robots")
     if "fail_on" in options:
-        options["fail_on"] = READERS["fail-on"](Given("--fail-on", "", options["fail_on"]))
+        options["fail_on"] = READERS["fail-on"](KeyValue("--fail-on", "", options["fail_on"]))
     for name in ("select", "ignore"):
         if name in options:
             options[name] = find_lint_codes(options[name], f"--{name}")

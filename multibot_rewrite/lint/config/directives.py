@@ -38,7 +38,7 @@ _SOMETIMES = frozenset({b"xacro:macro", b"xacro:if", b"xacro:unless"})
 _HOW = "write urdf-lint: ignore CODE, CODE - reason"
 
 
-class Part(NamedTuple):
+class TagPart(NamedTuple):
     """A tag, comment or the like by byte offsets; ``name`` is that of an element's first tag."""
 
     kind: int
@@ -55,7 +55,7 @@ class DirectiveFault(NamedTuple):
     hint: str = _HOW
 
 
-class Code(NamedTuple):
+class CodeName(NamedTuple):
     """A rule's code in a comment, and its place."""
 
     text: str
@@ -73,7 +73,7 @@ class Directive(NamedTuple):
     start: int
     end: int
     word: str
-    codes: tuple[Code, ...]
+    codes: tuple[CodeName, ...]
     faults: tuple[DirectiveFault, ...]
     lines: tuple[int, int]
     element: tuple[int, int] | None = None
@@ -100,19 +100,19 @@ def read_directives(source: bytes) -> list[Directive]:
     return found
 
 
-def _parts(source: bytes) -> Iterator[Part]:
+def _parts(source: bytes) -> Iterator[TagPart]:
     for found in _PART.finditer(source):
         start, end, name = found.start(), found.end(), found[1]
         if name is None:
             kind = _COMMENT if source.startswith(b"<!--", start) else _OTHER
-            yield Part(kind, start, end)
+            yield TagPart(kind, start, end)
         elif source.startswith(b"</", start):
-            yield Part(_CLOSE, start, end)
+            yield TagPart(_CLOSE, start, end)
         else:
-            yield Part(_EMPTY if source[end - 2 : end] == b"/>" else _OPEN, start, end, name)
+            yield TagPart(_EMPTY if source[end - 2 : end] == b"/>" else _OPEN, start, end, name)
 
 
-def _element_ends(parts: Sequence[Part]) -> dict[int, int]:
+def _element_ends(parts: Sequence[TagPart]) -> dict[int, int]:
     """Number of an element's first tag -> the offset where the element ends."""
     ends: dict[int, int] = {}
     opened: list[int] = []
@@ -126,7 +126,7 @@ def _element_ends(parts: Sequence[Part]) -> dict[int, int]:
     return ends
 
 
-def _directive(source: bytes, part: Part) -> Directive | None:
+def _directive(source: bytes, part: TagPart) -> Directive | None:
     comment = _DIRECTIVE.fullmatch(source, part.start, part.end)
     if comment is None:
         return None
@@ -154,11 +154,11 @@ def _unknown_word(word: str, start: int) -> DirectiveFault:
     return DirectiveFault(start, f"unknown word {word!r}" if word else "the comment is empty", hint)
 
 
-def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[Code], list[DirectiveFault]]:
+def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[CodeName], list[DirectiveFault]]:
     """The valid codes, and what is wrong with the others."""
     reason = _REASON.search(source, comment.start(3), comment.end(3))
     end = reason.start() if reason else comment.end(3)
-    codes: list[Code] = []
+    codes: list[CodeName] = []
     faults: list[DirectiveFault] = []
     for found in _WORD.finditer(source, comment.start(3), end):
         text = found[0].decode("utf-8", "replace")
@@ -166,7 +166,7 @@ def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[Code], list[Di
         if fault:
             faults.append(fault)
         else:
-            codes.append(Code(text, *found.span()))
+            codes.append(CodeName(text, *found.span()))
         if not _LIKE_A_CODE.fullmatch(text):
             break  # a reason without a dash is one fault
     if not codes and not faults:
@@ -194,7 +194,7 @@ def _fault(text: str, start: int) -> DirectiveFault | None:
 
 
 def _elements_below(
-    source: bytes, parts: Sequence[Part], ends: Mapping[int, int]
+    source: bytes, parts: Sequence[TagPart], ends: Mapping[int, int]
 ) -> list[tuple[int, int] | None]:
     """Return for each part the element that comes next, with nothing but comments in between."""
     below: list[tuple[int, int] | None] = [None] * len(parts)
@@ -207,14 +207,14 @@ def _elements_below(
     return below
 
 
-def _has_its_lines(source: bytes, comment: Part, last: int) -> bool:
+def _has_its_lines(source: bytes, comment: TagPart, last: int) -> bool:
     """Is nothing else on the lines of a comment? ``last`` is the end of the part before it."""
     before = source[last : comment.start].rpartition(b"\n")
     begins = not before[2].strip() and (bool(before[1]) or last == 0)
     return begins and _LINE_END.match(source, comment.end) is not None
 
 
-def _in_place(it: Directive, tags: Sequence[Part]) -> Directive:
+def _in_place(it: Directive, tags: Sequence[TagPart]) -> Directive:
     """An ignore-file has no effect after the root's first child."""
     if it.word != IGNORE_FILE or len(tags) < 2 or it.start < tags[1].start:
         return it
@@ -224,7 +224,7 @@ def _in_place(it: Directive, tags: Sequence[Part]) -> Directive:
     return it._replace(codes=(), faults=(*it.faults, late))
 
 
-def _is_idle(it: Directive, tags: Sequence[Part], before: int) -> bool:
+def _is_idle(it: Directive, tags: Sequence[TagPart], before: int) -> bool:
     """Is there no element below the comment, and no tag or text on its lines?"""
     last = bisect_left(tags, it.lines[1], key=lambda tag: tag.start) - 1
     on_the_lines = last >= 0 and tags[last].end > it.lines[0]

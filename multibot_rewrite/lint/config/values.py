@@ -18,7 +18,7 @@ from multibot_rewrite.rules.patterns import anchored, with_folders
 from multibot_rewrite.rules.settings import EVERY_FILE, TARGETS, ArgumentSet
 
 
-class Given(NamedTuple):
+class KeyValue(NamedTuple):
     """A key's value; ``where`` names it in messages, ``folder`` is that of the file."""
 
     where: str
@@ -26,7 +26,7 @@ class Given(NamedTuple):
     value: object
 
 
-def _texts(given: Given) -> tuple[str, ...]:
+def _texts(given: KeyValue) -> tuple[str, ...]:
     if not isinstance(given.value, list):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write a list of texts")
     wrong = next((it for it in given.value if not isinstance(it, str)), None)
@@ -35,7 +35,7 @@ def _texts(given: Given) -> tuple[str, ...]:
     return tuple(given.value)
 
 
-def _text(given: Given) -> str:
+def _text(given: KeyValue) -> str:
     if not isinstance(given.value, str):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write a text in quotes")
     if not given.value:
@@ -43,7 +43,7 @@ def _text(given: Given) -> str:
     return given.value
 
 
-def _table_of(given: Given) -> Iterator[tuple[str, Given]]:
+def _table_of(given: KeyValue) -> Iterator[tuple[str, KeyValue]]:
     """The keys of a table and their values."""
     if not isinstance(given.value, dict):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write a table")
@@ -51,7 +51,7 @@ def _table_of(given: Given) -> Iterator[tuple[str, Given]]:
         yield key, given._replace(where=f"{given.where}: {key!r}", value=value)
 
 
-def _codes(given: Given) -> tuple[str, ...]:
+def _codes(given: KeyValue) -> tuple[str, ...]:
     return find_lint_codes(_texts(given), given.where)
 
 
@@ -64,7 +64,7 @@ def find_lint_codes(words: Sequence[str], where: str) -> tuple[str, ...]:
     return find_codes(words, where, RULES)
 
 
-def _levels(given: Given) -> dict[str, str]:
+def _levels(given: KeyValue) -> dict[str, str]:
     levels = {}
     for word, it in _table_of(given):
         (code,) = find_lint_codes((word,), given.where)
@@ -72,26 +72,26 @@ def _levels(given: Given) -> dict[str, str]:
     return levels
 
 
-def _one_of(given: Given, allowed: Sequence[str]) -> str:
+def _one_of(given: KeyValue, allowed: Sequence[str]) -> str:
     word = _text(given)
     if word not in allowed:
         raise UsageError(f"{given.where} is {word!r}, use one of {', '.join(allowed)}")
     return word
 
 
-def _level(given: Given) -> str:
+def _level(given: KeyValue) -> str:
     return _one_of(given, LEVELS)
 
 
-def _release(given: Given) -> str:
+def _release(given: KeyValue) -> str:
     return _one_of(given, RELEASES)
 
 
-def targets(given: Given) -> tuple[str, ...]:
+def targets(given: KeyValue) -> tuple[str, ...]:
     return tuple(_one_of(given._replace(value=it), TARGETS) for it in _texts(given))
 
 
-def _robots(given: Given) -> tuple[str, ...]:
+def _robots(given: KeyValue) -> tuple[str, ...]:
     return checked_robots(_texts(given), given.where)
 
 
@@ -102,26 +102,26 @@ def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
         raise UsageError(f"{where}: {error}") from None
 
 
-def _separators(given: Given) -> dict[str, str]:
+def _separators(given: KeyValue) -> dict[str, str]:
     return {kind: _text(it) for kind, it in _table_of(given)}
 
 
-def _path(given: Given) -> str:
+def _path(given: KeyValue) -> str:
     return os.path.join(given.folder, _text(given))
 
 
-def _file(given: Given) -> str:
+def _file(given: KeyValue) -> str:
     path = _path(given)
     if not os.path.isfile(path):
         raise UsageError(f"{given.where}: no file {given.value!r} in {given.folder}")
     return path
 
 
-def _files(given: Given) -> tuple[str, ...]:
+def _files(given: KeyValue) -> tuple[str, ...]:
     return listed_files(given.where, given.folder, given.value)
 
 
-def _folders(given: Given) -> tuple[str, ...]:
+def _folders(given: KeyValue) -> tuple[str, ...]:
     paths = tuple(os.path.join(given.folder, it) for it in _texts(given))
     wrong = next((it for it in paths if not os.path.isdir(it)), None)
     if wrong is not None:
@@ -129,7 +129,7 @@ def _folders(given: Given) -> tuple[str, ...]:
     return paths
 
 
-def _seconds(given: Given) -> float:
+def _seconds(given: KeyValue) -> float:
     value = given.value
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise UsageError(f"{given.where} is {type_name(value)}, write a number of seconds")
@@ -138,7 +138,7 @@ def _seconds(given: Given) -> float:
     return float(value)
 
 
-def _per_file(given: Given) -> tuple[tuple[str, tuple[str, ...]], ...]:
+def _per_file(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
     return tuple(
         (pattern, _codes(it))
         for key, it in _table_of(given)
@@ -146,13 +146,13 @@ def _per_file(given: Given) -> tuple[tuple[str, tuple[str, ...]], ...]:
     )
 
 
-def _excluded(given: Given) -> tuple[str, ...]:
+def _excluded(given: KeyValue) -> tuple[str, ...]:
     return tuple(
         it for key in _texts(given) for it in with_folders(anchored(key, given.folder, given.where))
     )
 
 
-def _argument_sets(given: Given) -> tuple[ArgumentSet, ...]:
+def _argument_sets(given: KeyValue) -> tuple[ArgumentSet, ...]:
     if not isinstance(given.value, list):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write tables [[xacro]]")
     each = (
@@ -162,7 +162,7 @@ def _argument_sets(given: Given) -> tuple[ArgumentSet, ...]:
     return tuple(it for one in each for it in _argument_set(one))
 
 
-def _argument_set(given: Given) -> Iterator[ArgumentSet]:
+def _argument_set(given: KeyValue) -> Iterator[ArgumentSet]:
     parts = dict(_table_of(given))
     for key in parts:
         if key not in ("files", "arguments"):
@@ -175,7 +175,7 @@ def _argument_set(given: Given) -> Iterator[ArgumentSet]:
     yield from (ArgumentSet(pattern, arguments) for pattern in patterns)
 
 
-def _argument(given: Given) -> str:
+def _argument(given: KeyValue) -> str:
     """The value as text, as on xacro's command line."""
     value = given.value
     if isinstance(value, bool):
@@ -185,7 +185,7 @@ def _argument(given: Given) -> str:
     return str(value)
 
 
-READERS: Mapping[str, Callable[[Given], object]] = {
+READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "select": _codes,
     "ignore": _codes,
     "per-file-ignores": _per_file,

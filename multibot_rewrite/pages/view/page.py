@@ -16,14 +16,14 @@ from multibot_rewrite.base.workers import limit_time, worker_pool
 from multibot_rewrite.pages.page import Framed, source_hash
 from multibot_rewrite.pages.view.heard import DEGREES, METRES
 from multibot_rewrite.pages.view.models import Mesh, Model, Shape, load_mesh, prepare_meshes, three
-from multibot_rewrite.pages.view.scene import Scene, ViewedRobot
+from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot
 
 MESH_SECONDS = 10.0
 # Meshes by their files, or why one cannot be shown.
 Meshes = Mapping[str, Mesh | str]
 
 
-def meshes_of(scene: Scene, tell: Callable[[str], None] = lambda _: None) -> Meshes:
+def meshes_of(scene: ShownScene, tell: Callable[[str], None] = lambda _: None) -> Meshes:
     """The meshes of all robots, each read once, by a worker with bounds: a small file may stand for
     more than memory holds, or take for ever. ``tell`` is told which one is read."""
     shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
@@ -45,12 +45,12 @@ def meshes_of(scene: Scene, tell: Callable[[str], None] = lambda _: None) -> Mes
         return found
 
 
-def to_html(scene: Scene, meshes: Meshes, title: str) -> bytes:
+def to_html(scene: ShownScene, meshes: Meshes, title: str) -> bytes:
     """The page; raises Unusable without trimesh."""
     return to_frame(scene, meshes, title).html.encode()
 
 
-def to_frame(scene: Scene, meshes: Meshes, title: str) -> Framed:
+def to_frame(scene: ShownScene, meshes: Meshes, title: str) -> Framed:
     """The page, to be put into another; raises Unusable without trimesh."""
     library, own = three(), _asset("viewer.js") + _asset("heard.js")
     style = _asset("viewer.css")
@@ -99,7 +99,7 @@ def _asset(name: str) -> str:
     return files(__package__).joinpath(name).read_text("utf-8")
 
 
-def _data(scene: Scene, meshes: Meshes) -> dict[str, Any]:
+def _data(scene: ShownScene, meshes: Meshes) -> dict[str, Any]:
     numbers = {path: at for at, path in enumerate(meshes)}
     return {
         "meshes": [_mesh(it) for it in meshes.values()],

@@ -64,24 +64,24 @@ class ViewedRobot(NamedTuple):
     transforms: Mapping[str, tuple[float, ...]]
 
 
-class Scene(NamedTuple):
+class ShownScene(NamedTuple):
     """The robots, and what a snapshot has of tf."""
 
     robots: tuple[ViewedRobot, ...]
     trees: tuple[HeardTree, ...]
 
 
-def scene_of(plan: FleetPlan, graph: System | None = None) -> Scene:
+def scene_of(plan: FleetPlan, graph: System | None = None) -> ShownScene:
     """The robots; raises as ``load_sdf``."""
     changes = {sources: _changes(plan, sources) for sources in plan.jobs}
     robots = tuple(_robot(it, changes[it.spec.sources], graph) for it in plan.robots)
     if graph is None:
-        return Scene(robots, ())
+        return ShownScene(robots, ())
     frames = [
         LinkFrames(it.name, it.topic, frozenset(f"{it.prefix}{link}" for link in it.model.links))
         for it in robots
     ]
-    return Scene(robots, heard_trees(graph.edges, frames, plan.fleet.naming.shared_frames))
+    return ShownScene(robots, heard_trees(graph.edges, frames, plan.fleet.naming.shared_frames))
 
 
 def _changes(plan: FleetPlan, sources: Sources) -> _Changes:

@@ -15,8 +15,8 @@ from multibot_rewrite.description.checks.poses import HERE, Pose, placed
 from multibot_rewrite.description.checks.rotation import inverse, turned
 from multibot_rewrite.description.checks.sdf_frames import (
     MODEL,
-    Ends,
     Frames,
+    JointEnds,
     Named,
     ends_of,
     named_in,
@@ -70,7 +70,7 @@ def line_of(element: _Element) -> int:
     return cast("int", element.sourceline)
 
 
-def _joint(frames: Frames, ends: Ends, at: dict[str, Pose]) -> Joint:
+def _joint(frames: Frames, ends: JointEnds, at: dict[str, Pose]) -> Joint:
     it = frames.named[ends.joint]
     written = it.element.find("axis/xyz")
     axis = (None if written is None else vector(written.text or "")) or (0.0, 0.0, 1.0)

@@ -18,7 +18,7 @@ from multibot_rewrite.description.checks.numbers import Vector, number
 from multibot_rewrite.description.checks.poses import Pose, pose_of
 from multibot_rewrite.description.checks.rotation import turned
 from multibot_rewrite.description.steps.document import tag_end
-from multibot_rewrite.rules.convert.spans import Text, end_of, end_tag_of
+from multibot_rewrite.rules.convert.spans import Spanned, end_of, end_tag_of
 
 CAPSULE, CYLINDER = b"capsule", b"cylinder"
 HOLDERS = ("visual", "collision")
@@ -38,7 +38,7 @@ def capsules(link: _Element) -> list[tuple[_Element, _Element]]:
     return found
 
 
-def capsule_edits(text: Text, link: _Element) -> tuple[Edit, ...]:
+def capsule_edits(text: Spanned, link: _Element) -> tuple[Edit, ...]:
     """The edits for all capsules of a link; none where one of them means more than its shape."""
     found = capsules(link)
     if not found or not all(_is_plain(text, link, *it) for it in found):
@@ -55,7 +55,7 @@ def ends_of(pose: Pose, length: float) -> tuple[Vector, Vector]:
     return (a + x, b + y, c + z), (a - x, b - y, c - z)
 
 
-def _is_plain(text: Text, link: _Element, shape: _Element, holder: _Element) -> bool:
+def _is_plain(text: Spanned, link: _Element, shape: _Element, holder: _Element) -> bool:
     """Is it a shape and nothing else: nobody may ask for this collision by its name."""
     asked = f"{link.get('name')}_collision".encode() in text.source or holder.get("name")
     if holder.tag == "collision" and asked:
@@ -69,7 +69,7 @@ def _pose(holder: _Element) -> Pose | None:
     return pose_of(next(holder.iterchildren("origin"), None))
 
 
-def _cylinder(text: Text, shape: _Element) -> Iterator[Edit]:
+def _cylinder(text: Spanned, shape: _Element) -> Iterator[Edit]:
     start = text.starts[shape] + 1
     yield Edit(start, start + len(CAPSULE), CYLINDER, None)
     closed = _CLOSED.match(text.source, tag_end(text.source, start - 1))
@@ -77,7 +77,7 @@ def _cylinder(text: Text, shape: _Element) -> Iterator[Edit]:
         yield Edit(closed.start(1), closed.end(1), CYLINDER, None)
 
 
-def _spheres(text: Text, shape: _Element, holder: _Element) -> Iterator[bytes]:
+def _spheres(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes]:
     pose, length = _pose(holder), number(shape.get("length"))
     materials = (
         text.source[text.starts[it] : end_of(text, it)] for it in holder.iterchildren("material")
@@ -90,7 +90,7 @@ def _spheres(text: Text, shape: _Element, holder: _Element) -> Iterator[bytes]:
         yield head + material + f"</{holder.tag}>".encode()
 
 
-def _at_the_end(text: Text, link: _Element, like: _Element, spheres: Sequence[bytes]) -> Edit:
+def _at_the_end(text: Spanned, link: _Element, like: _Element, spheres: Sequence[bytes]) -> Edit:
     """The spheres before the end tag of the link, a line each where the link's end has its own."""
     at = end_tag_of(text, link)
     margin, inner = map(partial(_margin, text.source), (at, text.starts[like]))

@@ -12,7 +12,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.steps.document import Document, attribute_slot, tag_end
 
 
-class Text(NamedTuple):
+class Spanned(NamedTuple):
     """A document, and where its elements start."""
 
     document: Document
@@ -24,12 +24,12 @@ class Text(NamedTuple):
         return self.document.source
 
 
-def text_of(document: Document) -> Text:
+def text_of(document: Document) -> Spanned:
     """The text of a document."""
-    return Text(document, dict(zip(document.elements, document.starts, strict=True)))
+    return Spanned(document, dict(zip(document.elements, document.starts, strict=True)))
 
 
-def end_of(text: Text, element: _Element) -> int:
+def end_of(text: Spanned, element: _Element) -> int:
     """The offset right after an element's end tag."""
     end = tag_end(text.source, text.starts[element])
     if text.source[end - 2 : end] == b"/>":
@@ -37,7 +37,7 @@ def end_of(text: Text, element: _Element) -> int:
     return text.source.index(b">", end_tag_of(text, element)) + 1
 
 
-def end_tag_of(text: Text, element: _Element) -> int:
+def end_tag_of(text: Spanned, element: _Element) -> int:
     """The offset of the end tag of an element that has one."""
     *_, last = element.iter("*")
     start, tag = text.starts[last], f"</{element.tag}".encode()
@@ -51,7 +51,7 @@ def _in_comment(before: bytes) -> bool:
     return before.count(b"<!--") > before.count(b"-->")
 
 
-def renamed(text: Text, element: _Element, name: str, new: str, value: str) -> Edit | None:
+def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -> Edit | None:
     """The edit that gives an attribute another name and value; None where it is not found."""
     slot = _slot(text, element, name)
     if slot is None:
@@ -61,7 +61,7 @@ def renamed(text: Text, element: _Element, name: str, new: str, value: str) -> E
     return Edit(begin, slot[1], f"{new}={quote}{value}".encode(), None)
 
 
-def removed(text: Text, element: _Element, name: str) -> Edit | None:
+def removed(text: Spanned, element: _Element, name: str) -> Edit | None:
     """The edit that takes an attribute out, with the white space before it."""
     slot = _slot(text, element, name)
     if slot is None:
@@ -71,7 +71,7 @@ def removed(text: Text, element: _Element, name: str) -> Edit | None:
     return Edit(before, slot[1] + 1, b"", None)
 
 
-def revalued(text: Text, element: _Element, name: str, value: str) -> Edit | None:
+def revalued(text: Spanned, element: _Element, name: str, value: str) -> Edit | None:
     """The edit that gives an attribute another value, or adds it as the first one."""
     start = text.starts[element]
     if element.get(name) is None:
@@ -81,5 +81,5 @@ def revalued(text: Text, element: _Element, name: str, value: str) -> Edit | Non
     return None if slot is None else Edit(*slot, value.encode(), None)
 
 
-def _slot(text: Text, element: _Element, name: str) -> tuple[int, int] | None:
+def _slot(text: Spanned, element: _Element, name: str) -> tuple[int, int] | None:
     return attribute_slot(text.source, text.starts[element], name, element.get(name, ""))

@@ -17,7 +17,7 @@ from multibot_rewrite.description.checks.rotation import (
     rpy_of,
 )
 from multibot_rewrite.rules.convert.capsules import capsule_edits, capsules, written
-from multibot_rewrite.rules.convert.spans import Text, removed, renamed, revalued
+from multibot_rewrite.rules.convert.spans import Spanned, removed, renamed, revalued
 from multibot_rewrite.rules.schema.versions import OLDEST, Version
 
 # All that URDF 1.0 needs, and what it means where nothing is written differs.
@@ -37,7 +37,7 @@ def rotated_origins(root: _Element) -> Iterator[_Element]:
             yield origin
 
 
-def as_rpy(text: Text, origin: _Element) -> tuple[Edit, ...]:
+def as_rpy(text: Spanned, origin: _Element) -> tuple[Edit, ...]:
     """The edit that writes a quaternion as roll, pitch and yaw; none where they would differ."""
     if origin.get("rpy") is not None:
         return one_rotation(text, origin, "quat_xyzw")
@@ -51,7 +51,7 @@ def as_rpy(text: Text, origin: _Element) -> tuple[Edit, ...]:
     return _one(renamed(text, origin, "quat_xyzw", "rpy", " ".join(map(written, rpy))))
 
 
-def one_rotation(text: Text, origin: _Element, other: str) -> tuple[Edit, ...]:
+def one_rotation(text: Spanned, origin: _Element, other: str) -> tuple[Edit, ...]:
     """The edit that takes one of two rotations out; none where they differ."""
     turn, matrix = quaternion(origin), rolled(origin)
     if turn is None or matrix is None or not is_same(matrix, matrix_of_quaternion(turn)):
@@ -59,7 +59,7 @@ def one_rotation(text: Text, origin: _Element, other: str) -> tuple[Edit, ...]:
     return _one(removed(text, origin, other))
 
 
-def raised(text: Text, version: Version) -> tuple[Edit, ...]:
+def raised(text: Spanned, version: Version) -> tuple[Edit, ...]:
     """The edit that declares a version that reads quaternions, where all of them can be read."""
     root = text.document.root
     capsule = any(capsules(link) for link in root.iterchildren("link"))
@@ -68,7 +68,7 @@ def raised(text: Text, version: Version) -> tuple[Edit, ...]:
     return _one(revalued(text, root, "version", str(version)))
 
 
-def lowered(text: Text) -> tuple[Edit, ...]:
+def lowered(text: Spanned) -> tuple[Edit, ...]:
     """All edits that make a description one of URDF 1.0; none where it would not mean the same."""
     root = text.document.root
     limits = (it for joint in root.iterchildren("joint") for it in joint.iterchildren("limit"))

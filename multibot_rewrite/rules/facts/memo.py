@@ -52,7 +52,7 @@ def _drives_a_joint(claim: Claim) -> bool:
     return claim.site.role == "uses" and claim.site.section != "element joint"
 
 
-class Part(NamedTuple):
+class LinkPart(NamedTuple):
     """A ``<visual>`` or ``<collision>`` of a link: its first ``<geometry>``, and the shape in that."""
 
     link: _Element
@@ -62,7 +62,7 @@ class Part(NamedTuple):
 
 
 @memoized
-def parts(subject: Subject) -> list[Part]:
+def parts(subject: Subject) -> list[LinkPart]:
     """All visuals of links in document order, then all collisions."""
     geometries = subject.elements.first("geometry")
     found = []
@@ -71,7 +71,7 @@ def parts(subject: Subject) -> list[Part]:
         if link is not None and link.tag == "link":
             geometry = geometries.get(element)
             shape = None if geometry is None else _first(geometry)
-            found.append(Part(link, element, geometry, shape))
+            found.append(LinkPart(link, element, geometry, shape))
     return found
 
 

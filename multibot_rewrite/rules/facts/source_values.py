@@ -16,7 +16,7 @@ from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.rules.subject import Subject
 
 if TYPE_CHECKING:
-    from multibot_rewrite.description.sources.trace import Origin
+    from multibot_rewrite.description.sources.trace import WrittenAt
 
 Starts = Mapping[_Element, int]
 _ATTRIBUTE = lazy_compile(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
@@ -63,7 +63,7 @@ def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = 
     return raw is not None and b"$" not in raw
 
 
-def is_argument(sources: Mapping[str, bytes], origin: Origin, attribute: str) -> bool:
+def is_argument(sources: Mapping[str, bytes], origin: WrittenAt, attribute: str) -> bool:
     """Is a value in part what a caller of xacro gives: $(arg ...), or a property that is made of it?"""
     raw = _raw(sources[origin.file], origin.start, attribute) or b""
     for call in origin.calls:

@@ -14,13 +14,13 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.rules.files.plugins import FILTER
-from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
 from multibot_rewrite.rules.places import remark_at
 
 _PACKAGE = "laser_filters"
 _NEEDED = ("name", "type")
 # The number of a filter, or none, with its parts.
-_Filters = Mapping[str, Mapping[str, Given]]
+_Filters = Mapping[str, Mapping[str, Setting]]
 
 
 @rule("MB896", "filter-chain", WARNING, formats=(PARAMS,))
@@ -34,7 +34,7 @@ def broken_chains(file: NamedFile) -> Iterator[Finding]:
 
 
 def _chains(section: Section) -> Mapping[str, _Filters]:
-    found: dict[str, dict[str, dict[str, Given]]] = {}
+    found: dict[str, dict[str, dict[str, Setting]]] = {}
     for it in section.whole.values():
         if part := FILTER.fullmatch(it.name):
             filters = found.setdefault(part["chain"], {})

@@ -18,7 +18,7 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.knowledge.plugin_classes import canonical
 from multibot_rewrite.rules.files.bounds import polygon_of
-from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
 from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.rules.subject import Robots
 
@@ -34,7 +34,7 @@ _TINY = 8.0
 class Size(NamedTuple):
     """How near to the middle the edge of a robot is and how far it reaches, by a parameter."""
 
-    given: Given
+    given: Setting
     inscribed: float
     reach: float
 

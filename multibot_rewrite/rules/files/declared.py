@@ -26,7 +26,7 @@ from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_facts import facts_of_node, of_parameter, of_release
 from multibot_rewrite.rules.files.plugin_names import older_nodes
 from multibot_rewrite.rules.files.plugins import RENAMED
-from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
 from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.system.parameters import Value
 
@@ -57,8 +57,8 @@ def unknown_parameters(file: NamedFile) -> Iterator[Finding]:
 
 
 def _meant_by(
-    section: Section, given: Iterable[Given], release: str
-) -> Iterator[tuple[Given, str]]:
+    section: Section, given: Iterable[Setting], release: str
+) -> Iterator[tuple[Setting, str]]:
     """Each parameter that its node is not known to have, and the one that is probably meant."""
     unknown = [
         it for it in given if not _is_known(section, it) and PARAMETERS not in it.name.split(".")
@@ -105,7 +105,7 @@ def _in_blocks(section: Section, paths: Sequence[str]) -> Iterator[str]:
     yield from (f"{block}.{it}" for block in sorted(blocks) for it in inner if "<" not in it)
 
 
-def _is_known(section: Section, it: Given) -> bool:
+def _is_known(section: Section, it: Setting) -> bool:
     """Has every node such a parameter, or does it hold names?"""
     of_node = section.node is not None and bool(params_at(section.node, it.name, it.key))
     return of_node or _EVERYWHERE.fullmatch(it.name) is not None
@@ -151,7 +151,7 @@ def wrong_types(file: NamedFile) -> Iterator[Finding]:
                 yield remark_at(it.node, message, _other_type(type_, given, it), level)
 
 
-def _is_refused(file: NamedFile, section: Section, it: Given, known: Sequence[Declared]) -> bool:
+def _is_refused(file: NamedFile, section: Section, it: Setting, known: Sequence[Declared]) -> bool:
     """Does every release refuse the value, and is the node's package none of the repository's own? What
     is for a release before Humble is another matter, and what no node gets: a costmap's parameters
     without the namespace that its code gives it."""
@@ -165,7 +165,7 @@ def _is_refused(file: NamedFile, section: Section, it: Given, known: Sequence[De
     return all(_wrong_type(it, found) for found in facts if found)
 
 
-def _wrong_type(it: Given, known: Sequence[Declared]) -> str:
+def _wrong_type(it: Setting, known: Sequence[Declared]) -> str:
     """The type that a value has to be and is not."""
     if it.value is None or it.value == [] or _is_filled_in(it.value):
         return ""
@@ -234,7 +234,7 @@ def below_unknown_names(file: NamedFile) -> Iterator[Finding]:
 
 
 def _for_unknown(
-    section: Section, it: Given, name: str, names: Sequence[str], word: str
+    section: Section, it: Setting, name: str, names: Sequence[str], word: str
 ) -> Finding:
     near = nearest(name, names)
     hint = f"did you mean {near!r}?" if near else "nothing reads it"
@@ -274,7 +274,7 @@ def _is_filled_in(value: Value | None) -> bool:
     return isinstance(value, str) and _CAPITALS.fullmatch(value) is not None
 
 
-def _declared(section: Section, release: str) -> Iterator[tuple[Given, list[Declared]]]:
+def _declared(section: Section, release: str) -> Iterator[tuple[Setting, list[Declared]]]:
     """Each parameter with its declarations in a release: those of its name, else those of a pattern."""
     for it, known in section.known:
         found = [fact for fact in of_release(known, release) if fact.how != READ]
@@ -289,7 +289,7 @@ def _is_misspelt(value: Value | None, facts: Sequence[Declared]) -> bool:
     return isinstance(value, str) and nearest(value, words, MISTYPED) not in ("", value)
 
 
-def _is_of(fact: Declared, it: Given) -> bool:
+def _is_of(fact: Declared, it: Setting) -> bool:
     """Has a value the type of a declaration? An empty list is one of any."""
     type_ = _expected(fact.type)
     if it.value == []:
@@ -314,7 +314,7 @@ def _article(type_: str) -> str:
     return f"{'an' if type_.startswith('int') else 'a'} {type_}"
 
 
-def _other_type(type_: str, given: str, it: Given) -> str:
+def _other_type(type_: str, given: str, it: Setting) -> str:
     if type_ == "double" and given == "int":
         return f"write {it.value}.0"
     if type_.startswith("double_array") and given == "int_array" and isinstance(it.value, list):

@@ -21,7 +21,7 @@ from multibot_rewrite.knowledge.declared import DEMANDED
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.rules.files.parameter_facts import of_release
-from multibot_rewrite.rules.files.section_facts import Given, Section, filled, sections
+from multibot_rewrite.rules.files.section_facts import Section, Setting, filled, sections
 from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.system.parameters import Value
 
@@ -35,7 +35,7 @@ class Demand(NamedTuple):
     ``releases`` where not all have it."""
 
     section: Section
-    given: Given
+    given: Setting
     check: str
     words: tuple[str, ...]
     source: str

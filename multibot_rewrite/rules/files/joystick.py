@@ -13,7 +13,7 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.rules.files.section_facts import Given, sections
+from multibot_rewrite.rules.files.section_facts import Setting, sections
 from multibot_rewrite.rules.places import remark_at
 
 _NODE = "joy_teleop"
@@ -32,7 +32,7 @@ _FIELDS = {
 }
 _NAMES = (word for _, name, starts in _TYPES.values() for word in (name, *starts))
 _WORDS = frozenset(("type", "interface_type", *_NAMES))
-_Values = Mapping[str, Given]
+_Values = Mapping[str, Setting]
 
 
 @rule("MB897", "joystick-command", ERROR, formats=(PARAMS,))
@@ -41,7 +41,7 @@ def broken_commands(file: NamedFile) -> Iterator[Finding]:
     for section in sections(file):
         if section.node is None or section.node.name != _NODE:
             continue
-        commands: dict[str, dict[str, Given]] = {}
+        commands: dict[str, dict[str, Setting]] = {}
         for it in section.given:
             name, dot, rest = it.name.partition(".")
             if dot and name != "qos_overrides":

@@ -22,7 +22,7 @@ from multibot_rewrite.description.checks.numbers import value_of
 from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules.description.structure.shared import BOUNDED
-from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
 from multibot_rewrite.rules.places import remark, remark_at
 from multibot_rewrite.rules.subject import Robots, Subject
 
@@ -91,7 +91,7 @@ def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> 
         yield remark_at(it.key, message, did_you_mean(joint, there) or "correct the name")
 
 
-def _is_asked(section: Section, it: Given, what: str) -> bool:
+def _is_asked(section: Section, it: Setting, what: str) -> bool:
     """Positions count wherever they are, a velocity where it is switched on."""
     flag = section.whole.get(it.name.removesuffix(what) + "has_velocity_limits")
     return what != "max_velocity" or (flag is not None and flag.value is True)

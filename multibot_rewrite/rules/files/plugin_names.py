@@ -35,7 +35,7 @@ from multibot_rewrite.knowledge.plugin_classes import (
 from multibot_rewrite.producers.evidence.claims import TYPE
 from multibot_rewrite.rules.files.demands import Demand, demands
 from multibot_rewrite.rules.files.given import is_set_beside
-from multibot_rewrite.rules.files.section_facts import Given, sections
+from multibot_rewrite.rules.files.section_facts import Setting, sections
 from multibot_rewrite.rules.places import remark_at
 
 _CONTROLLER = "controller_interface::ControllerInterface"
@@ -74,7 +74,7 @@ def classes_of_other_releases(file: NamedFile) -> list[str]:
     return [name for name, releases in words if releases and not has_release(releases, release)]
 
 
-def _named_classes(file: NamedFile) -> Iterator[tuple[Demand, Given, str]]:
+def _named_classes(file: NamedFile) -> Iterator[tuple[Demand, Setting, str]]:
     """The classes that a file names for pluginlib, each with its place and what asks for it."""
     for it in demands(file, "class", "classes"):
         for given in [it.given] if it.check == "class" else _plugins(it):
@@ -90,13 +90,13 @@ def _package(class_: str) -> str:
     return canonical(class_).partition("::")[0]
 
 
-def _plugins(it: Demand) -> Iterator[Given]:
+def _plugins(it: Demand) -> Iterator[Setting]:
     """NAME.plugin of each word of a list."""
     found = (it.section.whole.get(f"{it.section.at}{word}.plugin") for word in words_of(it.given))
     return (given for given in found if given)
 
 
-def words_of(given: Given) -> list[str]:
+def words_of(given: Setting) -> list[str]:
     """The words of a list, or of a text."""
     value = given.value
     return [str(word) for word in value] if isinstance(value, list) else str(value or "").split()

@@ -35,7 +35,7 @@ ASKED = "asked"
 _FLOAT = "tag:yaml.org,2002:float"
 
 
-class Given(NamedTuple):
+class Setting(NamedTuple):
     """A parameter of a section: its dotted name, its key, and its value where rcl reads one."""
 
     name: str
@@ -50,10 +50,10 @@ class Section(NamedTuple):
 
     title: str
     node: KnownNode | None
-    given: tuple[Given, ...]
+    given: tuple[Setting, ...]
     facts: tuple[Declared, ...]
-    known: tuple[tuple[Given, tuple[Declared, ...]], ...]
-    whole: Mapping[str, Given]
+    known: tuple[tuple[Setting, tuple[Declared, ...]], ...]
+    whole: Mapping[str, Setting]
     at: str = ""
 
 
@@ -100,16 +100,16 @@ def _of_moveit(file: NamedFile) -> Iterator[Section]:
     yield _section(node.name, node, given, facts, _by_name(given))
 
 
-def _by_name(given: Sequence[Given]) -> Mapping[str, Given]:
+def _by_name(given: Sequence[Setting]) -> Mapping[str, Setting]:
     return {it.name: it for it in given}
 
 
 def _section(
     title: str,
     node: KnownNode | None,
-    given: tuple[Given, ...],
+    given: tuple[Setting, ...],
     facts: tuple[Declared, ...],
-    whole: Mapping[str, Given],
+    whole: Mapping[str, Setting],
     at: str = "",
 ) -> Section:
     exact: dict[str, list[Declared]] = {}
@@ -124,14 +124,14 @@ def _section(
 
 
 def _asked(
-    known: Sequence[tuple[Given, tuple[Declared, ...]]], whole: Mapping[str, Given], at: str
-) -> Iterator[tuple[Given, tuple[Declared, ...]]]:
+    known: Sequence[tuple[Setting, tuple[Declared, ...]]], whole: Mapping[str, Setting], at: str
+) -> Iterator[tuple[Setting, tuple[Declared, ...]]]:
     """Without what is not read with the value of another parameter."""
     for it, facts in known:
         yield it, tuple(fact for fact in facts if _is_read(fact, it.name, whole, at))
 
 
-def _is_read(fact: Declared, name: str, whole: Mapping[str, Given], at: str) -> bool:
+def _is_read(fact: Declared, name: str, whole: Mapping[str, Setting], at: str) -> bool:
     for check, text in fact.checks if ASKED in fact.bounds else ():
         if check == ASKED:
             other, value = filled(text, fact.path, name)
@@ -156,12 +156,12 @@ def _matching(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Decla
 
 
 def _of_plugins(
-    title: str, given: Sequence[Given], whole: Mapping[str, Given]
-) -> tuple[list[Section], tuple[Given, ...]]:
+    title: str, given: Sequence[Setting], whole: Mapping[str, Setting]
+) -> tuple[list[Section], tuple[Setting, ...]]:
     """A section for each known plugin, with names below its own; and what is no plugin's. Nobody knows
     what an unknown plugin declares."""
     plugins = plugins_in({it.name: it.value for it in given})
-    of: dict[str, list[Given]] = {}
+    of: dict[str, list[Setting]] = {}
     for it in given:
         parts = it.name.split(".")
         above = (".".join(parts[:end]) for end in range(len(parts) - 1, 0, -1))
@@ -174,7 +174,7 @@ def _of_plugins(
     return found, tuple(rest)
 
 
-def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Given]) -> bool:
+def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Setting]) -> bool:
     """Is it this controller, not another one that is often called the same?"""
     if not node.facts.types or type_ in node.facts.types:
         return True
@@ -183,13 +183,13 @@ def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Given]) -
     return "/" not in type_ and (name == node.name or by_words)
 
 
-def _given(document: YamlText, body: yaml.Node, above: str) -> Iterator[Given]:
+def _given(document: YamlText, body: yaml.Node, above: str) -> Iterator[Setting]:
     for key, value in pairs(body):
         name = f"{above}{key.value}"
         if below := names_below(value):
             yield from _given(document, below, f"{name}.")
         else:
-            yield Given(name, key, value, _value(document, value))
+            yield Setting(name, key, value, _value(document, value))
 
 
 def _tagged(node: yaml.Node, value: Value | None) -> Value | None:

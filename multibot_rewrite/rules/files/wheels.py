@@ -28,7 +28,7 @@ from multibot_rewrite.rules.facts.drives import (
     separation,
     wheel_of,
 )
-from multibot_rewrite.rules.files.section_facts import Given, Section, sections
+from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
 from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Robots, Subject, subject_of
@@ -37,7 +37,7 @@ CONTROLLER = "diff_drive_controller"
 LEFT, _RIGHT = "left_wheel_names", "right_wheel_names"
 _LIMITS = "joint_limits"
 _SEPARATION, _RADIUS = "wheel_separation", "wheel_radius"
-_Values = Mapping[str, Given]
+_Values = Mapping[str, Setting]
 
 
 def with_description(file: NamedFile, description: Document) -> NamedFile:
@@ -80,7 +80,7 @@ def _faults(subject: Subject, section: Section) -> list[Finding] | None:
     ]
 
 
-def _wheels(subject: Subject, given: Given | None) -> list[Wheel]:
+def _wheels(subject: Subject, given: Setting | None) -> list[Wheel]:
     names = given.value if given and isinstance(given.value, list) else []
     found = [wheel_of(subject, str(it), None) for it in names]
     known = [it for it in found if it is not None]

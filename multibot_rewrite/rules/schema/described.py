@@ -17,7 +17,7 @@ WORDS = "words"
 _VERSION = lazy_compile(r"\d+\.\d+")
 
 
-class Row(NamedTuple):
+class SdfRow(NamedTuple):
     """What SDF says of an attribute or element.
 
     ``line`` is where, ``section`` has what is below it. The value is ``low`` to ``high``. It is read
@@ -35,12 +35,12 @@ class Row(NamedTuple):
     high: float | None = None
 
 
-class Described(NamedTuple):
+class SdfPart(NamedTuple):
     """A section: its name, the words behind it, its rows by name, the names that are required."""
 
     name: str
     words: tuple[str, ...]
-    rows: Mapping[str, tuple[Row, ...]]
+    rows: Mapping[str, tuple[SdfRow, ...]]
     needed: tuple[str, ...]
 
 
@@ -57,30 +57,30 @@ def chunks() -> Mapping[str, str]:
 
 
 @lru_cache(maxsize=512)
-def described(name: str) -> Described | None:
+def described(name: str) -> SdfPart | None:
     """The section of that name."""
     text = chunks().get(name)
     if text is None:
         return None
     head, *lines = text.splitlines()
-    rows: dict[str, tuple[Row, ...]] = {}
+    rows: dict[str, tuple[SdfRow, ...]] = {}
     for row in _rows(lines):
         rows[row.name] = (*rows.get(row.name, ()), row)
     needed = tuple(it for it, its in rows.items() if any(row.required for row in its))
-    return Described(name, tuple(head.partition("]")[2].split()), rows, needed)
+    return SdfPart(name, tuple(head.partition("]")[2].split()), rows, needed)
 
 
-def _rows(lines: Iterable[str]) -> Iterator[Row]:
+def _rows(lines: Iterable[str]) -> Iterator[SdfRow]:
     for words in (line.partition(" =")[0].split() for line in lines):
         if words:
             name, type_, *rest = words
-            row = Row(name, type_, rest[0] if rest else type_)
+            row = SdfRow(name, type_, rest[0] if rest else type_)
             for word in rest[1:]:
                 row = _with(row, word)
             yield row
 
 
-def _with(row: Row, word: str) -> Row:
+def _with(row: SdfRow, word: str) -> SdfRow:
     """A row with what one word behind its line says: a range of numbers or of versions."""
     if word[0] == ">":
         return row._replace(section=word[1:])

@@ -18,7 +18,7 @@ from multibot_rewrite.rules.schema.sections import (
     ROBOT,
     Kind,
     Schema,
-    Section,
+    UrdfPart,
     is_own,
     schema,
     section_of,
@@ -122,7 +122,7 @@ def _with_odd_values(
     return found
 
 
-def _attributes(element: etree._Element, section: Section, version: Version) -> Iterator[Problem]:
+def _attributes(element: etree._Element, section: UrdfPart, version: Version) -> Iterator[Problem]:
     """All faults of an element's attributes."""
     keys = [str(key) for key in element.attrib]
     yield from _unknown_attributes(element, section, keys)
@@ -140,7 +140,7 @@ def _attributes(element: etree._Element, section: Section, version: Version) -> 
 
 
 def _unknown_attributes(
-    element: etree._Element, section: Section, keys: Sequence[str]
+    element: etree._Element, section: UrdfPart, keys: Sequence[str]
 ) -> Iterator[Problem]:
     """Attributes that are missing, and those that no parser knows."""
     known = section.attributes
@@ -167,7 +167,7 @@ def _unknown_attributes(
         yield fault("missing", element, None, f"<{element.tag}> has no {names}")
 
 
-def _children(element: etree._Element, section: Section, schema: Schema) -> Iterator[Problem]:
+def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Iterator[Problem]:
     """Children that are missing, repeated, or that no parser knows, or not yet."""
     known = section.children
     tags = [child.tag for child in element.iterchildren("*")]
@@ -195,7 +195,7 @@ def _children(element: etree._Element, section: Section, schema: Schema) -> Iter
 def _unknown_child(
     element: etree._Element,
     child: etree._Element,
-    section: Section,
+    section: UrdfPart,
     schema: Schema,
     meant: str,
 ) -> Iterator[Problem]:
@@ -218,7 +218,7 @@ def _unknown_child(
         yield fault("not-read", child, None, message)
 
 
-def _repeated(element: etree._Element, section: Section, count: Counter[str]) -> Iterator[Problem]:
+def _repeated(element: etree._Element, section: UrdfPart, count: Counter[str]) -> Iterator[Problem]:
     """Children that are read once and come again with other content."""
     for tag, times in count.items():
         child = section.children.get(tag)
@@ -235,7 +235,7 @@ def _canonical(element: etree._Element) -> bytes:
     return etree.tostring(element, method="c14n", with_tail=False)
 
 
-def _shapes(element: etree._Element, section: Section) -> Iterator[Problem]:
+def _shapes(element: etree._Element, section: UrdfPart) -> Iterator[Problem]:
     """Shapes after the first one of a geometry."""
     known = [tag for tag, child in section.children.items() if child.times == "either"]
     shapes = list(element.iterchildren(*known)) if known else []

@@ -20,7 +20,7 @@ from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.checks.problem import Problem, fault
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.schema.described import WORDS, Described, Row, chunks, described
+from multibot_rewrite.rules.schema.described import WORDS, SdfPart, SdfRow, chunks, described
 from multibot_rewrite.rules.schema.sdf_values import QUATERNION, TURN, misread, number_in
 from multibot_rewrite.rules.schema.sections import is_own
 from multibot_rewrite.rules.schema.values import shortened
@@ -90,7 +90,7 @@ def _by_reader(found: tuple[Problem, ...], root: _Element, release: str) -> tupl
     return tuple(it._replace(level=_MILD.get(it.code, it.level)) for it in found)
 
 
-def _block(block: _Element, robot: Robot, version: Version, taken: Described) -> Iterator[Problem]:
+def _block(block: _Element, robot: Robot, version: Version, taken: SdfPart) -> Iterator[Problem]:
     name = block.get("reference", "")
     if name and name not in robot.link and name not in robot.joint:
         return  # MB202 reports it
@@ -105,7 +105,7 @@ def _block(block: _Element, robot: Robot, version: Version, taken: Described) ->
             yield from _child(child, home, known, version, taken.rows)
 
 
-def _taken(child: _Element, row: Row, home: str) -> Iterator[Problem]:
+def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
     """A tag that the converter itself reads."""
     at = "value" if child.get("value") else ""
     text = child.get("value") or text_of(child)
@@ -133,7 +133,7 @@ def _belongs(tag: str) -> tuple[str, ...]:
 
 
 def _child(
-    child: _Element, home: str, known: Described, version: Version, also: Mapping[str, object]
+    child: _Element, home: str, known: SdfPart, version: Version, also: Mapping[str, object]
 ) -> Iterator[Problem]:
     """One child of an element whose section is ``known``; ``also`` are further tags it may have."""
     tag = str(child.tag)
@@ -173,7 +173,7 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Prob
         yield from _child(child, str(element.tag), known, version, {})
 
 
-def _missing(element: _Element, known: Described, version: Version) -> Iterator[Problem]:
+def _missing(element: _Element, known: SdfPart, version: Version) -> Iterator[Problem]:
     """Attributes without which sdformat refuses the model; those of plugins depend on the release."""
     for name in known.needed:
         if name[0] == "@" and not element.get(name[1:], "").strip():
@@ -182,7 +182,7 @@ def _missing(element: _Element, known: Described, version: Version) -> Iterator[
                 yield fault("missing", element, None, f"<{element.tag}> has no {name[1:]!r}")
 
 
-def _of_version(rows: tuple[Row, ...], version: Version) -> Row:
+def _of_version(rows: tuple[SdfRow, ...], version: Version) -> SdfRow:
     """The row of a version; one of an older version that is converted; else the first later one."""
     if len(rows) == 1:
         return rows[0]
@@ -191,7 +191,7 @@ def _of_version(rows: tuple[Row, ...], version: Version) -> Row:
 
 
 def _value(
-    element: _Element, at: str, row: Row, text: str, known: Described, version: Version
+    element: _Element, at: str, row: SdfRow, text: str, known: SdfPart, version: Version
 ) -> Iterator[Problem]:
     """What is wrong with a value: of the attribute ``at``, or the text."""
     text = text.strip()
@@ -220,7 +220,7 @@ def _named(element: _Element, at: str) -> str:
     return f"{element.tag}@{at}" if at else f"<{element.tag}>"
 
 
-def _degrees(element: _Element, at: str, row: Row, text: str) -> Iterator[Problem]:
+def _degrees(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Problem]:
     """An angle of more than a turn; a pose may say that its are in degrees, or be a quaternion."""
     if element.get("degrees", "").lower() in ("true", "1") or element.get("rotation_format"):
         return
@@ -231,7 +231,7 @@ def _degrees(element: _Element, at: str, row: Row, text: str) -> Iterator[Proble
         yield fault("degrees", element, at, message, f"{worst:g} degrees are {radians(worst):.4g}")
 
 
-def _range(element: _Element, at: str, row: Row, text: str) -> Iterator[Problem]:
+def _range(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Problem]:
     value = number_in(text)
     if value is None:
         return
@@ -244,7 +244,7 @@ def _range(element: _Element, at: str, row: Row, text: str) -> Iterator[Problem]
         yield fault("range", element, at, f"{_where(element, at, text)} {message}", hint)
 
 
-def _in_radians(row: Row, value: float) -> str:
+def _in_radians(row: SdfRow, value: float) -> str:
     """The hint for an angle that was written in degrees."""
     is_angle = ("fov" in row.name or "angle" in row.name) and value > tau
     return f"{value:g} degrees are {radians(value):.4g} radians" if is_angle else ""
@@ -285,7 +285,7 @@ def _is_folded(name: str) -> bool:
 
 
 def _unknown(
-    child: _Element, known: Described, home: str, also: Mapping[str, object]
+    child: _Element, known: SdfPart, home: str, also: Mapping[str, object]
 ) -> Iterator[Problem]:
     tag = str(child.tag)
     if tag in READ_BESIDES:
@@ -303,7 +303,7 @@ def _unknown(
         yield fault("misplaced" if homes else "not-read", child, None, message, hint)
 
 
-def _beside(child: _Element, known: Described) -> tuple[str, ...]:
+def _beside(child: _Element, known: SdfPart) -> tuple[str, ...]:
     """The elements beside it that have such a child."""
     parent, found = child.getparent(), []
     for it in parent.iterchildren("*") if parent is not None else ():
@@ -324,7 +324,7 @@ def _homes(tag: str) -> tuple[str, ...]:
     return tuple(sorted(found)) if 0 < len(found) <= 3 else ()
 
 
-def _unknown_attribute(element: _Element, key: str, known: Described) -> Iterator[Problem]:
+def _unknown_attribute(element: _Element, key: str, known: SdfPart) -> Iterator[Problem]:
     free = [it[1:] for it in known.rows if it[0] == "@" and it[1:] not in element.attrib]
     near = nearest(key, free)
     if near:

@@ -50,7 +50,7 @@ class Child(NamedTuple):
     since: Version = OLDEST
 
 
-class Section(NamedTuple):
+class UrdfPart(NamedTuple):
     """One element of the schema.
 
     ``later`` are the attributes (``@name``) and children that only later versions read.
@@ -68,7 +68,7 @@ class Schema(NamedTuple):
     child (``parents``)."""
 
     version: Version
-    sections: Mapping[str, Section]
+    sections: Mapping[str, UrdfPart]
     tags: frozenset[str]
     parents: frozenset[str]
 
@@ -83,11 +83,11 @@ def schema(version: Version) -> Schema:
 
 
 @lru_cache
-def _all_sections() -> Mapping[str, Section]:
+def _all_sections() -> Mapping[str, UrdfPart]:
     return _sections(table_text(_FILE).splitlines())
 
 
-def _of_version(section: Section, version: Version) -> Section:
+def _of_version(section: UrdfPart, version: Version) -> UrdfPart:
     """A section as a version has it: what comes later has no type, nothing in it is checked."""
     attributes = {key: _kind_of_version(it, version) for key, it in section.attributes.items()}
     children = {
@@ -103,12 +103,12 @@ def _kind_of_version(kind: Kind, version: Version) -> Kind:
     return kind._replace(type="", instead_of="") if kind.since > version else kind
 
 
-def _needs_a_child(section: Section) -> bool:
+def _needs_a_child(section: UrdfPart) -> bool:
     return any(it.times == "required" for it in section.children.values())
 
 
-def _sections(lines: Iterable[str]) -> Mapping[str, Section]:
-    found: dict[str, Section] = {}
+def _sections(lines: Iterable[str]) -> Mapping[str, UrdfPart]:
+    found: dict[str, UrdfPart] = {}
     attributes: dict[str, Kind] = {}
     children: dict[str, Child] = {}
     name = ""
@@ -116,7 +116,7 @@ def _sections(lines: Iterable[str]) -> Mapping[str, Section]:
         head, *words = line.partition("#")[0].split() or [""]
         if head.startswith("["):
             name, attributes, children = head.strip("[]"), {}, {}
-            found[name] = Section(name, attributes, children, False)
+            found[name] = UrdfPart(name, attributes, children, False)
         elif head == "text":
             found[name] = found[name]._replace(text=True)
         elif head.startswith("@"):
@@ -161,7 +161,7 @@ def is_own(name: object) -> bool:
     return isinstance(name, str) and "{" not in name and ":" not in name
 
 
-def section_of(element: etree._Element, known: Schema) -> Section | None:
+def section_of(element: etree._Element, known: Schema) -> UrdfPart | None:
     """The section of a schema that an element of a document belongs to."""
     parent = element.getparent()
     path = [element]

@@ -29,7 +29,7 @@ _CHANGE = "/change_state"
 _Key = tuple[str, str, str, str]
 
 
-class Made(NamedTuple):
+class MadeOf(NamedTuple):
     """What a robot is made of, by names without its own: its nodes, and their ends by key."""
 
     nodes: Mapping[str, str]
@@ -59,9 +59,9 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
 
 
 @once
-def made_of(seen: Index) -> Mapping[str, Made]:
+def made_of(seen: Index) -> Mapping[str, MadeOf]:
     """What each robot is made of."""
-    return {robot: Made(own, _ends(seen, own)) for robot, own in nodes_of_each(seen).items()}
+    return {robot: MadeOf(own, _ends(seen, own)) for robot, own in nodes_of_each(seen).items()}
 
 
 @once
@@ -105,7 +105,7 @@ def _are_alike(one: Set[str], other: Set[str]) -> bool:
 
 
 def _lost_nodes(
-    seen: Index, made: Mapping[str, Made], robot: str, likes: Sequence[str], lost: Sequence[str]
+    seen: Index, made: Mapping[str, MadeOf], robot: str, likes: Sequence[str], lost: Sequence[str]
 ) -> Iterator[Finding]:
     """All of one robot in one finding."""
     like = next(it for it in likes if it != robot)
@@ -123,7 +123,7 @@ def _lost_nodes(
 
 
 def _lost_ends(
-    seen: Index, made: Mapping[str, Made], robot: str, likes: Sequence[str], gone: Iterable[_Key]
+    seen: Index, made: Mapping[str, MadeOf], robot: str, likes: Sequence[str], gone: Iterable[_Key]
 ) -> Iterator[Finding]:
     """Those of a node in one finding."""
     like = next(it for it in likes if it != robot)
@@ -146,7 +146,7 @@ def _lost_ends(
 
 
 def _waiting(
-    seen: Index, made: Mapping[str, Made], robot: str, keys: Sequence[_Key]
+    seen: Index, made: Mapping[str, MadeOf], robot: str, keys: Sequence[_Key]
 ) -> tuple[str, ...]:
     """The names of the robot whose other side is in it, and has nobody but what it lacks."""
     sides = {(kind, _OTHER_SIDE[role], name): role for _, kind, role, name in keys}

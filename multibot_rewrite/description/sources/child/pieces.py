@@ -2,7 +2,7 @@
 """Texts that know where they were written: what xacro makes of them, piece by piece.
 
 A value of an expansion is put together from what stands in an element, a property, the call of a macro,
-an argument or a YAML file. While xacro runs, each of these is a ``Written``: a str with its pieces.
+an argument or a YAML file. While xacro runs, each of these is a ``PiecedText``: a str with its pieces.
 What an expression makes in any other way is a piece that has only the place of the expression.
 
 Source: xacro 2.1.1 __init__.py (``eval_text``, ``grab_macro``, ``load_yaml``), substitution_args.py.
@@ -23,7 +23,7 @@ GIVEN = -1
 TEXT_NODE = "#"
 
 
-class Place(NamedTuple):
+class Spot(NamedTuple):
     """Where a piece was written: the file's number, or GIVEN for an argument of the caller; the
     element's; the attribute, ``#0`` for the first text in it; the offset there, in characters.
     ``length`` is that of an expression whose result the piece is, 0 for a piece that stands there as it
@@ -40,16 +40,16 @@ class Piece(NamedTuple):
     """So many characters of a text, and their place."""
 
     length: int
-    place: Place | None
+    place: Spot | None
 
 
-class Written(str):
+class PiecedText(str):
     """A text and its pieces, as long as it is together."""
 
     __slots__ = ("pieces",)
     pieces: tuple[Piece, ...]
 
-    def __new__(cls, text: str, pieces: Iterable[Piece]) -> Written:
+    def __new__(cls, text: str, pieces: Iterable[Piece]) -> PiecedText:
         self = super().__new__(cls, text)
         self.pieces = tuple(pieces)
         return self
@@ -57,41 +57,41 @@ class Written(str):
     def __str__(self) -> str:
         return self
 
-    def __deepcopy__(self, _: object) -> Written:
+    def __deepcopy__(self, _: object) -> PiecedText:
         return self
 
-    def __add__(self, other: str) -> Written:
+    def __add__(self, other: str) -> PiecedText:
         return joined((self, other))
 
-    def __radd__(self, other: str) -> Written:
+    def __radd__(self, other: str) -> PiecedText:
         return joined((other, self))
 
-    def __getitem__(self, key: SupportsIndex | slice) -> Written:
+    def __getitem__(self, key: SupportsIndex | slice) -> PiecedText:
         text = str.__getitem__(self, key)
         index = range(len(self))[key]
         if isinstance(index, int):
             index = range(index, index + 1)
         if index.step != 1:
-            return Written(text, pieces_of(text))
-        return Written(text, _cut(self.pieces, index.start, index.stop))
+            return PiecedText(text, pieces_of(text))
+        return PiecedText(text, _cut(self.pieces, index.start, index.stop))
 
 
 def pieces_of(text: str) -> tuple[Piece, ...]:
     """The pieces of a text, which may know of none."""
-    if isinstance(text, Written):
+    if isinstance(text, PiecedText):
         return text.pieces
     return (Piece(len(text), None),) if text else ()
 
 
-def joined(texts: Sequence[str]) -> Written:
+def joined(texts: Sequence[str]) -> PiecedText:
     """One text of several."""
     pieces = (piece for text in texts for piece in pieces_of(text))
-    return Written("".join(texts), _merged(pieces))
+    return PiecedText("".join(texts), _merged(pieces))
 
 
-def placed(text: str, place: Place) -> Written:
+def placed(text: str, place: Spot) -> PiecedText:
     """A text that stands as it is at a place."""
-    return Written(text, [Piece(len(text), place)] if text else ())
+    return PiecedText(text, [Piece(len(text), place)] if text else ())
 
 
 def _cut(pieces: Iterable[Piece], start: int, end: int) -> Iterator[Piece]:
@@ -103,7 +103,7 @@ def _cut(pieces: Iterable[Piece], start: int, end: int) -> Iterator[Piece]:
         at += piece.length
 
 
-def _moved(place: Place | None, by: int) -> Place | None:
+def _moved(place: Spot | None, by: int) -> Spot | None:
     """The place of what follows so many characters of a piece; an expression has one place."""
     return place._replace(at=place.at + by) if place and not place.length else place
 
@@ -134,20 +134,20 @@ def tracking(
 
     def construct(loader: Any, node: Any) -> str:
         at = node.start_mark.index + (node.style in ("'", '"'))
-        return placed(scalar(loader, node), Place(number(xacro.filestack[-1]), 0, "", at))
+        return placed(scalar(loader, node), Spot(number(xacro.filestack[-1]), 0, "", at))
 
     yaml.SafeLoader.add_constructor("tag:yaml.org,2002:str", construct)
-    return {name: placed(text, Place(GIVEN, 0, name, 0)) for name, text in arguments.items()}
+    return {name: placed(text, Spot(GIVEN, 0, name, 0)) for name, text in arguments.items()}
 
 
 def note(document: Any, number: int) -> None:
     """Give the texts of a file that was just parsed their places; ``number`` is that of the file."""
     for at, element in enumerate(document.getElementsByTagName("*")):
         for name, value in element.attributes.items():
-            element.getAttributeNode(name).value = placed(value, Place(number, at, name, 0))
+            element.getAttributeNode(name).value = placed(value, Spot(number, at, name, 0))
         texts = [it for it in element.childNodes if it.nodeType == Node.TEXT_NODE]
         for which, it in enumerate(texts):
-            it.data = placed(it.data, Place(number, at, f"{TEXT_NODE}{which}", 0))
+            it.data = placed(it.data, Spot(number, at, f"{TEXT_NODE}{which}", 0))
 
 
 def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
@@ -193,7 +193,7 @@ def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
 
 def _as_text(value: object, part: str) -> str:
     text = str(value)
-    return text if isinstance(text, Written) else Written(text, [Piece(len(text), _of(part))])
+    return text if isinstance(text, PiecedText) else PiecedText(text, [Piece(len(text), _of(part))])
 
 
 def _known(value: Any, part: str) -> Any:
@@ -208,10 +208,10 @@ def _known(value: Any, part: str) -> Any:
             piece if piece.place else Piece(piece.length, _quoted(text, part) or _of(part))
         )
         at += piece.length
-    return Written(value, pieces)
+    return PiecedText(value, pieces)
 
 
-def _quoted(text: str, part: str) -> Place | None:
+def _quoted(text: str, part: str) -> Spot | None:
     """Where a text stands in quotes, if that is in one place."""
     found = [
         part.find(f"{quote}{text}{quote}")
@@ -224,7 +224,7 @@ def _quoted(text: str, part: str) -> Place | None:
     return place._replace(at=place.at + found[0] + 1, length=0)
 
 
-def _of(part: str) -> Place | None:
+def _of(part: str) -> Spot | None:
     """The place of an expression that stands as it is somewhere."""
     pieces = pieces_of(part)
     whole = len(pieces) == 1 and pieces[0].place

@@ -14,7 +14,7 @@ from multibot_rewrite.description.checks.poses import quaternion
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.rotation import length_of
 from multibot_rewrite.rules.convert.capsules import capsule_edits, capsules
-from multibot_rewrite.rules.convert.spans import Text, text_of
+from multibot_rewrite.rules.convert.spans import Spanned, text_of
 from multibot_rewrite.rules.convert.versions import (
     as_rpy,
     lowered,
@@ -163,7 +163,7 @@ def _reads(subject: Subject) -> Version:
 
 
 @memoized
-def _text(subject: Subject) -> Text:
+def _text(subject: Subject) -> Spanned:
     return text_of(subject.document)
 
 

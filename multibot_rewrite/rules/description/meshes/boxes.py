@@ -16,7 +16,7 @@ from multibot_rewrite.description.checks.numbers import vector
 from multibot_rewrite.description.checks.poses import minus
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.shapes import Extent
-from multibot_rewrite.rules.description.meshes.lookup import Lookup, lookups
+from multibot_rewrite.rules.description.meshes.lookup import MeshFile, lookups
 from multibot_rewrite.rules.description.meshes.shared import used_files
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
@@ -49,7 +49,7 @@ def _paths(subject: Subject) -> Mapping[str, str]:
     return found | {it.name: it.path for it in direct}
 
 
-def _on_disk(it: Lookup) -> str:
+def _on_disk(it: MeshFile) -> str:
     paths = (os.path.join(folder, it.found) for folder in it.folders)
     return next(filter(is_file, paths), "")
 

@@ -31,7 +31,7 @@ _INSTALLED = lazy_compile(
 )
 
 
-class Lookup(NamedTuple):
+class MeshFile(NamedTuple):
     """A file that was looked for: the folders it may be below, its path there, and the path as it
     is on the disk, empty where it does not exist."""
 
@@ -42,7 +42,7 @@ class Lookup(NamedTuple):
 
 
 @memoized
-def lookups(subject: Subject) -> tuple[Lookup, ...]:
+def lookups(subject: Subject) -> tuple[MeshFile, ...]:
     """Each file that can be looked for once, by the first element that names it."""
     file, roots = subject.document.file.removesuffix(EXPANDED), subject.settings.roots
     first = {it.name: it for it in reversed(used_files(subject)) if it.scheme in ("package", "")}
@@ -51,14 +51,14 @@ def lookups(subject: Subject) -> tuple[Lookup, ...]:
     return tuple(_looked_up(it, *_where(it, file, folders_of)) for it in asked)
 
 
-def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
+def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> MeshFile:
     if not folders:
-        return Lookup(it, folders, path, "")
+        return MeshFile(it, folders, path, "")
     found = [find_in(folder, path) for folder in folders]
     exact = os.path.normpath(path)
     if not any(found) and it.scheme == "package" and any(_installs(at, exact) for at in folders):
-        return Lookup(it, folders, path, exact)
-    return Lookup(it, folders, path, exact if exact in found else next(filter(None, found), ""))
+        return MeshFile(it, folders, path, exact)
+    return MeshFile(it, folders, path, exact if exact in found else next(filter(None, found), ""))
 
 
 def _installs(folder: str, path: str) -> bool:
@@ -111,7 +111,7 @@ def _may_be_the_package(names: frozenset[str], first: str) -> bool:
 @rule("MB701", "mesh-missing", ERROR)
 def mesh_missing(subject: Subject) -> Iterator[Problem]:
     """Files of packages that were found, and relative ones."""
-    lost: dict[tuple[str, ...], list[Lookup]] = {}
+    lost: dict[tuple[str, ...], list[MeshFile]] = {}
     for it in lookups(subject):
         if it.folders and not it.found and not _elsewhere(subject, it):
             lost.setdefault(_missing_folder(it) or (it.path,), []).append(it)
@@ -126,7 +126,7 @@ def mesh_missing(subject: Subject) -> Iterator[Problem]:
         yield problem(first.used, message, hint)._replace(level="" if sure else WARNING)
 
 
-def _missing_folder(it: Lookup) -> tuple[str, ...]:
+def _missing_folder(it: MeshFile) -> tuple[str, ...]:
     """The folder that a file should be in, wherever it was looked for; empty if one of them exists."""
     inner = os.path.dirname(it.path)
     there = any(not inner or find_in(folder, inner) for folder in it.folders)
@@ -142,7 +142,7 @@ def mesh_elsewhere(subject: Subject) -> Iterator[Problem]:
             yield problem(it.used, f"{it.used.name!r} is not there from here", f"use {found}")
 
 
-def _elsewhere(subject: Subject, it: Lookup) -> str:
+def _elsewhere(subject: Subject, it: MeshFile) -> str:
     """A relative file in the description's package, below a folder above it or in meshes."""
     file = os.path.abspath(subject.document.file.removesuffix(EXPANDED))
     own = package_of(file) if it.used.scheme == "" else None
@@ -165,7 +165,7 @@ def _ends(path: str) -> list[str]:
     return ["", *(path[at:] for at in range(len(path) - 1, -1, -1) if path[at] == os.sep)]
 
 
-def _nearest(it: Lookup) -> str:
+def _nearest(it: MeshFile) -> str:
     from multibot_rewrite.base.nearest import nearest
 
     folder = os.path.join(it.folders[0], os.path.dirname(it.path))
@@ -180,7 +180,7 @@ def package_not_found(subject: Subject) -> Iterator[Problem]:
         yield problem(it.used, f"package {package!r} was not found", "give its folder with --roots")
 
 
-def _package(it: Lookup) -> str:
+def _package(it: MeshFile) -> str:
     return it.used.path.partition("/")[0]
 
 

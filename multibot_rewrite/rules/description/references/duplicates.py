@@ -24,7 +24,7 @@ from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
 if TYPE_CHECKING:
-    from multibot_rewrite.description.sources.trace import Origin
+    from multibot_rewrite.description.sources.trace import WrittenAt
 
 
 @rule("MB201", "duplicate-name", ERROR)
@@ -68,7 +68,7 @@ def _cause(subject: Subject, claim: Claim, first: Claim) -> object:
     return next((new for new, old in outer if new != old), (other.file, other.calls))
 
 
-def _origin(subject: Subject, start: int) -> Origin | None:
+def _origin(subject: Subject, start: int) -> WrittenAt | None:
     if not subject.origins:
         return None
     return subject.origins.of(bisect_left(subject.document.starts, start))
