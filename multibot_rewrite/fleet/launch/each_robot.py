@@ -15,7 +15,8 @@ from keyword import iskeyword
 from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.fleet.launch.starts import Component, RobotStarts, Start
+from multibot_rewrite.fleet.launch.starts import RobotStarts
+from multibot_rewrite.spelling.start import Start
 
 FLAG = re.compile(r"-{1,2}[A-Za-z][\w-]*")
 _POSE = {
@@ -29,9 +30,9 @@ _NAME = "name"
 # What a launch file calls otherwise in its functions.
 _TAKEN = frozenset((_NAME, "file", "text", "params", "str", "if_installed", "brought_up"))
 # What is printed of a robot, but for people.
-_VALUES = ("files", "starts", "spawned", "bridged_tf", "not_bridged", "windows")
+_VALUES = ("files", "starts", "not_bridged")
 # Robots are of one kind only if they start the same programs.
-_OF_PROGRAMS = frozenset(("package", "executable", "plugin"))
+_OF_PROGRAMS = frozenset(("package", "executable", "plugin", "condition", "needs"))
 
 
 class Code(str):
@@ -153,7 +154,7 @@ class _Merging(NamedTuple):
     def label(self, owner: Any, field: str, above: str) -> str:
         """Return what a value may be called: the name of a node is not that of the robot, a path is
         what it is given as."""
-        if isinstance(owner, Start | Component):
+        if isinstance(owner, Start):
             return "node_name" if field == _NAME else field
         return above if field == "path" else field
 
