@@ -18,7 +18,7 @@ import pytest
 from paths import ROBOTS, ROOT
 
 from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.as_commanded import not_as_commanded
+from multibot_rewrite.fleet.checks.as_printed import not_as_commanded
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
