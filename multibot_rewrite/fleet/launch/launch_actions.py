@@ -34,9 +34,11 @@ from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
     NAV2,
+    Program,
     is_unmanaged,
     known_program,
     program_of,
+    started_as,
 )
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import BRIDGE_FILE
@@ -57,7 +59,7 @@ STATE = "robot_state_publisher"
 # Started by hand, or once for all robots.
 _BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
-_DESCRIBE = "describe it in a file of nodes, with `programs:` (docs/stacks.md)"
+_DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/stacks.md)"
 _NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
 _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
 _DOMAIN_BRIDGE = ("domain_bridge", "domain_bridge")
@@ -137,13 +139,15 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
         if name in _BY_HAND or name in relayed:
             yield name, ""
         elif it is None:
-            yield name, f"nothing is known of its program; {_DESCRIBE}"
+            yield name, f"nothing is known of its program; {_DESCRIBE.format('programs')}"
         elif it.when and not _is_needed(given, it):
             yield name, f"nothing in the fleet file starts it: {said(it.when)}; {_NAME}"
         elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
-        elif not given.names.is_controller(name) and program_of(it, given.release) is None:
-            yield name, f"the program of package {it.package} is not known; {_DESCRIBE}"
+        elif not given.names.is_controller(name) and _program(given, name) is None:
+            is_component = given.names.started[name].way == COMPONENT
+            what, key = ("class", "component") if is_component else ("program", "programs")
+            yield name, f"the {what} of package {it.package} is not known; {_DESCRIBE.format(key)}"
 
 
 def _is_needed(given: _Given, it: NodeFacts) -> bool:
@@ -167,7 +171,7 @@ def _started(given: _Given, name: str) -> Start:
     it, facts = given.names.started[name], given.facts[name]
     if it.way == SPAWNER:
         return controller(given.plan, it)
-    program = program_of(facts, given.release)
+    program = _program(given, name)
     assert program is not None
     made = start_of(it, program, _parameters(given, name))
     return made._replace(
@@ -177,13 +181,21 @@ def _started(given: _Given, name: str) -> Start:
     )
 
 
+def _program(given: _Given, name: str) -> Program | None:
+    """What runs a node: its program, for a component its class; None where nobody says it."""
+    program = started_as(given.facts[name], given.release)
+    is_component = given.names.started[name].way == COMPONENT
+    known = program and (program.plugin if is_component else program.executable)
+    return program if known else None
+
+
 def _components(given: _Given, container: str) -> Iterator[Start]:
     for name in given.running:
         it = given.names.started[name]
-        if it.way == COMPONENT and it.node.fact.container == container and name in given.facts:
-            program = program_of(given.facts[name], given.release)
-            if program is not None and program.plugin:
-                yield start_of(it, program, _parameters(given, name))
+        if it.way == COMPONENT and it.node.fact.container == container:
+            program = _program(given, name)
+            assert program is not None
+            yield start_of(it, program, _parameters(given, name))
 
 
 def _options(given: _Given, facts: NodeFacts) -> Iterator[str | File]:
