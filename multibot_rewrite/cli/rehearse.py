@@ -16,7 +16,7 @@ from multibot_rewrite.cli.output import note, shown, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleet.fleet import Fleet, expected
 from multibot_rewrite.live.rehearsal import (
-    StubNode,
+    Stub,
     bridge_stub,
     domain_bridge_stubs,
     stub_nodes,
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _played(
-    options: argparse.Namespace, plan: System, nodes: Sequence[tuple[str, StubNode]]
+    options: argparse.Namespace, plan: System, nodes: Sequence[Stub]
 ) -> tuple[dict[int, System], dict[str, str]]:
     """What is seen of the stubs in each domain of the plan, and which types are replaced; the domains
     that they are played in are free ones of this machine."""
@@ -68,7 +68,7 @@ def _played(
     environs = stages(options.domain, len(parts))
     casts = {
         it: [
-            *(own for own in nodes if numbers.get(own[0], ONE) == it),
+            *(stub for stub in nodes if numbers.get(stub[0].robot, ONE) == it),
             *bridge_stub(part.topics),
             *domain_bridge_stubs(part),
         ]

@@ -43,10 +43,10 @@ from multibot_rewrite.fleet.outputs.output_file import (
 )
 from multibot_rewrite.fleet.outputs.params_style import check_style, in_style
 from multibot_rewrite.fleet.outputs.rviz_outputs import (
-    rviz_commands,
     rviz_files,
     rviz_outputs,
     usual_windows,
+    windows,
 )
 from multibot_rewrite.fleet.outputs.shape_outputs import copied
 from multibot_rewrite.fleet.outputs.world_file import world_file
@@ -108,20 +108,21 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, files)))
         planned = _portable_plan(plan, fleet)
         opened = configs or usual_windows(plan, planned)
+        shown = windows(plan, opened)
         kept, told = sorted_out(
             [
                 *in_style(plan, files),
                 *cell_outputs(plan, files),
                 *world_file(plan),
                 *rviz_files([] if configs else opened),
-                *commands_file(plan, each, rviz_commands(plan, opened)),
+                *commands_file(plan, each, shown),
             ]
         )
         tables = _tables(plan, fleet, planned)
         more = (*tables, *moveit_parameters(plan, files))
         files = sorted((*kept, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
-        starts = fleet_starts(plan, each, configs, files, brought, opened)
+        starts = fleet_starts(plan, each, files, brought, shown, bool(configs))
         files = sorted((*files, launch_file(starts)))
         told += one_launch_each(plan.file.apart, starts)
         _check_paths_differ(files)

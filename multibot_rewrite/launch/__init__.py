@@ -22,8 +22,8 @@ from multibot_rewrite.launch.context import file_of as file_of
 from multibot_rewrite.launch.context import fleet_of as fleet_of
 from multibot_rewrite.launch.context import perform as perform
 from multibot_rewrite.launch.context import robot_of as robot_of
-from multibot_rewrite.launch.robot_words import WORDS as WORDS
 from multibot_rewrite.launch.substitutions import FILE as FILE
+from multibot_rewrite.launch.substitutions import WORDS as WORDS
 from multibot_rewrite.launch.substitutions import bridge_config as bridge_config
 from multibot_rewrite.launch.substitutions import description as description
 from multibot_rewrite.launch.substitutions import params_file as params_file

@@ -32,8 +32,6 @@ from multibot_rewrite.launch.context import (
     sim_time,
     written,
 )
-from multibot_rewrite.launch.node_options import check_options, node_options, with_program
-from multibot_rewrite.launch.node_options import listed as option_list
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
 Make = Callable[[LoadedRobot], "Iterable[Action] | Action"]
@@ -41,6 +39,8 @@ SPAWNERS = MappingProxyType({"gz": spawning.GZ, "classic": spawning.CLASSIC})
 PLACER = ("tf2_ros", "static_transform_publisher")
 # The file of a node's description, start pose and clock.
 _OWN = "multibot.yaml"
+# The fleet decides these; a launch file that sets them would contradict it.
+FROM_THE_FLEET = ("name", "namespace")
 
 
 def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Action:
@@ -100,7 +100,7 @@ def composable_node(of_stack: Text = "", **options: Any) -> Any:
 
     def made(context: Context) -> dict[str, Any]:
         name, its = perform(context, of_stack), robot_of(context, own["of"])
-        return _made(context, name, own, with_program(its, name, first, component=True))
+        return _made(context, name, own, _with_program(its, name, first, component=True))
 
     placeholders = {"package": "later", "plugin": "later"}
     base = of_launch_ros("descriptions").ComposableNode
@@ -124,7 +124,7 @@ def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **options: An
 
 def place(robot: Text = None, fleet: Text = None, **options: Any) -> Action:
     """The static transform of a robot's start pose, if one is needed; ``options`` of Node."""
-    check_options("place", options)
+    _check_options("place", options)
     of = RobotRef(robot, fleet)
 
     def program(context: Context) -> tuple[tuple[str, str], list[str]]:
@@ -147,7 +147,7 @@ def _node(word: str, base: Any, of_stack: Text, options: Mapping[str, Any]) -> A
         if its.table.is_controller(called):
             return _made(context, called, own, first)
         box = its.table.container(called)
-        programmed = with_program(its, called, first, component=bool(box))
+        programmed = _with_program(its, called, first, component=bool(box))
         given = _made(context, called, own, programmed)
         return _loaded(box, given, programmed) if box else given
 
@@ -160,7 +160,7 @@ def _taken(
     word: str, of_stack: Text, options: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """The options that are ours, and launch_ros's."""
-    check_options(word, options)
+    _check_options(word, options)
     if not of_stack:
         raise UsageError(f'{word}: which node? Write its name in the stack: {word}("amcl")')
     rest = dict(options)
@@ -169,17 +169,58 @@ def _taken(
     return own, rest
 
 
+def _check_options(word: str, options: Mapping[str, Any]) -> None:
+    """Raises UsageError for options that the fleet decides."""
+    for it in FROM_THE_FLEET:
+        if it in options:
+            first = f'write {word}("amcl") with the name in its stack, and ' if it == "name" else ""
+            raise UsageError(f"{word}: {it} comes from the fleet file; {first}remove {it}=")
+
+
 def _made(
     context: Context, name: str, own: Mapping[str, Any], options: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """The options with those of the node in this launch."""
+    """The options with those of the node, or of a controller's spawner, in this launch.
+
+    Given remappings come first and given parameters last, since rcl applies the first rule that
+    matches and the last value.
+    """
     its = robot_of(context, own["of"])
     paths = [node_file_of(context, it, own["of"]) for it in listed(context, own["files"] or "")]
     clock = sim_time(context, its, own[SIM_TIME])
     if its.table.is_controller(name):
-        return node_options(its, name, paths, options)
+        spawner = its.spawner(name, *paths)
+        words = [*spawner["arguments"], *_option_list(options, "arguments")]
+        return {**options, **spawner, "arguments": words}
     also = _own_file(context, its, name, bool(own["describe"]), clock)
-    return node_options(its, name, [*paths, *also], options)
+    return {
+        **options,
+        "name": its.table.name(name),
+        "namespace": its.table.namespace(name),
+        "remappings": [*_option_list(options, "remappings"), *its.table.for_node(name)],
+        "parameters": [*paths, *also, *_option_list(options, "parameters")],
+    }
+
+
+def _with_program(
+    robot: LoadedRobot, name: str, options: Mapping[str, Any], component: bool = False
+) -> dict[str, Any]:
+    """The options, with the program that the node's stack says where they say none; raises UsageError
+    where neither does. ``component``: it is loaded into a container."""
+    word = "plugin" if component else "executable"
+    if word in options:
+        return dict(options)
+    program = robot.program(name)
+    if program is None or not getattr(program, word):
+        raise UsageError(f"no stack says what runs {name}; write package= and {word}=")
+    made = {"package": program.package, word: getattr(program, word), **options}
+    arguments = [] if component else [*program.words, *_option_list(options, "arguments")]
+    return {**made, "arguments": arguments} if arguments else made
+
+
+def _option_list(options: Mapping[str, Any], word: str) -> list[Any]:
+    """An option that is a list; empty where it is not given."""
+    return [*(options.get(word) or ())]
 
 
 def _loaded(box: str, options: Mapping[str, Any], given: Mapping[str, Any]) -> list[Action]:
@@ -204,11 +245,11 @@ def _program(
         (package, executable), arguments = find(context)
         if not arguments:
             return []
-        words = [*arguments, *option_list(given, "arguments")]
+        words = [*arguments, *_option_list(given, "arguments")]
         made = {**given, "package": package, "executable": executable, "arguments": words}
         clock = sim_time(context, robot_of(context, of), options.get(SIM_TIME))
         if clock is not None:
-            made["parameters"] = [{SIM_TIME: clock}, *option_list(given, "parameters")]
+            made["parameters"] = [{SIM_TIME: clock}, *_option_list(given, "parameters")]
         return made
 
     return later.action(node_class(), made, {"executable": "later", **given})

@@ -5,24 +5,28 @@ The fleet file decides what that is: the nodes of Nav2 and slam_toolbox that its
 or not, in any layout, with the names, rules and parameter files of each robot.
 Sources: nav2_bringup launch/ of humble (1.1.20) to rolling (a3a97043e), slam_toolbox
 launch/online_sync_launch.py; nav2_lifecycle_manager lifecycle_manager.cpp and nav2_util
-lifecycle_node.cpp: a manager and its node meet by the node's name without namespace (bond).
+lifecycle_node.cpp: a manager and its node meet by the node's name without namespace (bond);
+lifecycle_msgs msg/Transition.msg.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.companions.rviz.rewrite import RvizText
-from multibot_rewrite.fleet.outputs.relays import BRIDGE, Relay, not_bridged
-from multibot_rewrite.fleet.outputs.rviz_outputs import robot_windows
+from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
+from multibot_rewrite.fleet.outputs.rviz_outputs import robot_windows, window_start
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
 from multibot_rewrite.fleet.robots.node_names import NodeNames
 from multibot_rewrite.fleet.scripts import LoadedFleet
+from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER as MANAGER
+from multibot_rewrite.knowledge.programs import NAV2, is_unmanaged, known_program
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
-from multibot_rewrite.launch import nav2_programs as programs
 from multibot_rewrite.launch.actions import (
     composable_node,
     container,
@@ -41,8 +45,22 @@ from multibot_rewrite.launch.context import (
     written,
 )
 from multibot_rewrite.producers.launch.door import is_installed, of_launch, of_launch_ros
+from multibot_rewrite.spelling.start import keywords
 
 NONE, ONE, EACH = "none", "one", "each"
+CONTAINER, MAP_SERVER, SHARED_MANAGER = "nav2_container", "map_server", "lifecycle_manager_shared"
+STATE = "robot_state_publisher"
+TRANSITIONS: Mapping[str, int] = MappingProxyType({"configure": 1, "activate": 3})
+_INFO = "costmap_filter_info_server"
+# Nodes of stacks that are called otherwise than what they are.
+_KINDS: Mapping[str, str] = MappingProxyType(
+    {
+        "keepout_filter_mask_server": MAP_SERVER,
+        "speed_filter_mask_server": MAP_SERVER,
+        f"keepout_{_INFO}": _INFO,
+        f"speed_{_INFO}": _INFO,
+    }
+)
 # Launch arguments: name, default (None if it has to be given), what it is.
 ARGUMENTS = (
     ("fleet", None, "the fleet file"),
@@ -90,7 +108,7 @@ def _of_robot(robot: LoadedRobot) -> list[Action]:
 def _started(robot: LoadedRobot, context: Context) -> list[Action]:
     names = robot.table
     # Other nodes that its files have sections for may run, too: the stacks say which do.
-    known = programs.with_program(it for it in robot.stack if it in names.nodes)
+    known = nodes_of_nav2(it for it in robot.stack if it in names.nodes)
     if not known:
         hint = "add nav2, nav2_composed, nav2_slam or nav2_slam_composed to stack:"
         raise UsageError(f"robot {robot.name!r} has no node of Nav2; {hint}")
@@ -100,19 +118,17 @@ def _started(robot: LoadedRobot, context: Context) -> list[Action]:
     made += _relays(robot)
     if hosted:
         made.append(_container(robot, hosted, context))
-    if _is_on(context, "robot_state_publisher") and programs.STATE in names.nodes:
-        made.append(_state_publisher())
+    if _is_on(context, "robot_state_publisher") and STATE in names.nodes:
+        made.append(node(STATE, describe=True, output="screen"))
     return made
 
 
 def _alone(robot: LoadedRobot, name: str, context: Context) -> list[Action]:
     """A node in a process of its own; slam_toolbox is brought up here, as by its own launch file."""
-    program, alone = programs.program(name, robot.distro), programs.unmanaged(name, robot.distro)
+    alone = is_unmanaged(built_in(robot.distro).nodes[kind_of(name)], robot.distro)
     made = (lifecycle_node if alone else node)(
         name,
         files=robot.params_files,
-        package=program.package,
-        executable=program.executable,
         output="screen",
         respawn=_said("use_respawn"),
         respawn_delay=2.0,
@@ -128,7 +144,7 @@ def _activated(made: Action) -> Iterator[Action]:
     ids = of_launch("events").matches_action(made)
 
     def change(transition: str) -> Action:
-        number = programs.TRANSITIONS[transition]
+        number = TRANSITIONS[transition]
         changed = events.ChangeState(lifecycle_node_matcher=ids, transition_id=number)
         return known.EmitEvent(event=changed)
 
@@ -144,35 +160,24 @@ def _activated(made: Action) -> Iterator[Action]:
 
 def _container(robot: LoadedRobot, hosted: list[str], context: Context) -> Action:
     """The container with its components."""
-    program = programs.container_of(robot.distro)
     return container(
-        programs.CONTAINER,
+        CONTAINER,
         files=robot.params_files,
-        package=program.package,
-        executable=program.executable,
         output="screen",
-        arguments=[*program.words, "--ros-args", "--log-level", _said("log_level")],
-        composable_node_descriptions=[_component(robot, it, context) for it in hosted],
-    )
-
-
-def _component(robot: LoadedRobot, name: str, context: Context) -> Any:
-    program = programs.program(name, robot.distro)
-    return composable_node(
-        name,
-        files=robot.params_files,
-        package=program.package,
-        plugin=program.plugin,
-        parameters=_own(robot.table, name, context),
+        arguments=["--ros-args", "--log-level", _said("log_level")],
+        composable_node_descriptions=[
+            composable_node(it, files=robot.params_files, parameters=_own(robot.table, it, context))
+            for it in hosted
+        ],
     )
 
 
 def _own(names: NodeNames, name: str, context: Context) -> list[dict[str, Any]]:
     """What no file says of a node: its map, the nodes that it manages, the topics that it relays."""
-    if name == programs.MAP_SERVER:
+    if name == MAP_SERVER:
         file = str(context.launch_configurations.get("map", ""))
         return [{"yaml_filename": file}] if file else []
-    if programs.kind_of(name) == programs.MANAGER:
+    if kind_of(name) == MANAGER:
         managed = [names.name(it) for it in names.managed.get(name, ())]
         return [{"autostart": _is_on(context, "autostart"), "node_names": managed}]
     return []
@@ -182,33 +187,20 @@ def _relays(robot: LoadedRobot) -> list[Action]:
     """What brings the robot's tf to /tf; a line where its package is not installed."""
     if BRIDGE in robot.relays and not is_installed(BRIDGE):
         return [of_launch("actions").LogInfo(msg=not_bridged(robot.name))]
-    return [_relay(name, it) for name, it in robot.relays.items()]
-
-
-def _relay(name: str, it: Relay) -> Action:
-    package, executable = it.program
-    told = [it.parameters] if it.parameters else []
-    words = list(it.arguments)
-    known = {"package": package, "executable": executable, "output": "screen"}
-    return node(name, **known, parameters=told, arguments=words)
-
-
-def _state_publisher() -> Action:
-    name = programs.STATE
-    return node(name, describe=True, package=name, executable=name, output="screen")
+    own = {name: it.start._replace(namespace="", name="") for name, it in robot.relays.items()}
+    return [node(name, output="screen", **keywords(it)) for name, it in own.items()]
 
 
 def _shared(context: Context) -> list[Action]:
     """The nodes that all robots share, with a lifecycle manager of their own."""
     fleet = fleet_of(context, _said("fleet"))
     names = fleet.table
-    found = programs.with_program(names.nodes)
+    found = nodes_of_nav2(names.nodes)
     if not found:
         return []
     made = [_shared_node(fleet, it, context) for it in found]
     values = {"autostart": _is_on(context, "autostart"), "node_names": found}
-    manager = programs.program(programs.MANAGER, fleet.plan.file.distro)
-    return [*made, _plain(programs.SHARED_MANAGER, manager, context, [values])]
+    return [*made, _plain(SHARED_MANAGER, fleet.plan.file.distro, context, [values])]
 
 
 def _shared_node(fleet: LoadedFleet, name: str, context: Context) -> Action:
@@ -217,11 +209,11 @@ def _shared_node(fleet: LoadedFleet, name: str, context: Context) -> Action:
     files = [
         written(context, None, f"nodes/{it}", robot.node_text(it)) for it in robot.params_files
     ]
-    program = programs.program(name, robot.distro)
-    return _plain(name, program, context, [*files, *_own(names, name, context)])
+    return _plain(name, robot.distro, context, [*files, *_own(names, name, context)])
 
 
-def _plain(name: str, program: programs.Program, context: Context, parameters: list[Any]) -> Action:
+def _plain(name: str, release: str, context: Context, parameters: list[Any]) -> Action:
+    program = known_program(kind_of(name), release)
     return node_class()(
         name=name,
         package=program.package,
@@ -260,11 +252,17 @@ def _rviz(context: Context) -> list[Action]:
 
 def _window(context: Context, file: str, window: RvizText) -> Action:
     path = written(context, None, f"{window.robot or 'all'}/{file}", window.text)
-    return node_class()(
-        package="rviz2",
-        executable="rviz2",
-        namespace=window.namespace or None,
-        remappings=list(window.remaps),
-        arguments=["-d", path],
-        parameters=_clock(context),
-    )
+    given = keywords(window_start(window, path))
+    return node_class()(**given | {"arguments": ["-d", path], "parameters": _clock(context)})
+
+
+def kind_of(name: str) -> str:
+    """Return the name in ``NAV2`` of a node of a stack; its own where that has it not."""
+    return MANAGER if name.startswith(MANAGER) else _KINDS.get(name, name)
+
+
+def nodes_of_nav2(names: Iterable[str]) -> list[str]:
+    """Return those of the nodes that are Nav2's or slam_toolbox, managers last, so that what they
+    manage is there."""
+    known = (it for it in names if kind_of(it) in NAV2)
+    return sorted(known, key=lambda it: NAV2.index(kind_of(it)))

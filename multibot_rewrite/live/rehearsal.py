@@ -10,9 +10,8 @@ QoS is the default, and endpoints that depend on a condition are left out.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
@@ -53,21 +52,21 @@ PART_TYPES = {
 PROCESSES = 8
 
 
-class StubNode(NamedTuple):
-    """A stub: its name in the code, its arguments for rcl and those of its process, which are a
-    helper node's, its endpoints, what it sends on tf."""
-
-    name: str
-    arguments: tuple[str, ...]
-    process_arguments: tuple[str, ...]
-    endpoints: tuple[Endpoint, ...]
-    edges: tuple[Edge, ...]
+# A node that is played, with the words that rcl gets and its ends as its code has them; and what it
+# sends on tf.
+Stub: TypeAlias = tuple[Run, Sequence[Edge]]
 
 
-def stub_nodes(
-    table: Table, edges: Edges, left_out: Collection[str] = ()
-) -> Iterator[tuple[str, StubNode]]:
-    """The stub nodes, each with its robot (empty for all robots).
+def played(
+    name: str, ends: Iterable[Endpoint], robot: str = "", arguments: Sequence[str] = ()
+) -> Run:
+    """Return a node to be played; ``arguments`` are its words for rcl."""
+    names = tuple((it, "") for it in ends)
+    return Run(robot, name, "/", name, (), names=names, arguments=tuple(arguments))
+
+
+def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> Iterator[Stub]:
+    """The stub nodes.
 
     ``edges`` are by robot and node. Rules that stand at one of the ways ``left_out`` are not given;
     without any a node gets only its namespace and its name.
@@ -81,19 +80,13 @@ def stub_nodes(
     for _, node in running_nodes(table, left_out):
         own = names.get(node.full_name, [])
         space, other = _as_started(node, spaces.get((node.robot, node.fact.host)))
-        yield (
-            node.robot,
-            StubNode(
-                node.code_name,
-                tuple(ros_arguments(space, other, _rules(node, own))),
-                tuple(ros_arguments(node.process_namespace, "", node.process_rules)),
-                tuple(dict.fromkeys(_stub_endpoint(*it, types) for it in own)),
-                tuple(edges.get((node.robot, node.node), ())),
-            ),
-        )
+        ends = dict.fromkeys(_stub_endpoint(*it, types) for it in own)
+        arguments = tuple(ros_arguments(space, other, _rules(node, own)))
+        stub = node._replace(arguments=arguments, names=tuple((it, "") for it in ends))
+        yield stub, edges.get((node.robot, node.node), ())
 
 
-def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
+def bridge_stub(topics: Iterable[Topic]) -> Iterator[Stub]:
     """The bridge to a simulator that a plan needs, if it needs one: it has what the simulator's world
     serves, too."""
     rows = [
@@ -102,10 +95,10 @@ def bridge_stub(topics: Iterable[Topic]) -> Iterator[tuple[str, StubNode]]:
         for role in topic.bridge
     ]
     if rows:
-        yield "", StubNode("ros_gz_bridge", (), (), tuple(rows), ())
+        yield played("ros_gz_bridge", rows), ()
 
 
-def domain_bridge_stubs(plan: System) -> Iterator[tuple[str, StubNode]]:
+def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
     """The nodes of domain_bridge in a plan of one domain."""
     ends: dict[str, list[Endpoint]] = {}
     for it in plan.ends:
@@ -113,7 +106,7 @@ def domain_bridge_stubs(plan: System) -> Iterator[tuple[str, StubNode]]:
         ends.setdefault(it.node, []).append(stub)
     for node in plan.nodes:
         if node.stack == DOMAIN_BRIDGE:
-            yield node.robot, StubNode(node.name[1:], (), (), tuple(ends.get(node.name, ())), ())
+            yield played(node.name[1:], ends.get(node.name, ()), node.robot), ()
 
 
 def _as_started(node: Run, host: str | None) -> tuple[str, str]:
@@ -144,21 +137,22 @@ def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> Endpoi
     return made._replace(helper=end.helper, by=end.by)
 
 
-def split_over_processes(nodes: Iterable[tuple[str, StubNode]]) -> list[list[StubNode]]:
+def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
     """The stub nodes by process: one process for each robot, but no more than PROCESSES.
 
     A participant of DDS refuses a topic under a second type: who has it so is in another process.
     """
-    processes: dict[int, list[StubNode]] = {}
+    processes: dict[int, list[Stub]] = {}
     process_of: dict[str, int] = {}
     types: dict[tuple[int, str, str], str] = {}
-    for robot, node in nodes:
+    for stub in nodes:
+        robot = stub[0].robot
         process = process_of.setdefault(robot, len(process_of) % PROCESSES)
-        own = {it.name: it.type for it in node.endpoints if it.kind == TOPIC}
+        own = {it.name: it.type for it, _ in stub[0].names if it.kind == TOPIC}
         while any(types.get((process, robot, it), own[it]) != own[it] for it in own):
             process += PROCESSES
         types |= {(process, robot, name): type_ for name, type_ in own.items()}
-        processes.setdefault(process, []).append(node)
+        processes.setdefault(process, []).append(stub)
     return list(processes.values())
 
 
@@ -216,26 +210,22 @@ def substitute_type(kind: str, type_: str) -> str:
     return TF_SUBSTITUTE if type_ == TF else SUBSTITUTE_TYPES[kind]
 
 
-def to_order(nodes: Iterable[StubNode]) -> tuple[Any, ...]:
+def to_order(nodes: Iterable[Stub]) -> tuple[Any, ...]:
     """Stub nodes as plain values, the order of the process that runs them."""
     return tuple(
-        (*it[:3], [(*end[:4], end.helper, end.by) for end in it.endpoints], it.edges)
-        for it in nodes
+        (
+            *(run.code_name, run.arguments, run.process_namespace, run.process_rules),
+            [(*end[:4], end.helper, end.by) for end, _ in run.names],
+            edges,
+        )
+        for run, edges in nodes
     )
 
 
-def from_order(value: Sequence[Any]) -> list[StubNode]:
+def from_order(value: Sequence[Any]) -> Iterator[Stub]:
     """Read what JSON made of ``to_order``."""
-    return [
-        StubNode(
-            name,
-            tuple(words),
-            tuple(process),
-            tuple(
-                Endpoint(kind, role, own, type_, helper=helper, by=by)
-                for kind, role, own, type_, helper, by in endpoints
-            ),
-            tuple(edge_of(parent, child, static) for child, parent, _, static, *_ in edges),
-        )
-        for name, words, process, endpoints, edges in value
-    ]
+    for name, words, space, rules, rows, edges in value:
+        ends = (Endpoint(*own)._replace(helper=helper, by=by) for *own, helper, by in rows)
+        run = played(name, ends, arguments=words)
+        sent = [edge_of(parent, child, static) for child, parent, _, static, *_ in edges]
+        yield run._replace(process_namespace=space, process_rules=rules), sent

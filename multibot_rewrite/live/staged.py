@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.live.rehearsal import StubNode, split_over_processes, to_order
+from multibot_rewrite.live.rehearsal import Stub, split_over_processes, to_order
 from multibot_rewrite.producers.ros.assemble import BUSY_MACHINE
 from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
 from multibot_rewrite.producers.ros.participants import participants_here
@@ -57,9 +57,9 @@ def stages(domain: int | None, count: int) -> list[dict[str, str]]:
 
 
 def staged(
-    nodes: Iterable[tuple[str, StubNode]], environ: Mapping[str, str], seconds: float
+    nodes: Iterable[Stub], environ: Mapping[str, str], seconds: float
 ) -> tuple[System, dict[str, str]]:
-    """The graph of the stub nodes, each with its robot, and which types are replaced by which.
+    """The graph of the stub nodes, and which types are replaced by which.
 
     On a busy machine messages of the discovery are lost, so a look that lacks what the nodes say that
     they have is taken again. Raises Unusable where the nodes do not start or the graph is not read.
@@ -86,9 +86,7 @@ def _has_all(graph: System, started: Started) -> bool:
 
 
 @contextmanager
-def _started(
-    nodes: Iterable[tuple[str, StubNode]], environ: Mapping[str, str]
-) -> Iterator[Started]:
+def _started(nodes: Iterable[Stub], environ: Mapping[str, str]) -> Iterator[Started]:
     """The stub nodes in the graph, and what they say once all are there."""
     with ExitStack() as stack:
         children = [

@@ -21,7 +21,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.live.rehearsal import (
     TF,
-    StubNode,
+    Stub,
     action_parts,
     from_order,
     substitute_type,
@@ -29,6 +29,7 @@ from multibot_rewrite.live.rehearsal import (
 from multibot_rewrite.producers.ros import ros
 from multibot_rewrite.producers.ros.look import own_ends
 from multibot_rewrite.producers.ros.worker import Send, run_worker
+from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -69,19 +70,20 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
     return 0
 
 
-def _create_node(stubs: _Stubs, stub: StubNode, number: int) -> Iterator[Publish]:
+def _create_node(stubs: _Stubs, stub: Stub, number: int) -> Iterator[Publish]:
     """Create a node with its endpoints; yields what has to be published again and again."""
-    node = ros.add_node(stubs.session, stub.name, arguments=stub.arguments)
+    run, edges = stub
+    node = ros.add_node(stubs.session, run.code_name, arguments=run.arguments)
     helpers: dict[str, Any] = {}
-    for endpoint in stub.endpoints:
+    for endpoint, _ in run.names:
         called = _helper(endpoint) if endpoint.helper else ""
         if called and called not in helpers:
             made = called.replace("*", f"{os.getpid():x}{number:04x}")
             name = made if called.startswith(LISTENER) else node.get_name() + made
-            arguments = stub.process_arguments
+            arguments = ros_arguments(run.process_namespace or "/", "", run.process_rules)
             helpers[called] = ros.add_node(stubs.session, name, arguments=arguments)
         owner = helpers.get(called, node)
-        yield from _create_endpoint(stubs, owner, _named(node, endpoint), stub.edges)
+        yield from _create_endpoint(stubs, owner, _named(node, endpoint), edges)
 
 
 def _helper(endpoint: Endpoint) -> str:

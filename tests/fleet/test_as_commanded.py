@@ -18,7 +18,7 @@ import pytest
 from paths import ROBOTS, ROOT
 
 from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.as_commanded import not_as_commanded
+from multibot_rewrite.fleet.checks.as_printed import not_as_commanded
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
@@ -104,11 +104,10 @@ def test_a_build_says_the_line(tmp_path: Path) -> None:
     assert files != [*made.files]
     found = read_back(plan, made._replace(files=tuple(files)), "/any/out")
     own = [it for it in found if it.file == "commands.md"]
-    assert [it.code for it in own] == ["MF823", "MF823"]
-    assert own[0].message.startswith("robot2: `ros_gz_sim create -name robot2 -topic")
-    assert own[0].message.endswith("is planned, and no line starts it")
-    assert own[1].message.startswith("robot2: `ros_gz_sim create -name robot1 -topic")
-    assert own[1].message.endswith("is a line, and not planned")
+    assert [it.code for it in own] == ["MF823"]
+    assert own[0].message == (
+        "robot2: ros_gz_sim/create: arguments[1] is 'robot1', planned is 'robot2'"
+    )
 
 
 def test_a_line_that_is_missing_is_noticed() -> None:
@@ -116,4 +115,4 @@ def test_a_line_that_is_missing_is_noticed() -> None:
     text = commands(made)
     line = next(it for it in text.splitlines() if " create -name robot2 " in it)
     (found,) = not_as_commanded(made.starts, text.replace(f"{line}\n", ""))
-    assert "is planned, and no line starts it" in found
+    assert found == "robot2: ros_gz_sim/create is planned and is not started"

@@ -26,16 +26,9 @@ from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.launch import launch_file
 from multibot_rewrite.fleet.launch.launch_python import to_python
-from multibot_rewrite.fleet.launch.starts import (
-    CLASSIC,
-    GZ,
-    Component,
-    File,
-    FleetStarts,
-    RobotStarts,
-    Start,
-    Text,
-)
+from multibot_rewrite.fleet.launch.starts import CLASSIC, GZ, FleetStarts, RobotStarts
+from multibot_rewrite.fleet.outputs.relays import BRIDGE
+from multibot_rewrite.spelling.start import File, Start, Text
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "frame-prefix", "postfix")
 
@@ -43,7 +36,9 @@ LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "frame-prefix", "postfix"
 def robot(name: str, model: str, x: str, robots_number: int) -> RobotStarts:
     """A robot with all that one may start."""
     params, frames = File(f"{name}/p.yaml"), {"frame_prefix": f"{name}/", "rate": 1.5, "n": 2}
-    box = Component("pkg", "pkg::Part", f"/{name}", "part", (params, {"on": True}), (("a", "b"),))
+    box = Start(
+        "pkg", "", f"/{name}", "part", (params, {"on": True}), (("a", "b"),), plugin="pkg::Part"
+    )
     return RobotStarts(
         name, "rover.urdf", f"namespace /{name}", (params.path,),
         (
@@ -54,32 +49,40 @@ def robot(name: str, model: str, x: str, robots_number: int) -> RobotStarts:
             Start("slam_toolbox", "sync", f"/{name}", "slam", brought_up=True),
             Start("nav2", "manager", f"/{name}", "manager", ({"node_names": ["a", f"b_{name}"]},)),
             Start("tf2_ros", "static", arguments=("--x", x, "--frame-id", "map", "-q")),
-        ),
-        (
-            Start("ros_gz_sim", "create", arguments=("-name", model, "-file", File(f"{name}/r.sdf"))),
-            Start("ros_gz_bridge", "bridge", f"/{name}", "", ({"config": File(f"{name}/b.yaml")},)),
+            Start("tf_namespace_bridge", "tf_namespace_bridge", f"/{name}", "relay", needs=BRIDGE),
+            Start("ros_gz_sim", "create", condition="simulator",
+                  arguments=("-name", model, "-file", File(f"{name}/r.sdf"))),
+            Start("ros_gz_bridge", "bridge", f"/{name}", "", ({"config": File(f"{name}/b.yaml")},),
+                  condition="simulator"),
+            Start("rviz2", "rviz2", arguments=("-d", File(f"view{robots_number}.rviz")),
+                  condition="rviz"),
         ),
         (("driver", "no program"),),
-        (Start("tf_namespace_bridge", "tf_namespace_bridge", f"/{name}", "relay"),),
         f"the tf of {name} is not on /tf",
-        (Start("rviz2", "rviz2", arguments=("-d", File(f"view{robots_number}.rviz"))),),
     )  # fmt: skip
 
 
 OTHER = RobotStarts(
     "arm", "arm.urdf", "the root namespace", (),
     (Start("slam_toolbox", "async", brought_up=True), Start("p", "e", arguments=("it's", '"{x}"'))),
-    (), (), clock=False,
+    clock=False,
 )  # fmt: skip
 ALL = FleetStarts(
     "Three robots.",
     (CLASSIC, GZ),
     (
-        Start("ros_gz_bridge", "bridge", "", "", ({"config": File("bridge.yaml")},)),
+        Start(
+            "ros_gz_bridge",
+            "bridge",
+            "",
+            "",
+            ({"config": File("bridge.yaml")},),
+            condition="simulator",
+        ),
         Start("nav2_map_server", "map_server", "/maps", "map_server", (File("r1/p.yaml"),)),
     ),
     (robot("r1", "red", "1.0", 1), robot("r2", "r2", "2.0", 2), OTHER),
-    (Start("rviz2", "rviz2", arguments=("-d", File("all.rviz"))),),
+    (Start("rviz2", "rviz2", arguments=("-d", File("all.rviz")), condition="rviz"),),
     True,
     ("ros2 run teleop",),
     File("world.sdf"),
@@ -216,7 +219,8 @@ def test_robots_may_be_called_like_a_word_of_the_file(
     text = f"layout: tf-per-robot\ndistro: jazzy\ndescription: rover_gz.urdf\nrobots:\n{rows}"
     made = in_folder(tmp_path, text)
     assert differences(made.starts, launch_of(made), tmp_path / "out") == []
-    models = [it.spawned[0].arguments[1] for it in made.starts.robots]
+    spawned = [one for it in made.starts.robots for one in it.starts if one.executable == "create"]
+    models = [it.arguments[1] for it in spawned]
     assert models == [f"{it}_m{at}" for at, it in enumerate(names)]
 
 

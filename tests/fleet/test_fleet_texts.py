@@ -23,12 +23,12 @@ from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleet.launch.starts import shell_line
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.bridge_outputs import fill_bridge, merge_bridges
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.spelling.bridged_topics import BridgedTopic
 from multibot_rewrite.spelling.bridged_topics import bridged_topics as generated_bridge
+from multibot_rewrite.spelling.start import shell_line
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 TYPES = "  ros_type_name: a/msg/B\n  gz_type_name: gz.msgs.B\n"
@@ -422,16 +422,21 @@ def test_the_fleets_world_frame_is_the_parent(fleet: Any) -> None:
 
 def test_spawning_in_gz(fleet: Any) -> None:
     first, second = spawn.spawns(fleet("L2"))[0]
-    assert spawn.gz_arguments(first) == [
+    assert spawn.spawner(first, False).words == [
         *("-name", "r1", "-topic", "/r1/robot_description"),
         *("-x", "1.0", "-y", "-0.5", "-z", "0.0", "-R", "0.0", "-P", "0.0", "-Y", "1.57"),
         "-allow_renaming=false",
     ]
-    assert spawn.gz_arguments(second)[:4] == ["-name", "second", "-topic", "/two/robot_description"]
+    assert spawn.spawner(second, False).words[:4] == [
+        "-name",
+        "second",
+        "-topic",
+        "/two/robot_description",
+    ]
 
 
 def test_a_flag_that_is_on_or_off_has_no_value_of_its_own(fleet: Any) -> None:
-    assert "false" not in spawn.gz_arguments(spawn.spawns(fleet("L2"))[0][0])
+    assert "false" not in spawn.spawner(spawn.spawns(fleet("L2"))[0][0], False).words
 
 
 def test_the_postfix_layout_has_a_topic_for_each_description(fleet: Any) -> None:
@@ -468,7 +473,7 @@ def test_a_namespace_of_the_description_is_not_overwritten(
     fleet: Any, namespaces: tuple[str, ...], layout: str, given: list[str], codes: list[str]
 ) -> None:
     made, findings = spawn.spawns(fleet(layout, body=classic(*namespaces)))
-    assert spawn.classic_arguments(made[0])[16:] == given
+    assert spawn.spawner(made[0], True).words[16:] == given
     assert [it.code for it in findings] == codes
 
 
@@ -485,7 +490,7 @@ def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:
 
 def test_driving(fleet: Any) -> None:
     plan = fleet("L2", "nav2", more="distro: jazzy\n")
-    assert [teleop.command(it) for it in teleop.teleops(plan)] == [
+    assert [shell_line(it.start) for it in teleop.teleops(plan)] == [
         "ros2 run teleop_twist_keyboard teleop_twist_keyboard --ros-args "
         f"-r cmd_vel:=/{it}/cmd_vel_nav"
         for it in ("r1", "two")
@@ -516,7 +521,7 @@ def test_a_bridge_to_the_simulator_reads_commands(fleet: Any) -> None:
 def test_a_controller_that_takes_stamped_commands_only(fleet: Any) -> None:
     it = teleop.teleops(fleet("L2", "diff_drive_controller"))[0]
     assert it.topic == "/r1/diff_drive_controller/cmd_vel"
-    assert teleop.arguments(it)[3:] == ["-p", "stamped:=true", "-p", "frame_id:=r1/base"]
+    assert it.start.words[3:] == ["-p", "stamped:=true", "-p", "frame_id:=r1/base"]
 
 
 @pytest.mark.parametrize(

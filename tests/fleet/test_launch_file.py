@@ -298,6 +298,28 @@ def test_nodes_of_bringup_are_left_to_it(tmp_path: Path) -> None:
     assert "package='robot_state_publisher'" in python
 
 
+def test_a_component_needs_its_class_and_no_program(tmp_path: Path) -> None:
+    """rclcpp_components loads a class; one that nobody tells is named in the file."""
+    (tmp_path / "nodes.yaml").write_text(
+        "nodes:\n"
+        "  Camera: {package: acme, component: 'acme::Camera'}\n"
+        "  lamp: {package: acme, programs: [lamp]}\n"
+        "stacks:\n"
+        "  own: {container: nav2_container, nodes: [Camera, lamp]}\n"
+    )
+    shutil.copy(ROOT / "fixtures" / "robots" / "rover_gz.urdf", tmp_path)
+    (tmp_path / "fleet.yaml").write_text(
+        "distro: jazzy\nlayout: tf-per-robot\nsimulator: none\ndescription: rover_gz.urdf\n"
+        "nodes: nodes.yaml\nstack: [nav2_composed, own]\nrobots: [{name: r1}]\n"
+    )
+    out = tmp_path / "out"
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(out), "-q"]) == 0
+    python = (out / "fleet.launch.py").read_text()
+    assert "plugin='acme::Camera'" in python and "'lamp'" not in python
+    reason = "# Not started: lamp (the class of package acme is not known; describe it in a file of"
+    assert reason in python
+
+
 REAL = pytest.mark.skipif(
     bool(launch.missing()),
     reason=f"not tried in the real launch, which is not here: {launch.missing()}",

@@ -10,18 +10,9 @@ import pytest
 from multibot_rewrite.fleet.launch.each_robot import Code, functions
 from multibot_rewrite.fleet.launch.launch_python import to_python
 from multibot_rewrite.fleet.launch.python_actions import value as python_value
-from multibot_rewrite.fleet.launch.starts import (
-    CLASSIC,
-    GZ,
-    Component,
-    File,
-    FleetStarts,
-    RobotStarts,
-    Start,
-    Text,
-    shell_line,
-)
+from multibot_rewrite.fleet.launch.starts import CLASSIC, GZ, FleetStarts, RobotStarts
 from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
+from multibot_rewrite.spelling.start import File, Start, Text, shell_line
 
 PARAMS = File("r1/p.yaml")
 FULL = RobotStarts(
@@ -34,17 +25,18 @@ FULL = RobotStarts(
         ),
         Start(
             "rclcpp_components", "isolated", "/r1", "box",
-            components=(Component("p", "P", "/r1", "c", (PARAMS,), (("a", "b"),)),),
+            components=(Start("p", "", "/r1", "c", (PARAMS,), (("a", "b"),), plugin="P"),),
         ),
         Start("slam_toolbox", "sync", brought_up=True),
+        Start("tf_bridge", "b", needs=BRIDGE,
+              parameters=({"text": Text("r1/r.urdf"), "n": 1.5, "it's": "it's"},)),
+        Start("ros_gz_sim", "create", arguments=("-name", "r1", "-x", "1.0"), condition="simulator"),
+        Start("rviz2", "rviz2", arguments=("-d", File("r1/w.rviz")), condition="rviz"),
     ),
-    (Start("ros_gz_sim", "create", arguments=("-name", "r1", "-x", "1.0")),),
     (("x", "no program"), ("y", "")),
-    (Start("tf_bridge", "b", parameters=({"text": Text("r1/r.urdf"), "n": 1.5, "it's": "it's"},)),),
     not_bridged("r1"),
-    (Start("rviz2", "rviz2", arguments=("-d", File("r1/w.rviz"))),),
 )  # fmt: skip
-BARE = RobotStarts("r1", "rover.urdf", "", (), (Start("p", "e"),), (), ())
+BARE = RobotStarts("r1", "rover.urdf", "", (), (Start("p", "e"),))
 SAID = not_bridged("r1")
 FUNCTION = f'''\
 def start_r1():
@@ -192,8 +184,9 @@ def test_a_robot_without_more_has_no_more() -> None:
 @pytest.mark.parametrize(("simulator", "package"), [(GZ, "ros_gz_sim"), (CLASSIC, "gazebo_ros")])
 def test_a_fleet_in_a_simulator(simulator: str, package: str) -> None:
     """A bridge of the simulator is of no use without it; other nodes of all robots run anyway."""
-    shared = (Start("ros_gz_bridge", "parameter_bridge"), Start("nav2_map_server", "map_server"))
-    window = Start("rviz2", "rviz2")
+    bridge = Start("ros_gz_bridge", "parameter_bridge", condition="simulator")
+    shared = (bridge, Start("nav2_map_server", "map_server"))
+    window = Start("rviz2", "rviz2", condition="rviz")
     made = fleet(
         BARE, simulators=(simulator,), shared=shared, windows=(window,), use_sim_time=False,
         world=File("w.sdf"),
@@ -215,9 +208,6 @@ def test_a_fleet_in_a_simulator(simulator: str, package: str) -> None:
     assert groups == [
         "IfCondition(LaunchConfiguration('simulator')),", "IfCondition(LaunchConfiguration('rviz')),",
     ]  # fmt: skip
-    # Without a simulator the bridge is one node of all.
-    alone = described(to_python(made._replace(simulators=())))
-    assert "condition=IfCondition(LaunchConfiguration('simulator'))" not in alone
 
 
 def test_what_is_imported_is_what_is_used() -> None:
@@ -271,7 +261,8 @@ def test_a_line_for_a_shell() -> None:
         "p", "e", "/r 1", "n", (File("x.yaml"), {"a": "b"}), (("/scan", "scan"),), ("-f", File("y"))
     )
     assert shell_line(start) == (
-        "ros2 run p e -f y --ros-args -r '__ns:=/r 1' -r __node:=n -r /scan:=scan -p a:=b"
+        "ros2 run p e -f y --ros-args -r '__ns:=/r 1' -r __node:=n -r /scan:=scan "
+        "--params-file x.yaml -p a:=b"
     )
 
 
@@ -279,7 +270,7 @@ def test_a_line_for_a_shell() -> None:
 
 
 def robot(name: str, *starts: Start, kind: str = "rover.urdf") -> RobotStarts:
-    return RobotStarts(name, kind, f"namespace /{name}", (), starts, (), ())
+    return RobotStarts(name, kind, f"namespace /{name}", (), starts)
 
 
 def given(name: str, *words: str, **named: str) -> RobotStarts:

@@ -63,9 +63,9 @@ def test_a_relay_reads_the_robots_tf_and_writes_tf(
     tmp_path: Path, layout: str, source: str, name: str
 ) -> None:
     robot = fleet(tmp_path, layout).robot("robot2")
-    told = robot.relays["tf_relay"].parameters
-    assert told == {"input_topic": source, "output_topic": "/tf"}
-    assert robot.relays["tf_static_relay"].parameters["output_topic"] == "/tf_static"
+    told = robot.relays["tf_relay"].start.parameters
+    assert told == ({"input_topic": source, "output_topic": "/tf"},)
+    assert robot.relays["tf_static_relay"].start.parameters[0]["output_topic"] == "/tf_static"
     assert robot.table.full_name("tf_relay") == name
     # A rule for the name that it reads would move /tf as well.
     assert robot.table.for_node("tf_relay") == []
@@ -124,7 +124,7 @@ def test_bare_frames_are_bridged(tmp_path: Path) -> None:
         *((PUBLISHES, f"/{it}") for it in ("tf", "tf_static")),
     }
     # Every robot's map is below that of the fleet; the bridge has given it the robot's name.
-    assert world.arguments == ("--frame-id", "map", "--child-frame-id", "robot2/map")
+    assert world.start.arguments == ("--frame-id", "map", "--child-frame-id", "robot2/map")
 
 
 def bridged(plan: System) -> System:

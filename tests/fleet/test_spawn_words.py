@@ -7,10 +7,10 @@ import pytest
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.fleet.file.robot_spec import Pose
-from multibot_rewrite.fleet.launch.starts import Start
 from multibot_rewrite.fleet.outputs import spawn
 from multibot_rewrite.fleet.outputs.spawn import Spawn
 from multibot_rewrite.fleet.robots import start_poses
+from multibot_rewrite.spelling.start import Start
 
 POSE = Pose(1.0, -2.0, 0.5, 0.1, 0.2, 1.5)
 FLAGS = ["-x", "1.0", "-y", "-2.0", "-z", "0.5", "-R", "0.1", "-P", "0.2", "-Y", "1.5"]
@@ -29,12 +29,11 @@ def test_what_follows_a_spawner(it: Spawn, source: list[str]) -> None:
     """ros_gz_sim create.cpp (gflags), gazebo_ros spawn_entity.py."""
     gz = ["-name", "rover1", *source, *FLAGS, "-allow_renaming=false"]
     classic = ["-entity", "rover1", *source, *FLAGS, "-robot_namespace", "/r1"]
-    assert spawn.gz_arguments(it) == gz and spawn.classic_arguments(it) == classic
-    assert spawn.classic_arguments(it._replace(namespace="")) == classic[:-2]
-    assert spawn.spawner(it, False) == Start("ros_gz_sim", "create", arguments=tuple(gz))
-    assert spawn.spawner(it, True) == Start(
-        "gazebo_ros", "spawn_entity.py", arguments=tuple(classic)
-    )
+    made = {name: spawn.spawner(it, name == "classic") for name in ("gz", "classic")}
+    assert made["gz"].words == gz and made["classic"].words == classic
+    assert spawn.spawner(it._replace(namespace=""), True).words == classic[:-2]
+    assert made["gz"][:2] == ("ros_gz_sim", "create")
+    assert made["classic"][:2] == ("gazebo_ros", "spawn_entity.py")
 
 
 @pytest.mark.parametrize(
@@ -56,7 +55,7 @@ def test_a_static_transform_is_a_process(
     assert made == start_poses.StaticTransform("r1", "map", "odom", POSE, namespace, node, remaps)
     program = ("tf2_ros", "static_transform_publisher", namespace, node)
     assert made.start == Start(*program, (), remaps, tuple(words))
-    assert made.words[: len(words)] == words and made.words[len(words)] == "--ros-args"
+    assert made.start.words[: len(words) + 1] == [*words, "--ros-args"]
 
 
 def test_a_pose_as_parameters_of_amcl() -> None:

@@ -19,7 +19,7 @@ from launched_here import read_here
 from nav2_fleet import FILE, written
 
 from multibot_rewrite.companions.rviz.rewrite import RvizText
-from multibot_rewrite.launch import nav2, nav2_programs
+from multibot_rewrite.launch import nav2
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
 
@@ -117,7 +117,7 @@ def test_a_map_server_gets_its_map_and_no_node_is_told_of_others(
 
 
 def test_a_node_is_configured_and_then_activated() -> None:
-    assert dict(nav2_programs.TRANSITIONS) == {"configure": 1, "activate": 3}
+    assert dict(nav2.TRANSITIONS) == {"configure": 1, "activate": 3}
 
 
 @pytest.mark.more
@@ -251,8 +251,7 @@ def test_what_nodes_of_all_and_windows_are_started_with(
     monkeypatch.setattr(nav2, "node_class", lambda: dict)
     monkeypatch.setattr(nav2, "written", lambda *it: it[1:])
     clocks = [] if clock is None else [{"use_sim_time": clock}]
-    program = nav2_programs.program("map_server", "jazzy")
-    assert nav2._plain("map_server", program, None, [1]) == {
+    assert nav2._plain("map_server", "jazzy", None, [1]) == {
         "name": "map_server", "package": "nav2_map_server", "executable": "map_server",
         "output": "screen", "parameters": [1, *clocks],
     }  # fmt: skip
@@ -263,7 +262,7 @@ def test_what_nodes_of_all_and_windows_are_started_with(
         "arguments": ["-d", (None, "robot1/a.rviz", "t")],
     }  # fmt: skip
     assert nav2._window(None, "a.rviz", RvizText("", "t")) == {
-        **usual, "namespace": None, "remappings": [], "arguments": ["-d", (None, "all/a.rviz", "t")],
+        **usual, "arguments": ["-d", (None, "all/a.rviz", "t")],
     }  # fmt: skip
 
 

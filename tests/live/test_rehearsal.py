@@ -25,10 +25,11 @@ from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live import staged
 from multibot_rewrite.live.rehearsal import (
     PROCESSES,
-    StubNode,
+    Stub,
     action_parts,
     bridge_stub,
     from_order,
+    played,
     split_over_processes,
     stub_nodes,
     substitute_type,
@@ -77,14 +78,18 @@ def table(layout: str = "L2") -> Table:
     )
 
 
-def drive(layout: str = "L2", left_out: tuple[str, ...] = ()) -> StubNode:
-    stubs = [stub for robot, stub in stub_nodes(table(layout), {}, left_out) if robot == "robot2"]
-    return next(stub for stub in stubs if stub.name == "drive")
+def drive(layout: str = "L2", left_out: tuple[str, ...] = ()) -> Run:
+    stubs = (stub for stub, _ in stub_nodes(table(layout), {}, left_out))
+    return next(it for it in stubs if (it.robot, it.code_name) == ("robot2", "drive"))
+
+
+def ends(stub: Run) -> list[Endpoint]:
+    return [end for end, _ in stub.names]
 
 
 def test_a_stub_has_the_names_of_the_code_and_rcl_gets_the_rules() -> None:
     stub = drive()
-    assert stub.endpoints[0] == Endpoint(
+    assert ends(stub)[0] == Endpoint(
         TOPIC, SUBSCRIBES, "/cmd_vel", "geometry_msgs/msg/Twist", False
     )
     assert stub.arguments == ("--ros-args", "-r", "__ns:=/robot2", "-r", "/cmd_vel:=cmd_vel")
@@ -96,15 +101,15 @@ def test_without_rules_a_node_keeps_only_namespace_and_name() -> None:
 
 
 def test_an_endpoint_with_a_condition_is_left_out() -> None:
-    assert "debug" not in {part.name for part in drive().endpoints}
+    assert "debug" not in {part.name for part in ends(drive())}
 
 
 def test_an_unknown_type_is_that_of_the_other_endpoint() -> None:
-    assert Endpoint(TOPIC, PUBLISHES, "scan", LASER) in drive().endpoints
+    assert Endpoint(TOPIC, PUBLISHES, "scan", LASER) in ends(drive())
 
 
 def test_endpoints_of_a_helper_are_marked() -> None:
-    assert [part.name for part in drive().endpoints if part.helper] == ["/tf"]
+    assert [part.name for part in ends(drive()) if part.helper] == ["/tf"]
 
 
 def test_a_node_of_the_plugins_and_of_the_stack_is_one_with_the_rules_of_its_tag() -> None:
@@ -113,7 +118,7 @@ def test_a_node_of_the_plugins_and_of_the_stack_is_one_with_the_rules_of_its_tag
     two = one._replace(
         rules=rules, fact=NodeFacts("manager", "acme", (), plugin="acme"), written=True
     )
-    ((_, stub),) = stub_nodes(Table("both", (one, two), (), NEWEST_LTS), {})
+    ((stub, _),) = stub_nodes(Table("both", (one, two), (), NEWEST_LTS), {})
     assert stub.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "c:=d")
 
 
@@ -124,8 +129,8 @@ def test_a_manager_that_stands_in_for_controllers_has_their_rules(
     release: str, given: bool
 ) -> None:
     fleet = make_fleet(str(ROBOTS / "rover_gz.urdf"), ["r"], [], {"layout": "L1"}, release=release)
-    found = {stub.name: stub for _, stub in stub_nodes(fleet.table, {})}
-    assert "/tf" in {it.name for it in found["controller_manager"].endpoints}
+    found = {stub.code_name: stub for stub, _ in stub_nodes(fleet.table, {})}
+    assert "/tf" in {it.name for it in ends(found["controller_manager"])}
     assert ("/tf:=tf" in found["controller_manager"].arguments) == given
     assert "/tf:=tf" in found["robot_state_publisher"].arguments
 
@@ -133,16 +138,16 @@ def test_a_manager_that_stands_in_for_controllers_has_their_rules(
 def test_who_has_a_topic_with_a_second_type_is_in_another_process() -> None:
     """A participant of Fast DDS refuses the second type."""
     text, flag = (
-        StubNode(name, (), (), (Endpoint(TOPIC, PUBLISHES, "chat", type_),), ())
+        (played(name, [Endpoint(TOPIC, PUBLISHES, "chat", type_)], "robot1"), ())
         for name, type_ in (("talker", "std_msgs/msg/String"), ("listener", "std_msgs/msg/Bool"))
     )
-    assert split_over_processes([("robot1", text), ("robot1", flag)]) == [[text], [flag]]
-    assert split_over_processes([("robot1", text), ("robot1", text)]) == [[text, text]]
+    assert split_over_processes([text, flag]) == [[text], [flag]]
+    assert split_over_processes([text, text]) == [[text, text]]
 
 
 def test_robots_share_processes_when_they_are_many() -> None:
-    some = [
-        (f"robot{at}", StubNode(f"node{at}", (), (), (), ())) for at in range(3 * PROCESSES + 1)
+    some: list[Stub] = [
+        (played(f"node{at}", (), f"robot{at}"), ()) for at in range(3 * PROCESSES + 1)
     ]
     processes = split_over_processes(some)
     assert len(processes) == PROCESSES
@@ -153,8 +158,13 @@ def test_robots_share_processes_when_they_are_many() -> None:
 def test_an_order_survives_the_pipe() -> None:
     import json
 
-    stub = drive()._replace(edges=(edge_of("odom", "base", False),))
-    assert from_order(json.loads(json.dumps(to_order([stub])))) == [stub]
+    stub = drive()._replace(process_namespace="/box", process_rules=(("/tf", "tf"),))
+    sent = [edge_of("odom", "base", False)]
+    order = json.dumps(to_order([(stub, sent)]))
+    ((read, edges),) = from_order(json.loads(order))
+    assert (read.code_name, read.arguments, read.names) == ("drive", stub.arguments, stub.names)
+    assert (read.process_namespace, [*edges]) == ("/box", sent)
+    assert json.dumps(to_order([(read, edges)])) == order
 
 
 @pytest.mark.parametrize(("role", "parts"), [(SERVES, PUBLISHES), (CALLS, SUBSCRIBES)])
@@ -192,8 +202,8 @@ def test_the_bridge_of_a_plan_has_its_topics_and_what_the_world_serves() -> None
 - {service_name: /world/hall/control, ros_type_name: ros_gz_interfaces/srv/ControlWorld}
 """
     topics = bridged_by([OutputFile("bridge.yaml", rows.encode())])
-    ((_, stub),) = bridge_stub(topics)
-    assert [it[:4] for it in stub.endpoints] == [
+    ((stub, _),) = bridge_stub(topics)
+    assert [it[:4] for it in ends(stub)] == [
         (TOPIC, PUBLISHES, "/clock", "rosgraph_msgs/msg/Clock"),
         (TOPIC, SUBSCRIBES, "/r1/cmd_vel", "geometry_msgs/msg/Twist"),
         (SERVICE, SERVES, "/world/hall/control", "ros_gz_interfaces/srv/ControlWorld"),

@@ -14,7 +14,7 @@ import pytest
 
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.live import stub_nodes
-from multibot_rewrite.live.rehearsal import StubNode, to_order
+from multibot_rewrite.live.rehearsal import Stub, played, to_order
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -30,6 +30,8 @@ TF, STAMPED = "tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped"
 EMPTY, EMPTY_SERVICE = "std_msgs/msg/Empty", "std_srvs/srv/Empty"
 NAVIGATE = "nav2_msgs/action/NavigateToPose"
 Row = tuple[object, ...]
+# The words of the process of a stub.
+PROCESS = ("--ros-args", "-r", "__ns:=/box", "-r", "m:=n")
 
 
 class Transform:
@@ -90,7 +92,7 @@ class Ros:
         return lambda node, type_, name: self.rows.append((node.name, kind, name, type_))
 
 
-def rows(monkeypatch: pytest.MonkeyPatch, ros: Ros, *stubs: StubNode, turns: int = 0) -> list[Row]:
+def rows(monkeypatch: pytest.MonkeyPatch, ros: Ros, *stubs: Stub, turns: int = 0) -> list[Row]:
     """What is done until so many turns of the loop are over; first of all what is told back."""
     monkeypatch.setattr(stub_nodes, "ros", ros)
     monkeypatch.setattr(stub_nodes, "own_ends", ros.own_ends)
@@ -117,8 +119,9 @@ def rows(monkeypatch: pytest.MonkeyPatch, ros: Ros, *stubs: StubNode, turns: int
     return [("replaced", replaced), *ros.rows]
 
 
-def stub(*endpoints: Endpoint, edges: Any = ()) -> StubNode:
-    return StubNode("a", ("-r", "x:=y"), ("-p",), endpoints, edges)
+def stub(*endpoints: Endpoint, edges: Any = ()) -> Stub:
+    run = played("a", endpoints, arguments=("-r", "x:=y"))
+    return run._replace(process_namespace="/box", process_rules=(("m", "n"),)), edges
 
 
 @pytest.mark.parametrize(
@@ -179,7 +182,7 @@ def test_what_a_helper_node_has_is_its_own(monkeypatch: pytest.MonkeyPatch) -> N
         Endpoint(TOPIC, SUBSCRIBES, "~/scene", EMPTY, helper=True, by="_private_*"),
     )
     _, first, listener, *found = rows(monkeypatch, Ros(), node)
-    assert first[:2] == ("node", "a") and listener[2:] == ("-p",)
+    assert first[:2] == ("node", "a") and listener[2:] == PROCESS
     assert str(listener[1]).startswith("transform_listener_impl_")
     assert [it[2] for it in found if it[0] == listener[1]] == ["tf", "tf_static"]
     (private,) = [it for it in found if it[0] == "node"]

@@ -120,8 +120,8 @@ def test_a_rehearsal_places_a_costmap_as_its_code_does() -> None:
         it._replace(namespace="/elsewhere", name="costmap_robot1") if it == costmap else it
         for it in table.runs
     ]
-    stubs = [stub for robot, stub in stub_nodes(table._replace(runs=tuple(nodes)), {})]
-    own = next(it for it in stubs if it.name == "local_costmap" and "robot1" in it.arguments[2])
+    stubs = [stub for stub, _ in stub_nodes(table._replace(runs=tuple(nodes)), {})]
+    own = next(it for it in stubs if it.code_name == "local_costmap" and it.robot == "robot1")
     assert own.arguments[:3] == ("--ros-args", "-r", "__ns:=/robot1/local_costmap")
     assert not any("__node" in word for word in own.arguments)
 

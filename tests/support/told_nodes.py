@@ -17,7 +17,7 @@ import yaml
 
 from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.live.rehearsal import StubNode, stub_nodes
+from multibot_rewrite.live.rehearsal import Stub, played, stub_nodes
 from multibot_rewrite.spelling.transforms import with_odometry
 from multibot_rewrite.spelling.way_checks import running_nodes
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, edge_of
@@ -43,13 +43,13 @@ def placed(rules: Iterable[str]) -> tuple[str, str]:
     return found.get("__ns", "/"), found.get("__node", "")
 
 
-def nodes_of(every: Iterable[Told], fleet: LoadedFleet) -> Iterator[tuple[str, StubNode]]:
-    """The nodes of these programs, each with its robot."""
+def nodes_of(every: Iterable[Told], fleet: LoadedFleet) -> Iterator[Stub]:
+    """The nodes of these programs."""
     stubs = dict(_known(fleet))
     for told in every:
         program, own, rules = words_of(told)
         if program == "parameter_bridge":
-            yield "", _bridge(told, rules, fleet)
+            yield _bridge(told, rules, fleet)
         elif program in ("create", "spawn_entity.py"):
             model = own[own.index("-name" if "-name" in own else "-entity") + 1]
             yield from _plugins(model, fleet, stubs)
@@ -60,24 +60,24 @@ def nodes_of(every: Iterable[Told], fleet: LoadedFleet) -> Iterator[tuple[str, S
             yield from _process(f"{namespace.rstrip('/')}/{name}", rules, fleet, stubs)
 
 
-def _known(fleet: LoadedFleet) -> Iterator[tuple[str, StubNode]]:
+def _known(fleet: LoadedFleet) -> Iterator[tuple[str, Stub]]:
     """All nodes of the plan by full name."""
     table = fleet.planned.table
     made = stub_nodes(table, fleet.planned.edges)
-    for (_, it), (_, stub) in zip(running_nodes(table, ()), made, strict=True):
+    for (_, it), stub in zip(running_nodes(table, ()), made, strict=True):
         yield it.full_name, stub
 
 
 def _process(
-    full: str, rules: list[str], fleet: LoadedFleet, stubs: Mapping[str, StubNode]
-) -> Iterator[tuple[str, StubNode]]:
+    full: str, rules: list[str], fleet: LoadedFleet, stubs: Mapping[str, Stub]
+) -> Iterator[Stub]:
     """The node of a process and those that it makes; one that no plan has is there, too."""
     arguments = (ROS_ARGS, *rules) if rules else ()
     own = [it for it in fleet.planned.table.runs if it.full_name == full]
     if not own:
-        yield "", StubNode(full.rpartition("/")[2] or "unnamed", arguments, (), (), ())
+        yield played(full.rpartition("/")[2] or "unnamed", (), arguments=arguments), ()
     for it in own:
-        yield it.robot, _told(stubs[it.full_name], arguments)
+        yield _told(stubs[it.full_name], arguments)
         hosted = [
             one
             for one in fleet.planned.table.runs
@@ -86,8 +86,8 @@ def _process(
         free = tuple(word for word in rules if not word.startswith(("__ns", "__node")))
         for one in hosted:
             stub = stubs[one.full_name]
-            placing = _placing(stub.arguments)
-            yield it.robot, _told(stub, (ROS_ARGS, *placing, *_paired(free)))
+            placing = _placing(stub[0].arguments)
+            yield _told(stub, (ROS_ARGS, *placing, *_paired(free)))
 
 
 def _paired(words: Iterable[str]) -> list[str]:
@@ -98,35 +98,32 @@ def _placing(arguments: Iterable[str]) -> list[str]:
     return _paired(it for it in arguments if it.startswith(("__ns", "__node")))
 
 
-def _told(stub: StubNode, arguments: tuple[str, ...]) -> StubNode:
+def _told(stub: Stub, arguments: tuple[str, ...]) -> Stub:
     """What helpers in the process get, too, without the name, which their code sets."""
-    words = [it for it in arguments if ":=" in it and not it.startswith("__node")]
-    process = (ROS_ARGS, *_paired(words)) if words else ()
-    return stub._replace(arguments=arguments, process_arguments=process)
+    run, edges = stub
+    pairs = (it.split(":=", 1) for it in arguments if ":=" in it and not it.startswith("__node"))
+    rules = tuple((old, new) for old, new in pairs)
+    return run._replace(arguments=arguments, process_namespace="/", process_rules=rules), edges
 
 
-def _controller(
-    own: list[str], rules: list[str], stubs: Mapping[str, StubNode]
-) -> Iterator[tuple[str, StubNode]]:
+def _controller(own: list[str], rules: list[str], stubs: Mapping[str, Stub]) -> Iterator[Stub]:
     """A controller in the namespace of its spawner, with the rules that the spawner hands on."""
     namespace, _ = placed(rules)
     flag = "--controller-ros-args"
     given = own[own.index(flag) + 1].split() if flag in own else []
     place = [*(["-r", f"__ns:={namespace}"] if namespace != "/" else []), "-r", f"__node:={own[0]}"]
     stub = stubs[f"{namespace.rstrip('/')}/{own[0]}"]
-    yield "", _told(stub, (ROS_ARGS, *place, *given))
+    yield _told(stub, (ROS_ARGS, *place, *given))
 
 
-def _plugins(
-    model: str, fleet: LoadedFleet, stubs: Mapping[str, StubNode]
-) -> Iterator[tuple[str, StubNode]]:
+def _plugins(model: str, fleet: LoadedFleet, stubs: Mapping[str, Stub]) -> Iterator[Stub]:
     (robot,) = (it for it in fleet.plan.robots if it.spec.model == model)
     for it in fleet.planned.table.runs:
         if it.robot == robot.spec.namespace and it.fact.plugin:
-            yield it.robot, stubs[it.full_name]
+            yield stubs[it.full_name]
 
 
-def _bridge(told: Told, rules: list[str], fleet: LoadedFleet) -> StubNode:
+def _bridge(told: Told, rules: list[str], fleet: LoadedFleet) -> Stub:
     """A bridge has the rows of its file: names are resolved in its namespace. It brings odometry."""
     files = list(told["files"].values())[1:]  # the first one is the program
     sections = [it for text in files for it in (yaml.safe_load(text) or {}).values()]
@@ -146,7 +143,7 @@ def _bridge(told: Told, rules: list[str], fleet: LoadedFleet) -> StubNode:
     )
     sends = any(row["ros_type_name"] == _TF for row in rows)
     edges = tuple(_odometry(Path(config).parent.name, fleet) if sends else ())
-    return StubNode("ros_gz_bridge", (ROS_ARGS, *rules) if rules else (), (), ends, edges)
+    return played("ros_gz_bridge", ends, arguments=(ROS_ARGS, *rules) if rules else ()), edges
 
 
 def _odometry(name: str, fleet: LoadedFleet) -> Iterator[Edge]:

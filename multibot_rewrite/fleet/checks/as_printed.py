@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a fleet is to start and what the printed ``fleet.launch.py`` does -> where they differ.
+"""What a fleet is to start and what the printed ``fleet.launch.py`` and the lines of ``commands.md`` do
+-> where they differ.
 
-The launch file is executed with other launch arguments each time, and every value of every action is
-compared with the records that it was printed from: it is printed by other code than this.
+The launch file is executed with other launch arguments each time, the lines are read as a shell and rcl
+read them. Every value of every action is compared with the records that it was printed from: it is
+printed by other code than this. A controller that the launch file leaves out has its line all the same,
+and so have programs that only a person starts.
 Sources: launch and launch_ros jazzy; lifecycle_msgs msg/Transition.msg.
 """
 
 from __future__ import annotations
 
 import os
+import re
+import shlex
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
-from itertools import zip_longest
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import count, zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -20,26 +25,35 @@ from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.launch.starts import (
     CLASSIC,
     GZ,
-    Component,
-    File,
+    SIMULATOR,
     FleetStarts,
     RobotStarts,
-    Start,
-    Text,
     launch_arguments,
 )
 from multibot_rewrite.fleet.outputs.relays import BRIDGE
 from multibot_rewrite.producers.launch.performed import Action, Launching, performed, share
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.producers.launch.ros_arguments import ros2_run, ros_arguments
+from multibot_rewrite.spelling.start import File, Start, Text, keywords, path_of
+from multibot_rewrite.system.records import SIM_TIME, Place
 
 # The transitions of a life cycle, by number, and the states before and after the first.
 _CONFIGURE, _ACTIVATE = 1, 3
 _CONFIGURED = {"start_state": "configuring", "goal_state": "inactive"}
-_BRIDGES = "ros_gz_bridge"
 _INCLUDED = {GZ: "ros_gz_sim/gz_sim", CLASSIC: "gazebo_ros/gazebo"}
 # More of a value is not shown.
 _SHOWN = 100
 _NOTHING = object()
+# The programs of which each process has its line, unless it is a node of a stack.
+_TOLD = (
+    ("tf2_ros", "static_transform_publisher"),
+    ("controller_manager", "spawner"),
+    ("ros_gz_sim", "create"),
+    ("gazebo_ros", "spawn_entity.py"),
+    ("topic_tools", "relay"),
+    ("tf_namespace_bridge", "tf_namespace_bridge"),
+)
+_RVIZ = ("rviz2", "rviz2")
+_SECTION = re.compile(r"(?m)^## .*$")
 
 
 class Difference(NamedTuple):
@@ -92,20 +106,14 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     ]
 
 
-class _Around(NamedTuple):
-    """What the processes of a robot have in common: their environment and their clock."""
-
-    environment: Mapping[str, str]
-    clock: bool
-
-
 class _Planned(NamedTuple):
     """What a fleet is to start in one launch; ``home`` is the folder of the build, ``arguments`` are
-    the values of the launch arguments."""
+    the values of the launch arguments, ``numbers`` those of its nodes with a life cycle."""
 
     starts: FleetStarts
     launch: Launching
     home: str
+    numbers: Iterator[int]
     arguments: Mapping[str, Any] = {}
 
     def actions(self) -> Iterator[Action]:
@@ -113,29 +121,15 @@ class _Planned(NamedTuple):
         for name, default, about in launch_arguments(self.starts):
             given = {"name": name, "default_value": self.value(default), "description": about}
             yield Action("DeclareLaunchArgument", given)
-        simulated = self.is_on("simulator")
-        yield from map(self.simulator, self.starts.simulators if simulated else ())
-        of_simulator = [it for it in self.starts.shared if self.is_bridge(it)]
-        others = [it for it in self.starts.shared if not self.is_bridge(it)]
-        shared = [*(of_simulator if simulated else ()), *others]
-        opened = self.starts.windows if self.is_on("rviz") else ()
-        of_all, number = self.around("", None), 0
-        for it in shared:
-            yield from self.process(it, of_all, number)
-        for robot in self.chosen():
-            for one in self.of_robot(robot, number):
-                number += one.kind == "LifecycleNode"
-                yield one
-        for it in opened:
-            yield from self.process(it, of_all, number)
+        yield from map(self.simulator, self.starts.simulators if self.is_on(SIMULATOR) else ())
+        yield from self.processes(self.starts.shared)
+        for it in self.chosen():
+            yield from self.processes(it.starts, it.name, it.clock, it.not_bridged)
+        yield from self.processes(self.starts.windows)
 
     def is_on(self, argument: str) -> bool:
         """Is a launch argument that switches something true?"""
         return self.arguments.get(argument) in ("true", "1")
-
-    def is_bridge(self, it: Start) -> bool:
-        """Is it of no use without the simulator?"""
-        return bool(self.starts.simulators) and it.package == _BRIDGES
 
     def chosen(self) -> list[RobotStarts]:
         """Return the robots that are launched."""
@@ -145,25 +139,21 @@ class _Planned(NamedTuple):
         wanted = word.split(",")
         return [it for it in self.starts.robots if not word or it.name in wanted]
 
-    def around(self, robot: str, clock: bool | None) -> _Around:
-        """Return what the processes of a robot have, or those for all (empty)."""
-        domains = self.starts.domains
-        environment = {"ROS_DOMAIN_ID": f"{domains[robot]}"} if domains else {}
-        return _Around(environment, self.is_on("use_sim_time") if clock is None else clock)
-
-    def of_robot(self, it: RobotStarts, number: int) -> Iterator[Action]:
-        """Yield what one robot does; ``number`` is that of its first node with a life cycle."""
-        around = self.around(it.name, it.clock)
-        bridged = it.bridged_tf if BRIDGE in self.launch.installed else ()
-        spawned = it.spawned if self.is_on("simulator") else ()
-        opened = it.windows if self.is_on("rviz") else ()
-        for start in it.starts:
-            yield from self.process(start, around, number)
-            number += start.brought_up
-        if it.bridged_tf and not bridged:
-            yield Action("LogInfo", {"msg": it.not_bridged})
-        for start in (*bridged, *spawned, *opened):
-            yield from self.process(start, around, number)
+    def processes(
+        self,
+        starts: Sequence[Start],
+        robot: str = "",
+        clock: bool | None = None,
+        otherwise: str = "",
+    ) -> Iterator[Action]:
+        """Yield what is started for a robot, or for all (empty)."""
+        missing = [it for it in starts if it.needs not in ("", *self.launch.installed)]
+        time = self.is_on(SIM_TIME) if clock is None else clock
+        for it in starts:
+            if it in missing[:1]:
+                yield Action("LogInfo", {"msg": otherwise})
+            elif it not in missing and (not it.condition or self.is_on(it.condition)):
+                yield from self.process(it, robot, time)
 
     def simulator(self, name: str) -> Action:
         """Return the include that starts a simulator."""
@@ -176,43 +166,21 @@ class _Planned(NamedTuple):
         values = {"launch_description_source": source, "launch_arguments": given}
         return Action("IncludeLaunchDescription", values)
 
-    def process(self, it: Start, around: _Around, number: int) -> Iterator[Action]:
+    def process(self, it: Start, robot: str, clock: bool) -> Iterator[Action]:
         """Yield a process; one that is brought up is configured, then activated."""
-        kind = "ComposableNodeContainer" if it.components else "Node"
-        values = {
-            "package": it.package,
-            "executable": it.executable,
-            **self.node(it, around.clock),
-            "arguments": [self.value(word) for word in it.arguments],
-            "output": "screen",
-            "composable_node_descriptions": [
-                self.component(one, around.clock) for one in it.components
-            ],
-        }
-        told = {name: one for name, one in values.items() if one}
-        told["environment"] = dict(around.environment)
-        yield Action("LifecycleNode" if it.brought_up else kind, told)
+        time = {SIM_TIME: clock}
+        own, *inner = (one._replace(parameters=(*one.parameters, time)) for one in it.every)
+        values = self.value(keywords(own._replace(components=tuple(inner))))
+        domains = self.starts.domains
+        environment = {"ROS_DOMAIN_ID": f"{domains[robot]}"} if domains else {}
+        kind = "ComposableNodeContainer" if inner else "LifecycleNode" if it.brought_up else "Node"
+        yield Action(kind, {**values, "output": "screen", "environment": environment})
         if it.brought_up:
+            number = next(self.numbers)
             entities = [{"event": _change(number, _ACTIVATE)}]
             target = {"target_lifecycle_node": number, "entities": entities}
             yield Action("RegisterEventHandler", {**target, **_CONFIGURED})
             yield Action("EmitEvent", {"event": _change(number, _CONFIGURE)})
-
-    def component(self, it: Component, clock: bool) -> dict[str, Any]:
-        """Return the values of a component."""
-        names = {"namespace": "node_namespace", "name": "node_name"}
-        own = {names.get(key, key): one for key, one in self.node(it, clock).items()}
-        return {"package": it.package, "node_plugin": it.plugin, **own}
-
-    def node(self, it: Start | Component, clock: bool) -> dict[str, Any]:
-        """Return what a process and a component have in common."""
-        values = {
-            "namespace": it.namespace,
-            "name": it.name,
-            "parameters": [*(self.value(one) for one in it.parameters), {"use_sim_time": clock}],
-            "remappings": [[old, new] for old, new in it.remappings],
-        }
-        return {name: one for name, one in values.items() if one}
 
     def value(self, it: Any) -> Any:
         """Return a value as the launch has it."""
@@ -222,17 +190,78 @@ class _Planned(NamedTuple):
             return _text_of(it.path)
         if isinstance(it, Mapping):
             return {key: self.value(one) for key, one in it.items()}
-        return it
+        return [self.value(one) for one in it] if isinstance(it, list | tuple) else it
 
 
 def _planned(starts: FleetStarts, launch: Launching, home: str) -> _Planned:
-    found = _Planned(starts, launch, home)
+    found = _Planned(starts, launch, home, count())
     usual = {name: found.value(it) for name, it, _ in launch_arguments(starts)}
     return found._replace(arguments={**usual, **launch.arguments})
 
 
 def _change(number: int, transition: int) -> dict[str, Any]:
     return {"lifecycle_node_matcher": [number], "transition_id": transition}
+
+
+def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
+    """Return in words what the lines of ``commands.md`` and the planned processes do not share."""
+    above, *sections = ([*_commands(section)] for section in _SECTION.split(text))
+    both = zip(starts.robots, sections, strict=False)
+    opened = [it for section in (above, *sections) for it in section if it[:2] == _RVIZ]
+    found = (it for robot, section in both for it in _of_robot(robot, section))
+    return [*found, *_apart(starts.shown, opened)]
+
+
+def _of_robot(robot: RobotStarts, printed: Sequence[Start]) -> Iterator[str]:
+    planned = [it for it in robot.starts if it.full_name not in robot.nodes]
+    left = {name for name, _ in robot.left}
+    for program in _TOLD:
+        wanted = [it for it in planned if it[:2] == program]
+        given = [it for it in printed if it[:2] == program and not left & {*it.arguments}]
+        yield from (f"{robot.name}: {it}" for it in _apart(wanted, given))
+
+
+def _apart(planned: Iterable[Start], printed: Iterable[Start]) -> Iterator[str]:
+    wanted, given = (
+        [Action("Node", keywords(it)) for it in starts]
+        for starts in (map(_as_commanded, planned), printed)
+    )
+    yield from (it.message for it in _differences(wanted, given))
+
+
+def _as_commanded(it: Start) -> Start:
+    """Return a planned process as its line has it: values that are no texts are no words of it."""
+    rows = [row for row in it.parameters if isinstance(row, Mapping)]
+    values = {name: one for row in rows for name, one in row.items() if isinstance(one, str)}
+    names = {"__node": it.name, **dict(it.remappings)}
+    return it._replace(
+        namespace="" if it.namespace == "/" else it.namespace,
+        name=names["__node"],
+        parameters=(*(one for one in it.parameters if isinstance(one, File)), values),
+        remappings=tuple(pair for pair in it.remappings if not pair[0].startswith("__")),
+        arguments=tuple(map(path_of, it.arguments)),
+    )
+
+
+def _commands(text: str) -> Iterator[Start]:
+    """Yield the processes of the lines; one under a condition is for a person to judge."""
+    for line in text.splitlines():
+        words = [] if line.startswith("#") or "  # " in line else _split(line)
+        while words and "=" in words[0]:
+            del words[0]
+        run = (*_RVIZ, tuple(words[1:])) if words[:1] == ["rviz2"] else ros2_run(words)
+        if run:
+            package, executable, given = *run[:2], ros_arguments(run[2])
+            values = {name: one for name, one in given.values if name != SIM_TIME}
+            names, files = (given.namespace, given.name), map(File, given.files)
+            yield Start(package, executable, *names, (*files, values), given.rules, given.own)
+
+
+def _split(line: str) -> list[str]:
+    try:
+        return shlex.split(line)
+    except ValueError:
+        return []
 
 
 def _differences(planned: list[Action], printed: Iterable[Action]) -> Iterator[Difference]:

@@ -21,9 +21,8 @@ from multibot_rewrite.description.readback.meeting import COMMAND, DATA
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.fleet.checks.as_commanded import not_as_commanded
 from multibot_rewrite.fleet.checks.as_planned import is_for_driver, not_as_planned, open_names
-from multibot_rewrite.fleet.checks.as_printed import not_as_printed
+from multibot_rewrite.fleet.checks.as_printed import not_as_commanded, not_as_printed
 from multibot_rewrite.fleet.checks.lacking import LACKING
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
 from multibot_rewrite.fleet.file.robot_spec import REAL

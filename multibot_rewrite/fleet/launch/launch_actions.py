@@ -8,15 +8,14 @@ to the reader: they are named in the file.
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Collection, Iterator, Mapping
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.checks.lacking import CARTOGRAPHER
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.launch.starts import Component, File, RobotStarts, Start, Text
+from multibot_rewrite.fleet.launch.starts import SIMULATOR, RobotStarts
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
 from multibot_rewrite.fleet.outputs.output_file import (
@@ -26,7 +25,6 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
 )
 from multibot_rewrite.fleet.outputs.relays import not_bridged, relays
-from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
@@ -40,22 +38,31 @@ from multibot_rewrite.knowledge.programs import (
     is_unmanaged,
     known_program,
     program_of,
+    started_as,
 )
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.spelling.domain_bridge import bridge_name, bridge_path
-from multibot_rewrite.spelling.ways import COMPONENT, SPAWN, SPAWNER, Started, spawner_arguments
+from multibot_rewrite.spelling.start import (
+    File,
+    Parameters,
+    Start,
+    Text,
+    spawner_of,
+    start_of,
+)
+from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER, Started
 from multibot_rewrite.system.records import PUBLISHES
 
 STATE = "robot_state_publisher"
 # Started by hand, or once for all robots.
 _BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
-_DESCRIBE = "describe it in a file of nodes, with `programs:` (docs/stacks.md)"
+_DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/stacks.md)"
 _NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
-_BRIDGE = Program("ros_gz_bridge", "parameter_bridge")
-_DOMAIN_BRIDGE = Program("domain_bridge", "domain_bridge")
+_BRIDGE = ("ros_gz_bridge", "parameter_bridge")
+_DOMAIN_BRIDGE = ("domain_bridge", "domain_bridge")
 
 
 def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -> RobotStarts:
@@ -64,45 +71,57 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
     (robot,) = one.robots
     names = names_of(one.fleet.table, robot.spec.namespace)
     facts = {it.name: it for it in one.evidence_of(robot).nodes}
-    given = _Given(one, robot, names, facts, files, bridged)
-    left = dict(_left(given))
-    simulated = is_simulated(robot)
-    starts = [it for name in names.started if name not in left for it in _started(given, name)]
-    bridge = gz_bridge_path(robot)
-    spawned = []
-    if simulated:
-        spawned = [_spawner(given)]
-        spawned += [_bridge(names, robot, bridge)] if bridge in files else []
-    placed = start_poses.start_poses(one).transforms
-    starts += [it.start for it in placed]
-    copied, bridged_tf = _relays(given)
-    starts += [*copied, *_domain_bridge(robot, files)]
-    params = params_paths(robot, files)
-    told = robot.spec.name, os.path.basename(robot.spec.description), _where(names), params
-    found = tuple(starts), tuple(spawned), tuple(left.items())
-    nodes = tuple(_nodes(names, left))
-    otherwise = not_bridged(robot.spec.name) if bridged_tf else ""
-    return RobotStarts(*told, *found, bridged_tf, otherwise, nodes=nodes)
+    given = _Given(one, robot, names, facts, files, bridged, {})
+    given = given._replace(left=dict(_left(given)))
+    processes = (_started(given, it) for it in given.running if names.started[it].way != COMPONENT)
+    relayed = [it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file)]
+    starts = (
+        *processes,
+        *(it.start for it in start_poses.start_poses(one).transforms),
+        *(it for it in relayed if not it.needs),
+        *_domain_bridge(robot, files),
+        *(it for it in relayed if it.needs),
+        *(it._replace(condition=SIMULATOR) for it in _spawned(given)),
+    )
+    return RobotStarts(
+        robot.spec.name,
+        os.path.basename(robot.spec.description),
+        _where(names),
+        params_paths(robot, files),
+        starts,
+        tuple(given.left.items()),
+        not_bridged(robot.spec.name) if any(it.needs for it in relayed) else "",
+        tuple(_nodes(given)),
+    )
 
 
 class _Given(NamedTuple):
+    """What is known of a robot; ``left`` are the nodes that are not started, each with the reason."""
+
     plan: FleetPlan
     robot: RewrittenRobot
     names: NodeNames
     facts: Mapping[str, NodeFacts]
     files: Collection[str]
     bridged: Collection[str]
+    left: Mapping[str, str]
 
     @property
     def release(self) -> str:
         return self.plan.file.distro
 
+    @property
+    def running(self) -> list[str]:
+        """The nodes that are started, by their names in the stacks."""
+        return [it for it in self.names.started if it not in self.left]
 
-def _nodes(names: NodeNames, left: Collection[str]) -> Iterator[str]:
+
+def _nodes(given: _Given) -> Iterator[str]:
     """The nodes that are started, and those in their processes."""
-    for name in (it for it in names.started if it not in left):
+    names = given.names
+    for name in given.running:
         yield names.full_name(name)
-        yield from (names.full_name(it) for it in names.inside(name) if it not in left)
+        yield from (names.full_name(it) for it in names.inside(name) if it not in given.left)
 
 
 def _where(names: NodeNames) -> str:
@@ -120,13 +139,15 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
         if name in _BY_HAND or name in relayed:
             yield name, ""
         elif it is None:
-            yield name, f"nothing is known of its program; {_DESCRIBE}"
+            yield name, f"nothing is known of its program; {_DESCRIBE.format('programs')}"
         elif it.when and not _is_needed(given, it):
             yield name, f"nothing in the fleet file starts it: {said(it.when)}; {_NAME}"
         elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
-        elif not given.names.is_controller(name) and program_of(it, given.release) is None:
-            yield name, f"the program of package {it.package} is not known; {_DESCRIBE}"
+        elif not given.names.is_controller(name) and _program(given, name) is None:
+            is_component = given.names.started[name].way == COMPONENT
+            what, key = ("class", "component") if is_component else ("program", "programs")
+            yield name, f"the {what} of package {it.package} is not known; {_DESCRIBE.format(key)}"
 
 
 def _is_needed(given: _Given, it: NodeFacts) -> bool:
@@ -145,24 +166,36 @@ def _sends(end: Endpoint, topic: str) -> bool:
     return end.role == PUBLISHES and not end.when and end.name.endswith(topic)
 
 
-def _started(given: _Given, name: str) -> Iterator[Start]:
+def _started(given: _Given, name: str) -> Start:
+    """What runs a node, with the components in it."""
     it, facts = given.names.started[name], given.facts[name]
     if it.way == SPAWNER:
-        yield controller(given.plan, it)
-    elif it.way != COMPONENT:
-        program = program_of(facts, given.release)
-        assert program is not None
-        yield Start(
-            program.package,
-            program.executable,
-            it.node.namespace,
-            it.node.name,
-            _parameters(given, name),
-            it.rules,
-            (*program.words, *_options(given, facts)),
-            tuple(_components(given, name)),
-            is_unmanaged(facts, given.release) and not _is_listed(given, name),
-        )
+        return controller(given.plan, it)
+    program = _program(given, name)
+    assert program is not None
+    made = start_of(it, program, _parameters(given, name))
+    return made._replace(
+        arguments=(*made.arguments, *_options(given, facts)),
+        components=tuple(_components(given, name)),
+        brought_up=is_unmanaged(facts, given.release) and not _is_listed(given, name),
+    )
+
+
+def _program(given: _Given, name: str) -> Program | None:
+    """What runs a node: its program, for a component its class; None where nobody says it."""
+    program = started_as(given.facts[name], given.release)
+    is_component = given.names.started[name].way == COMPONENT
+    known = program and (program.plugin if is_component else program.executable)
+    return program if known else None
+
+
+def _components(given: _Given, container: str) -> Iterator[Start]:
+    for name in given.running:
+        it = given.names.started[name]
+        if it.way == COMPONENT and it.node.fact.container == container:
+            program = _program(given, name)
+            assert program is not None
+            yield start_of(it, program, _parameters(given, name))
 
 
 def _options(given: _Given, facts: NodeFacts) -> Iterator[str | File]:
@@ -178,27 +211,10 @@ def _is_listed(given: _Given, name: str) -> bool:
     return any(name in listed for listed in given.names.managed.values())
 
 
-def _components(given: _Given, container: str) -> Iterator[Component]:
-    left = dict(_left(given))
-    mine = ((name, it) for name, it in given.names.started.items() if name not in left)
-    for name, it in mine:
-        if it.way == COMPONENT and it.node.fact.container == container and name in given.facts:
-            program = program_of(given.facts[name], given.release)
-            if program is not None and program.plugin:
-                yield Component(
-                    program.package,
-                    program.plugin,
-                    it.node.namespace,
-                    it.node.name,
-                    _parameters(given, name),
-                    it.rules,
-                )
-
-
-def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...]:
+def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     """Its robot's parameter files, and what no file says of it."""
     robot, facts = given.robot, given.facts[name]
-    found: list[File | Mapping[str, Any]] = [File(it) for it in params_paths(robot, given.files)]
+    found: list[Parameters] = [File(it) for it in params_paths(robot, given.files)]
     known = facts.kind
     if facts.usual:
         found.append(dict(facts.usual))
@@ -226,12 +242,12 @@ def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...
 def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
     """The types of the controllers that no file of the robot declares: without one a controller is not
     loaded (ros2_control controller_manager.cpp)."""
-    file, left = given.plan.file, dict(_left(given))
+    file = given.plan.file
     types = {it: type_ for type_, it in load_known_nodes(file.nodes, file.distro).types.items()}
     declared = {it.name for it in given.plan.evidence_of(given.robot).given if it.type}
     for name, it in given.names.started.items():
         mine = it.way == SPAWNER and it.manager == given.names.name(manager)
-        if mine and not {name} & {*left, *declared} and given.facts[name].kind in types:
+        if mine and not {name} & {*given.left, *declared} and given.facts[name].kind in types:
             yield f"{it.node.name}.type", types[given.facts[name].kind]
 
 
@@ -249,8 +265,7 @@ def _description(robot: RewrittenRobot) -> str:
 
 def controller(plan: FleetPlan, it: Started) -> Start:
     """Return the spawner of a controller of the one robot of a plan."""
-    words = (*spawner_arguments(it), *_as_declared(plan, it.node.node))
-    return Start(*SPAWN, it.node.namespace, arguments=words)
+    return spawner_of(it, *_as_declared(plan, it.node.node))
 
 
 def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
@@ -266,29 +281,19 @@ def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
         yield "--inactive"
 
 
-def _spawner(given: _Given) -> Start:
-    """What puts the robot into its simulator."""
+def _spawned(given: _Given) -> Iterator[Start]:
+    """What puts the robot into its simulator, and what brings its topics from there."""
+    robot = given.robot
+    if not is_simulated(robot):
+        return
     (it,) = spawn.in_folder(given.plan)
-    start = spawn.spawner(it, spawn.is_classic(given.robot))
-    words = (File(it.file) if it.file and word == it.file else word for word in start.arguments)
-    return start._replace(arguments=tuple(words))
-
-
-def _bridge(names: NodeNames, robot: RewrittenRobot, path: str) -> Start:
-    spaces = {it.namespace for it in names.nodes.values()}
-    namespace = min(spaces, key=len, default="/")
-    name = "" if namespace != "/" else f"ros_gz_bridge_{robot.spec.namespace}"
-    found: tuple[File | Mapping[str, Any], ...] = ({"config_file": File(path)},)
-    return Start(*_BRIDGE[:2], namespace, name, found)
-
-
-def _relays(given: _Given) -> tuple[tuple[Start, ...], tuple[Start, ...]]:
-    """What brings its tf to ``/tf``, if the fleet file says so; and what does it with the bridge, which
-    may not be installed."""
-    naming, file = given.plan.fleet.naming, given.plan.file
-    made = relays(given.robot.spec.namespace, naming, file)
-    starts = tuple(it.start for it in made)
-    return (starts, ()) if naming.layout.frames else ((), starts)
+    yield spawn.spawner(it, spawn.is_classic(robot))
+    path = gz_bridge_path(robot)
+    if path in given.files:
+        spaces = {it.namespace for it in given.names.nodes.values()}
+        namespace = min(spaces, key=len, default="/")
+        name = "" if namespace != "/" else f"ros_gz_bridge_{robot.spec.namespace}"
+        yield Start(*_BRIDGE, namespace, name, ({"config_file": File(path)},))
 
 
 def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[Start]:
@@ -296,17 +301,21 @@ def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[St
     path = bridge_path(robot.spec.namespace)
     if path in files:
         name = bridge_name(robot.spec.namespace)
-        yield Start(*_DOMAIN_BRIDGE[:2], "", name, arguments=(File(path),))
+        yield Start(*_DOMAIN_BRIDGE, "", name, arguments=(File(path),))
 
 
-def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:
+def of_all(
+    plan: FleetPlan, files: Collection[str], simulators: Collection[str]
+) -> tuple[Start, ...]:
     """What runs once for all robots: the bridge of the clock, and nodes that all of them share."""
     names = names_of(plan.fleet.table, "")
     known = {it.name: it for one in plan.evidence.values() for it in one.nodes}
-    starts = [*_shared(plan, names, known)]
-    if BRIDGE_FILE in files:
-        starts.append(Start(*_BRIDGE[:2], "", "", ({"config_file": File(BRIDGE_FILE)},)))
-    return tuple(starts)
+    shared = tuple(_shared(plan, names, known))
+    if BRIDGE_FILE not in files:
+        return shared
+    bridge = Start(*_BRIDGE, parameters=({"config_file": File(BRIDGE_FILE)},))
+    # It is of no use without the simulator.
+    return (bridge._replace(condition=SIMULATOR), *shared) if simulators else (*shared, bridge)
 
 
 def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -> Iterator[Start]:
@@ -322,30 +331,8 @@ def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -
             started.append(it.node.name)
         if plan.file.cell and name == MOVE_GROUP:
             files = [File(parameters_path(plan.file.cell))]
-        yield Start(*program[:2], it.node.namespace, it.node.name, tuple(files), it.rules)
+        yield start_of(it, program, tuple(files))
     if started:
         manager = known_program(LIFECYCLE_MANAGER, plan.file.distro)
         values = {"autostart": True, "node_names": started}
         yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (values,))
-
-
-def windows(configs: Sequence[RvizOutput], files: Collection[str]) -> Iterator[tuple[str, Start]]:
-    """The windows of RViz, each with the one robot that it shows, or "" for all.
-
-    MoveIt's displays read the parameters of their process.
-    """
-    for it in configs:
-        for window in it.windows:
-            given = f"{window.robot}/{moveit_parameters.FILE}"
-            yield (
-                window.robot,
-                Start(
-                    "rviz2",
-                    "rviz2",
-                    window.namespace,
-                    "",
-                    (File(given),) if given in files else (),
-                    tuple(window.remaps),
-                    ("-d", File(it.path(window))),
-                ),
-            )

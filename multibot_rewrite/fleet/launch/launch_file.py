@@ -11,10 +11,10 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_actions
 from multibot_rewrite.fleet.launch.launch_python import to_python
-from multibot_rewrite.fleet.launch.starts import GZ, File, FleetStarts, RobotStarts, Start
+from multibot_rewrite.fleet.launch.starts import GZ, RVIZ, FleetStarts, RobotStarts
 from multibot_rewrite.fleet.outputs import spawn, teleop, world_file
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
-from multibot_rewrite.fleet.outputs.rviz_outputs import RvizOutput
+from multibot_rewrite.spelling.start import File, Start, shell_line
 
 LAUNCH = "fleet.launch.py"
 
@@ -27,14 +27,14 @@ def launch_file(starts: FleetStarts) -> OutputFile:
 def fleet_starts(
     plan: FleetPlan,
     each: Sequence[FleetPlan],
-    configs: Sequence[RvizOutput],
     files: Sequence[OutputFile],
     bridged: Collection[str],
-    shown: Sequence[RvizOutput],
+    shown: Sequence[tuple[str, Start]],
+    are_opened: bool,
 ) -> FleetStarts:
-    """What the launch file starts; ``each`` is every robot as a fleet of its own, ``configs`` are the
-    windows of RViz that are asked for, ``shown`` all of them, ``files`` what else is built, ``bridged``
-    the topics that bridges bring."""
+    """What the launch file starts; ``each`` is every robot as a fleet of its own, ``files`` what else
+    is built, ``bridged`` the topics that bridges bring, ``shown`` the windows of RViz, each with its
+    robot, which it opens if somebody has asked for them."""
     paths = frozenset(it.path for it in files)
     robots = [launch_actions.of_robot(one, paths, bridged) for one in each]
     simulators = spawn.simulators(plan)
@@ -45,24 +45,24 @@ def fleet_starts(
     clock = None if others else first
     source = os.path.basename(plan.file.file) or "a fleet"
     count = plural(len(plan.robots), "robot")
-    opened = list(launch_actions.windows(configs, paths))
+    opened = [(name, it._replace(condition=RVIZ)) for name, it in shown if are_opened]
     names = {it.name for it in robots}
     return FleetStarts(
         f"Start {count} of {source}{facts_of_release(plan.file.distro)}.",
         simulators,
-        launch_actions.of_all(plan, paths),
+        launch_actions.of_all(plan, paths, simulators),
         [_with_windows(it, opened) for it in robots],
         [window for name, window in opened if name not in names],
         bool(simulators) if clock is None else clock,
-        [teleop.command(it) for one in each for it in teleop.teleops(one)],
+        [shell_line(it.start) for one in each for it in teleop.teleops(one)],
         _world(simulators, paths),
-        _domains(plan),
-        [window for _, window in launch_actions.windows(shown, paths)],
+        domains_of(plan),
+        [window for _, window in shown],
     )
 
 
-def _domains(plan: FleetPlan) -> dict[str, int]:
-    """By a robot's name, as it is chosen with, not by its namespace."""
+def domains_of(plan: FleetPlan) -> dict[str, int]:
+    """Return the ROS domain of each robot by its name and that of all (empty), if they have several."""
     numbers = {it.robot: it.number for it in plan.file.apart.domains}
     own = {it.spec.name: numbers[it.spec.namespace] for it in plan.robots if numbers}
     return {**own, "": numbers[""]} if numbers else {}
@@ -70,7 +70,7 @@ def _domains(plan: FleetPlan) -> dict[str, int]:
 
 def _with_windows(it: RobotStarts, opened: Sequence[tuple[str, Start]]) -> RobotStarts:
     """The robot with the windows that show it alone: they are not opened without it."""
-    return it._replace(windows=tuple(window for name, window in opened if name == it.name))
+    return it._replace(starts=(*it.starts, *(own for name, own in opened if name == it.name)))
 
 
 def _world(simulators: Collection[str], paths: Collection[str]) -> File | str:

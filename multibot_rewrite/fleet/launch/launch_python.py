@@ -10,24 +10,20 @@ from textwrap import wrap
 from multibot_rewrite.fleet.launch.each_robot import Function, functions
 from multibot_rewrite.fleet.launch.python_actions import (
     OF_ALL,
+    actions,
     comment,
-    group,
     lines,
-    process,
     value,
 )
 from multibot_rewrite.fleet.launch.starts import (
     CLASSIC,
     GZ,
-    File,
     FleetStarts,
     RobotStarts,
     launch_arguments,
 )
-from multibot_rewrite.fleet.outputs.relays import BRIDGE
+from multibot_rewrite.spelling.start import File
 
-# What brings topics of a simulator is of no use without it.
-BRIDGES = "ros_gz_bridge"
 _NAME = "name"
 # What ament_flake8 allows, and robots of which each has its line to drive.
 WIDTH, _DRIVING = 99, 4
@@ -130,9 +126,9 @@ def _text(*parts: Iterable[str]) -> str:
 
 
 def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
-    if any(robot.bridged_tf for robot in it.robots):
+    if any(start.needs for start in it.every):
         yield "", "", *_INSTALLED.splitlines()
-    if any(start.brought_up for robot in it.robots for start in robot.starts):
+    if any(start.brought_up for start in it.every):
         yield "", "", *_BROUGHT_UP.splitlines()
     made = functions(it.robots)
     for own in made:
@@ -225,19 +221,7 @@ def _robot(it: RobotStarts) -> Iterator[str]:
     if it.clock is not None:
         own = own._replace(clock={"use_sim_time": it.clock})
     yield "    return ["
-    for start in it.starts:
-        yield from process(start, 8, own)
-    if it.bridged_tf:
-        yield "        *if_installed("
-        yield f"            {value(BRIDGE)},"
-        yield f"            {value(it.not_bridged)},"
-        yield "            ["
-        for start in it.bridged_tf:
-            yield from process(start, 16, own)
-        yield "            ],"
-        yield "        ),"
-    yield from group(it.spawned, "simulator", 8, own)
-    yield from group(it.windows, "rviz", 8, own)
+    yield from actions(it.starts, 8, own, it.not_bridged)
     yield "    ]"
 
 
@@ -259,12 +243,9 @@ def _description(it: FleetStarts) -> Iterator[str]:
         yield f"            SetEnvironmentVariable('ROS_DOMAIN_ID', {number}),"
     for simulator in it.simulators:
         yield from (f"            {line}" for line in _SIMULATORS[simulator])
-    inside = [start for start in it.shared if it.simulators and start.package == BRIDGES]
-    yield from group(inside, "simulator", 12)
-    for start in (start for start in it.shared if start not in inside):
-        yield from process(start, 12)
+    yield from actions(it.shared, 12)
     yield "            OpaqueFunction(function=chosen),"
-    yield from group(it.windows, "rviz", 12)
+    yield from actions(it.windows, 12)
     yield "        ]"
     yield "    )"
 

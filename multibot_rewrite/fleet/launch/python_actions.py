@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import groupby
 from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.launch.each_robot import FLAG, Code
-from multibot_rewrite.fleet.launch.starts import Component, File, Start, Text
+from multibot_rewrite.spelling.start import File, Start, Text
 
 # What stays in one line.
 _SHORT = 66
@@ -26,71 +27,73 @@ class OfRobot(NamedTuple):
 OF_ALL = OfRobot()
 
 
-def group(
-    starts: Sequence[Start], argument: str, indent: int, own: OfRobot = OF_ALL
+def actions(
+    starts: Iterable[Start], indent: int, own: OfRobot = OF_ALL, otherwise: str = ""
 ) -> Iterator[str]:
-    """Yield what is started where a launch argument is true."""
-    if not starts:
-        return
+    """Yield what is started: in a group what depends on one launch argument, and what needs one
+    package, which says ``otherwise`` where that is not installed."""
     space = " " * indent
-    yield f"{space}GroupAction("
-    yield f"{space}    ["
-    for start in starts:
-        yield from process(start, indent + 8, own)
-    yield f"{space}    ],"
-    yield f"{space}    condition=IfCondition(LaunchConfiguration({value(argument)})),"
-    yield f"{space}),"
+    for (condition, needs), several in groupby(starts, lambda it: (it.condition, it.needs)):
+        if condition:
+            inner = _processes(several, indent + 8, own)
+            yield from (f"{space}GroupAction(", f"{space}    [", *inner, f"{space}    ],")
+            yield f"{space}    condition=IfCondition(LaunchConfiguration({value(condition)})),"
+            yield f"{space}),"
+        elif needs:
+            given = (f"{space}    {value(it)}," for it in (needs, otherwise))
+            inner = _processes(several, indent + 8, own)
+            yield from (f"{space}*if_installed(", *given, f"{space}    [", *inner)
+            yield from (f"{space}    ],", f"{space}),")
+        else:
+            yield from _processes(several, indent, own)
 
 
-def process(it: Start, indent: int, own: OfRobot = OF_ALL, action: str = "Node") -> Iterator[str]:
-    """Yield a node."""
+def _processes(starts: Iterable[Start], indent: int, own: OfRobot) -> Iterator[str]:
     space = " " * indent
-    if it.brought_up:
-        yield f"{space}*brought_up("
-        yield from process(it._replace(brought_up=False), indent + 4, own, "LifecycleNode")
-        yield f"{space}),"
-        return
-    yield f"{space}{'ComposableNodeContainer' if it.components else action}("
+    for it in starts:
+        if it.brought_up:
+            yield from (f"{space}*brought_up(", *_action(it, indent + 4, own), f"{space}),")
+        else:
+            yield from _action(it, indent, own)
+
+
+def _action(it: Start, indent: int, own: OfRobot) -> Iterator[str]:
+    """Yield a process or a component."""
+    space = " " * indent
+    yield f"{space}{_kind(it)}("
     yield from (f"{space}    {line}" for line in _keywords(it, own))
     if it.components:
         yield f"{space}    composable_node_descriptions=["
         for one in it.components:
-            yield from _component(one, indent + 8, own)
+            yield from _action(one, indent + 8, own)
         yield f"{space}    ],"
     yield f"{space}),"
 
 
+def _kind(it: Start) -> str:
+    if it.plugin:
+        return "ComposableNode"
+    if it.components:
+        return "ComposableNodeContainer"
+    return "LifecycleNode" if it.brought_up else "Node"
+
+
 def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
-    yield f"package={value(it.package)},"
-    yield f"executable={value(it.executable)},"
-    yield from _names(it.namespace, it.name)
+    for name in ("package", "executable", "plugin", "namespace", "name"):
+        if text := getattr(it, name):
+            yield f"{name}={value(text)},"
     if it.arguments:
         yield from lines("arguments=", [*_pairs(it.arguments)], ",")
-    yield from _given(it.parameters, it.remappings, own)
-    yield "output='screen',"
-
-
-def _names(namespace: str, name: str) -> Iterator[str]:
-    if namespace:
-        yield f"namespace={value(namespace)},"
-    if name:
-        yield f"name={value(name)},"
-
-
-def _given(
-    parameters: Sequence[File | Mapping[str, Any]],
-    remappings: Iterable[tuple[str, str]],
-    own: OfRobot,
-) -> Iterator[str]:
-    common = bool(own.files) and tuple(parameters[: len(own.files)]) == own.files
-    first = [Code("*params")] if common else []
-    rest = parameters[len(own.files) * common :]
+    count = len(own.files)
+    common = count > 0 and it.parameters[:count] == own.files
+    first, rest = ([Code("*params")], it.parameters[count:]) if common else ([], it.parameters)
     yield from lines("parameters=", [*first, *rest, own.clock], ",")
-    pairs = list(remappings)
-    if pairs:
+    if it.remappings:
         yield "remappings=["
-        yield from (f"    ({value(old)}, {value(new)})," for old, new in pairs)
+        yield from (f"    ({value(old)}, {value(new)})," for old, new in it.remappings)
         yield "],"
+    if not it.plugin:
+        yield "output='screen',"
 
 
 def lines(before: str, it: Any, after: str = "") -> list[str]:
@@ -125,16 +128,6 @@ def _pairs(words: Iterable[str | File]) -> Iterator[Code]:
             flag = ""
     if flag:
         yield Code(flag)
-
-
-def _component(it: Component, indent: int, own: OfRobot) -> Iterator[str]:
-    space = " " * indent
-    yield f"{space}ComposableNode("
-    yield f"{space}    package={value(it.package)},"
-    yield f"{space}    plugin={value(it.plugin)},"
-    own_lines = (*_names(it.namespace, it.name), *_given(it.parameters, it.remappings, own))
-    yield from (f"{space}    {line}" for line in own_lines)
-    yield f"{space}),"
 
 
 def value(it: Any) -> str:

@@ -8,7 +8,6 @@ their actions (moveit2 2.12.4 action_based_controller_handle.h, ``getActionName`
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterable, Iterator, Mapping
 
 import yaml
@@ -38,6 +37,7 @@ from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputF
 from multibot_rewrite.fleet.robots.joined_arms import Arm, joined_arms
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.start_poses import world_of
+from multibot_rewrite.spelling.start import File, Start, shell_line
 
 _MANAGER = "moveit_controller_manager"
 _DESCRIPTION = "robot_description"
@@ -79,8 +79,7 @@ def parameters_path(cell: Cell) -> str:
 def cell_commands(plan: FleetPlan) -> Iterator[str]:
     """The section of ``commands.md`` that starts the cell."""
     if cell := plan.file.cell:
-        words = ["ros2", "run", *PROGRAMS[MOVE_GROUP], "--ros-args", "--params-file"]
-        line = shlex.join([*words, parameters_path(cell)])
+        line = shell_line(Start(*PROGRAMS[MOVE_GROUP], parameters=(File(parameters_path(cell)),)))
         yield f"\n## {cell.name}\n\nOne move_group for all arms.\n\n```sh\n{line}\n```\n"
 
 

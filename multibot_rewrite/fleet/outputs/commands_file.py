@@ -4,13 +4,13 @@ starts MoveIt."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_actions import controller
-from multibot_rewrite.fleet.launch.starts import shell_line
+from multibot_rewrite.fleet.launch.launch_file import domains_of
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.cell_outputs import cell_commands
 from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_commands
@@ -21,6 +21,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.fleet.robots.start_poses import InitialPose, start_poses
 from multibot_rewrite.knowledge.conditions import said
+from multibot_rewrite.spelling.start import Start, shell_line
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.spelling.ways import SPAWNER, started
 
@@ -29,12 +30,13 @@ TAKING = "\nThe vendor's launch files take its files, in the folder of this file
 
 
 def commands_file(
-    plan: FleetPlan, each: Iterable[FleetPlan], windows: Iterable[str]
+    plan: FleetPlan, each: Iterable[FleetPlan], windows: Sequence[tuple[str, Start]]
 ) -> FilesAndFindings:
     """The commands robot by robot, and the parameters of those that amcl has to place.
 
-    ``each`` is every robot as a fleet of its own, ``windows`` the lines that open RViz.
+    ``each`` is every robot as a fleet of its own, ``windows`` open RViz, each with its robot.
     """
+    domains = domains_of(plan)
     clocks: set[bool | None] = set()
     rows = [f"# Commands of this fleet{facts_of_release(plan.file.distro)}\n"]
     for one in each:
@@ -43,18 +45,16 @@ def commands_file(
         _, findings = spawn.spawns(one)
         yield from (*poses.findings, *findings)
         rows.append(f"\n## {robot.spec.name}\n\n```sh\n")
-        numbers = {it.robot: it.number for it in plan.file.apart.domains}
-        rows += [f"export ROS_DOMAIN_ID={numbers[robot.spec.namespace]}\n"] if numbers else []
+        rows += [f"export ROS_DOMAIN_ID={domains[robot.spec.name]}\n"] if domains else []
         clock = robot.spec.use_sim_time
         clocks.add(clock)
-        rows += [f"{with_clock(shell_line(it.start), clock)}\n" for it in poses.transforms]
+        rows += _lines((it.start for it in poses.transforms), clock)
         rows += [spawn.either(it, robot) for it in spawn.in_folder(one) if is_simulated(robot)]
         rows += _controllers(one)
-        made = relays(robot.spec.namespace, one.fleet.naming, one.file)
-        relayed = (shell_line(it.start) for it in made)
-        rows += [f"{with_clock(it, clock)}\n" for it in (*relayed, *moveit_commands(one))]
-        driven = (with_clock(teleop.command(it), clock) for it in teleop.teleops(one))
-        rows += [*(f"{it}\n" for it in driven), "```\n", *_prefixed(robot)]
+        relayed = (it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file))
+        driven = (it.start for it in teleop.teleops(one))
+        rows += [*_lines((*relayed, *moveit_commands(one), *driven), clock), "```\n"]
+        rows += _prefixed(robot)
         if taking := list(vendor_commands(one)):
             rows += [TAKING, *(f"{it}\n" for it in taking), "```\n"]
         # nav2_bringup takes one file, which has them.
@@ -64,7 +64,9 @@ def commands_file(
             yield OutputFile(path, _start_parameters(one, pose))
     rows += cell_commands(plan)
     both = clocks.pop() if len(clocks) == 1 else None
-    if lines := [f"{with_clock(it, both)}\n" for it in windows]:
+    if windows:
+        there = (f"ROS_DOMAIN_ID={domains[it]} " if it in domains else "" for it, _ in windows)
+        lines = map("".join, zip(there, _lines((it for _, it in windows), both), strict=True))
         rows += ["\n## RViz\n\n```sh\n", *lines, "```\n"]
     yield OutputFile(COMMANDS, "".join(rows).encode())
 
@@ -75,12 +77,11 @@ def _prefixed(robot: RewrittenRobot) -> Iterator[str]:
         yield f"\nStart its {STATE_PUBLISHER} with `-p frame_prefix:={prefix}` as well.\n"
 
 
-def with_clock(line: str, use_sim_time: bool | None) -> str:
-    """A command whose node has the clock that the fleet file says, if it says one."""
-    if use_sim_time is None:
-        return line
-    words = "" if "--ros-args" in line else " --ros-args"
-    return f"{line}{words} -p use_sim_time:={str(use_sim_time).lower()}"
+def _lines(starts: Iterable[Start], use_sim_time: bool | None) -> Iterator[str]:
+    """The lines that start processes, with the clock that the fleet file says, if it says one."""
+    clock = () if use_sim_time is None else ({"use_sim_time": str(use_sim_time).lower()},)
+    for it in starts:
+        yield f"{shell_line(it._replace(parameters=(*it.parameters, *clock)))}\n"
 
 
 def _controllers(plan: FleetPlan) -> Iterator[str]:

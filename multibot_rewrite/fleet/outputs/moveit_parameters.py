@@ -9,7 +9,6 @@ moveit_configs_builder.py, and its default_configs/ompl_planning.yaml of each re
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -33,7 +32,8 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, expanded_name, own_yaml, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
-from multibot_rewrite.spelling.ways import arguments, started
+from multibot_rewrite.spelling.start import File, Start
+from multibot_rewrite.spelling.ways import started
 
 FILE = "moveit_parameters.yaml"
 # Package and executable of the nodes that take it, by their names in the stack.
@@ -80,8 +80,8 @@ def has_moveit(robot: RewrittenRobot) -> bool:
     return bool(robot.srdf and robot.spec.companions.get("moveit"))
 
 
-def moveit_commands(plan: FleetPlan) -> Iterator[str]:
-    """The lines that start move_group and servo_node of the one robot of a plan."""
+def moveit_commands(plan: FleetPlan) -> Iterator[Start]:
+    """What a person starts of the one robot of a plan: move_group and servo_node."""
     (robot,) = plan.robots
     servo = any(
         file_kind(own_yaml(robot.spec, it)) == OF_SERVO
@@ -90,9 +90,8 @@ def moveit_commands(plan: FleetPlan) -> Iterator[str]:
     nodes = PROGRAMS if servo else (_MOVE_GROUP,)
     for it in started(plan.fleet.table) if has_moveit(robot) else ():
         if it.node.node in nodes:
-            rules = arguments(it) or ["--ros-args"]
-            words = ["ros2", "run", *PROGRAMS[it.node.node], *rules]
-            yield shlex.join([*words, "--params-file", path_for(robot, FILE)])
+            names, files = (it.node.namespace, it.node.other_name), (File(path_for(robot, FILE)),)
+            yield Start(*PROGRAMS[it.node.node], *names, files, it.rules)
 
 
 def moveit_parameters(plan: FleetPlan, files: Iterable[OutputFile]) -> Iterator[OutputFile]:

@@ -12,7 +12,7 @@ src/tf_namespace_bridge.cpp, launch/tf_namespace_bridge.yaml, CMakeLists.txt (41
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming
@@ -20,10 +20,10 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.fleet import Fleet
-from multibot_rewrite.fleet.launch.starts import Start
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.spelling.start import Start
 from multibot_rewrite.spelling.targets import placed, target_of
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Origin, Place
 
@@ -34,19 +34,10 @@ _IN_CODE = "its code says its names"
 
 
 class Relay(NamedTuple):
-    """A node that brings tf of one robot to ``/tf``: its program, and what it is told."""
+    """A node that brings tf of one robot to ``/tf``, and its process."""
 
     run: Run
-    program: tuple[str, str]
-    parameters: Mapping[str, str] = {}
-    arguments: tuple[str, ...] = ()
-
-    @property
-    def start(self) -> Start:
-        """Its process; raises nothing."""
-        told = (self.parameters,) if self.parameters else ()
-        own = self.run.namespace, self.run.name
-        return Start(*self.program, *own, told, arguments=self.arguments)
+    start: Start
 
 
 def check_relayed(file: FleetFile, naming: Naming) -> None:
@@ -77,16 +68,18 @@ def _copies(robot: str, naming: Naming) -> Iterator[Relay]:
         source = f"{above}/{target.lstrip('/')}"
         told = {"input_topic": source, "output_topic": f"/{topic}"}
         run = _run(robot, node, naming, (source,), (f"/{topic}",), _FIXED)
-        yield Relay(run, _RELAY, told)
+        yield Relay(run, Start(*_RELAY, run.namespace, run.name, (told,)))
 
 
 def _bridge(robot: str, naming: Naming, world: str) -> Iterator[Relay]:
     reads, writes = (tuple(f"{above}/{it}" for it in TF_TOPICS) for above in (f"/{robot}", ""))
-    yield Relay(_run(robot, BRIDGE, naming, reads, writes, _IN_CODE), (BRIDGE, BRIDGE))
+    run = _run(robot, BRIDGE, naming, reads, writes, _IN_CODE)
+    yield Relay(run, Start(BRIDGE, BRIDGE, run.namespace, run.name, needs=BRIDGE))
     if frame := world or world_frame(naming):
         words = ("--frame-id", frame, "--child-frame-id", f"{robot}/{frame}")
         run = _run(robot, _WORLD, naming, (), writes[1:], _IN_CODE)
-        yield Relay(run, _STATIC, arguments=words)
+        start = Start(*_STATIC, run.namespace, run.name, arguments=words, needs=BRIDGE)
+        yield Relay(run, start)
 
 
 def not_bridged(robot: str) -> str:

@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 import os
-import shlex
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
 from multibot_rewrite.companions.rviz.bridged import bridged_window
 from multibot_rewrite.companions.rviz.of_plan import windows_of_plan
-from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz, start_command
+from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -30,6 +29,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import world_of
 from multibot_rewrite.rules.files.judge import judged_once
+from multibot_rewrite.spelling.start import File, Start
 from multibot_rewrite.system.records import System
 
 RVIZ = "rviz2"
@@ -128,22 +128,22 @@ def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
         yield from (OutputFile(config.path(it), it.text.encode(), read) for it in config.windows)
 
 
-def rviz_commands(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[str]:
-    """The line that opens each window; MoveIt's displays read the parameters of their process."""
+def window_start(window: RvizText, file: str, parameters: str = "") -> Start:
+    """Return what opens a window whose config is a ``file``."""
+    given = (File(parameters),) if parameters else ()
+    return Start(RVIZ, RVIZ, window.namespace, "", given, window.remaps, ("-d", File(file)))
+
+
+def windows(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[tuple[str, Start]]:
+    """Return what opens the windows, each with the one robot that it shows, or "" for all.
+
+    MoveIt's displays read the parameters of their process.
+    """
     given = {it.spec.name: path_for(it, FILE) for it in plan.robots if has_moveit(it)}
     if cell := plan.file.cell:
         given[cell.name] = parameters_path(cell)
-    spaces = {it.spec.name: it.spec.namespace for it in plan.robots}
-    domains = {it.robot: f"ROS_DOMAIN_ID={it.number} " for it in plan.file.apart.domains}
     return [
-        domains.get(spaces.get(window.robot, ""), "")
-        + shlex.join([*start_command(window, it.path(window)), *_given(window, given)])
-        for it in configs
-        for window in it.windows
+        (it.robot, window_start(it, config.path(it), given.get(it.robot, "")))
+        for config in configs
+        for it in config.windows
     ]
-
-
-def _given(window: RvizText, given: Mapping[str, str]) -> list[str]:
-    path = given.get(window.robot, "")
-    lead = [] if window.namespace or window.remaps else ["--ros-args"]
-    return [*lead, "--params-file", path] if path else []

@@ -20,11 +20,11 @@ from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.launch.starts import Start, shell_line
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, without_mass
 from multibot_rewrite.spelling.bridged_topics import bridged_topics, model_name
+from multibot_rewrite.spelling.start import File, Start, shell_line
 from multibot_rewrite.system.records import PUBLISHES
 
 GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")
@@ -49,11 +49,11 @@ class Spawn(NamedTuple):
     text: str = ""
 
     @property
-    def source(self) -> tuple[str, str]:
+    def source(self) -> tuple[str, str | File]:
         """The option that says what is spawned; only that of gz-sim takes a text."""
         if self.text:
             return "-string", self.text
-        return ("-file", self.file) if self.file else ("-topic", self.topic)
+        return ("-file", File(self.file)) if self.file else ("-topic", self.topic)
 
 
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
@@ -111,25 +111,16 @@ def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
     )
 
 
-def gz_arguments(it: Spawn) -> list[str]:
-    """What follows ``ros_gz_sim create``.
-
-    It uses gflags, where ``-allow_renaming false`` means true: a boolean flag takes its value only
-    after an equals sign.
-    """
-    return ["-name", it.model, *it.source, *_pose(it.pose), "-allow_renaming=false"]
-
-
-def classic_arguments(it: Spawn) -> list[str]:
-    """What follows ``gazebo_ros spawn_entity.py``."""
-    namespace = ["-robot_namespace", f"/{it.namespace}"] if it.namespace else []
-    return ["-entity", it.model, *it.source, *_pose(it.pose), *namespace]
-
-
 def spawner(it: Spawn, classic: bool) -> Start:
-    """What spawns a robot, in Gazebo Classic or in gz-sim."""
-    program, words = (CLASSIC, classic_arguments(it)) if classic else (GZ, gz_arguments(it))
-    return Start(*program, arguments=tuple(words))
+    """What spawns a robot, in Gazebo Classic or in gz-sim.
+
+    That of gz-sim uses gflags, where ``-allow_renaming false`` means true: a boolean flag takes its
+    value only after an equals sign.
+    """
+    program, named = (CLASSIC, "-entity") if classic else (GZ, "-name")
+    last = ["-robot_namespace", f"/{it.namespace}"] if it.namespace else []
+    more = last if classic else ["-allow_renaming=false"]
+    return Start(*program, arguments=(named, it.model, *it.source, *_pose(it.pose), *more))
 
 
 def either(it: Spawn, robot: RewrittenRobot) -> str:

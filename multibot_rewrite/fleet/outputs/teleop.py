@@ -6,7 +6,6 @@ Source: teleop_twist_keyboard jazzy (``stamped`` and ``frame_id``; it publishes 
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.record import NamedTuple
@@ -18,10 +17,11 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
+from multibot_rewrite.spelling.start import Start
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.words import PLAIN, STAMPED
 
-COMMAND = "cmd_vel"
+PROGRAM, COMMAND = "teleop_twist_keyboard", "cmd_vel"
 # What drives call the commands that they read.
 COMMANDS = (COMMAND, "cmd_vel_unstamped", "reference", "reference_unstamped")
 TO_GZ = DIRECTIONS["out"]
@@ -34,6 +34,13 @@ class Teleop(NamedTuple):
     topic: str
     stamped: bool
     frame: str
+
+    @property
+    def start(self) -> Start:
+        """The process that drives the robot."""
+        stamped = ({"stamped": "true", "frame_id": self.frame},) if self.stamped else ()
+        rules = ((COMMAND, self.topic),)
+        return Start(PROGRAM, PROGRAM, parameters=stamped, remappings=rules)
 
 
 def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
@@ -67,18 +74,6 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
     types = {it.type for it in ends if it.role == SUBSCRIBES and it.topic == topic}
     with_stamp = STAMPED in types and PLAIN not in types
     return Teleop(robot.spec.namespace, topic, with_stamp, _base(robot) if with_stamp else "")
-
-
-def arguments(it: Teleop) -> list[str]:
-    """What follows ``teleop_twist_keyboard``."""
-    stamped = ["-p", "stamped:=true", "-p", f"frame_id:={it.frame}"] if it.stamped else []
-    return ["--ros-args", "-r", f"{COMMAND}:={it.topic}", *stamped]
-
-
-def command(it: Teleop) -> str:
-    """The command that drives a robot."""
-    run = ["ros2", "run", "teleop_twist_keyboard", "teleop_twist_keyboard"]
-    return shlex.join([*run, *arguments(it)])
 
 
 def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[CommandEnd]:

@@ -290,24 +290,24 @@ class LoadedRobot:
     @property
     def spawn_arguments(self) -> list[str]:
         """``arguments`` of ``ros_gz_sim create``; raises nothing."""
-        return spawn.gz_arguments(self._spawn._replace(text=self._robot.simulated.decode()))
+        return spawn.spawner(self._spawn._replace(text=self._robot.simulated.decode()), False).words
 
     @property
     def classic_arguments(self) -> list[str]:
         """``arguments`` of ``gazebo_ros spawn_entity.py``; raises nothing."""
-        return spawn.classic_arguments(self._spawn)
+        return spawn.spawner(self._spawn, True).words
 
     @property
     def teleop_arguments(self) -> list[str]:
         """``arguments`` of ``teleop_twist_keyboard``; raises nothing."""
-        return teleop.arguments(teleop.teleop(self._fleet.plan, self._robot))
+        return teleop.teleop(self._fleet.plan, self._robot).start.words
 
     @property
     def transform_arguments(self) -> list[str]:
         """``arguments`` of the ``static_transform_publisher`` of its pose, empty if it needs none;
         raises nothing."""
         made = self._fleet.placed.transforms
-        return next((it.words for it in made if it.robot == self._graph), [])
+        return next((it.start.words for it in made if it.robot == self._graph), [])
 
     @checked
     def start_parameters(self, node: str) -> dict[str, Any]:

@@ -21,7 +21,6 @@ from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, Pose
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.launch.starts import Start
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
 from multibot_rewrite.fleet.robots.start_pose_rules import (
@@ -34,9 +33,9 @@ from multibot_rewrite.fleet.robots.start_pose_rules import (
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridge_rows import PLUGINS, rows_of
 from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
+from multibot_rewrite.spelling.start import Start
 from multibot_rewrite.spelling.table import joined, run_of
 from multibot_rewrite.spelling.targets import placed, target_of
-from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, edge_of
 
 NODE = "start_pose"
@@ -61,15 +60,13 @@ class StaticTransform(NamedTuple):
 
     @property
     def start(self) -> Start:
-        """Its process; raises nothing."""
-        words = tuple(arguments(self))
+        """Its process: values may be negative, names come last; raises nothing."""
+        pose = (
+            word for key, value in self.pose._asdict().items() for word in (f"--{key}", f"{value}")
+        )
+        words = (*pose, "--frame-id", self.parent, "--child-frame-id", self.child)
         names = (self.namespace, self.node)
         return Start("tf2_ros", "static_transform_publisher", *names, (), self.remaps, words)
-
-    @property
-    def words(self) -> list[str]:
-        """What follows the program on a command line."""
-        return [*arguments(self), *ros_arguments(self.namespace, self.node, self.remaps)]
 
 
 class InitialPose(NamedTuple):
@@ -164,12 +161,6 @@ def static_transform(
     target = target_of("/tf_static", TOPIC, robot, naming)
     remaps = (("/tf_static", target),) if target else ()
     return StaticTransform(robot, parent, child, pose, namespace, node, remaps)
-
-
-def arguments(it: StaticTransform) -> list[str]:
-    """What follows ``static_transform_publisher``; values may be negative, names come last."""
-    words = [word for key, value in it.pose._asdict().items() for word in (f"--{key}", str(value))]
-    return [*words, "--frame-id", it.parent, "--child-frame-id", it.child]
 
 
 def initial_pose(pose: Pose) -> dict[str, object]:

@@ -197,7 +197,10 @@ class _Seen(NamedTuple):
             return self.managed.index(it)
         if isinstance(it, ComposableNode):
             texts = {name: getattr(it, name) for name in _OF_COMPONENT}
-            given = {name: text_of(self.context, one) for name, one in texts.items() if one}
+            there = {name: one for name, one in texts.items() if one}
+            given = {
+                it.removeprefix("node_"): text_of(self.context, one) for it, one in there.items()
+            }
             more = {"parameters": it.parameters or None, "remappings": it.remappings or None}
             return given | self.evaluated(more)
         if isinstance(it, Kept):
