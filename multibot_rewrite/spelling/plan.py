@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
-from multibot_rewrite.spelling.of_runs import ends_of
+from multibot_rewrite.spelling.of_runs import each_once, ends_of
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.ways import HOST, PLUGIN, PROCESS, deliveries
 from multibot_rewrite.system.records import (
@@ -174,13 +174,13 @@ def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, .
 
 
 def _planned(table: Table) -> Iterator[End]:
-    """The ends that do not depend on parameters."""
+    """The ends of nodes; what a helper without a name has is nobody's."""
     for run in table.runs:
         # What is planned is not said by a place.
         bare = run._replace(values={}, place=NOWHERE)
-        for (fact, _), end in zip(run.names, ends_of(bare), strict=True):
-            if (fact.by or not fact.helper) and end.sure == RUNS and end.role:
-                yield from [end] * (end.name not in SENT_BY_EVERY_NODE)
+        pairs = zip(run.names, ends_of(bare), strict=True)
+        own = (end for (fact, _), end in pairs if (fact.by or not fact.helper) and end.role)
+        yield from each_once(end for end in own if end.name not in SENT_BY_EVERY_NODE)
 
 
 def tf_topic(robot: str, naming: Naming) -> str:

@@ -13,7 +13,7 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.rules.launch.declaration import at, launch_rule
 from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.system.records import PUBLISHES, RUNS, SUBSCRIBES
 
 _KINDS = ("joint_state_publisher", "joint_state_publisher_gui")
 
@@ -22,7 +22,7 @@ def read_by_joints(launched: Launched) -> Iterator[tuple[Run, str]]:
     """What each joint_state_publisher subscribes to."""
     known = {it.full_name: it for it in launched.nodes if it.fact.kind in _KINDS}
     for end in launched.system.ends:
-        if end.role == SUBSCRIBES and end.node in known:
+        if end.role == SUBSCRIBES and end.node in known and end.sure == RUNS:
             yield known[end.node], end.name
 
 
