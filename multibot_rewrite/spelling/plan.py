@@ -125,14 +125,28 @@ def _further(others: Iterable[str], own: Iterable[str], naming: Naming) -> tuple
 def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
     """Each node with its plugin and what else names it, and its way and taker, where it has no
     --ros-args of its own."""
-    ways = dict(_ways(table))
+    ways, known = dict(_ways(table)), dict(_known(table))
     plugins = {it.full_name: it.place for it in table.runs if it.written}
     origins = {it.full_name: it.fact.origin for it in table.runs if it.fact.origin != NO_ORIGIN}
     for it in nodes:
         way, taker = ways.get(it.name, ("", ""))
         stack, place = origins.get(it.name, NO_ORIGIN)
         plugin = plugins.get(it.name, NOWHERE)
-        yield it._replace(way=way, taker=taker, plugin=plugin, stack=stack, place=place)
+        yield it._replace(
+            way=way,
+            taker=taker,
+            plugin=plugin,
+            stack=stack,
+            place=place,
+            known=known.get(it.name, ""),
+        )
+
+
+def _known(table: Table) -> Iterator[tuple[str, str]]:
+    """What each known node is, also of those that it makes for itself."""
+    for run in (it for it in table.runs if it.fact.is_known):
+        yield run.full_name, run.fact.kind
+        yield from ((f"{run.full_name}{it.by}", run.fact.kind) for it, _ in run.names if it.by)
 
 
 def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:
