@@ -156,6 +156,7 @@ class NodeFacts(NamedTuple):
     ``unmanaged`` are the releases in which it has a life cycle and no manager of Nav2 knows it.
     ``usual`` are the parameters of the stack's own file, for a robot none of whose files has any.
     ``prefix_switch`` is a parameter: unless it is false, the node puts its namespace before its frames.
+    ``is_known`` is false for a node that nobody knows: its ends are those that its remap rules name.
     """
 
     name: str
@@ -185,6 +186,7 @@ class NodeFacts(NamedTuple):
     unmanaged: str = ""
     usual: tuple[tuple[str, str | float], ...] = ()
     by_sensor: tuple[tuple[str, tuple[tuple[str, str | float], ...]], ...] = ()
+    is_known: bool = True
 
     @property
     def kind(self) -> str:
@@ -198,4 +200,4 @@ class NodeFacts(NamedTuple):
 
 
 # What is known of a node that nobody knows.
-UNKNOWN = NodeFacts("", "", ())
+UNKNOWN = NodeFacts("", "", (), is_known=False)

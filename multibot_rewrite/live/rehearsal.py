@@ -74,7 +74,8 @@ def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> It
     types = {name: end.type for _, end, name in table.ends if end.type}
     names: dict[str, list[tuple[Endpoint, str]]] = {}
     for run, end, name in table.ends:
-        if not end.when:
+        # What a node does that nobody knows is not played.
+        if not end.when and (end.role or run.fact.is_known):
             names.setdefault(run.full_name, []).append((end, name))
     spaces = {(it.robot, it.node): it.namespace for it in table.runs}
     for _, node in running_nodes(table, left_out):

@@ -9,7 +9,7 @@ from enum import IntEnum
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.check import ABSENCE, doubts
-from multibot_rewrite.system.records import CHANGING, System, nodes_by_robot
+from multibot_rewrite.system.records import CHANGING, System, nodes_by_robot, surely
 
 
 class Verdict(IntEnum):
@@ -137,7 +137,7 @@ def progress(plan: System, graph: System) -> list[Progress]:
     nodes = {node.name for node in graph.nodes}
     ends = {(end.node, end.kind, end.role, end.name) for end in graph.ends}
     planned: dict[str, list[bool]] = {}
-    for end in plan.ends:
+    for end in surely(plan).ends:
         seen = (end.node, end.kind, end.role, end.name) in ends
         planned.setdefault(end.node, []).append(seen)
     result, by_robot = [], nodes_by_robot(plan)

@@ -197,7 +197,7 @@ def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
     common_names = _common_names((*seen.system.ends, *plan.system.ends))
     bridged = {(role, it.name): it.type for it in plan.system.topics for role in it.bridge}
     for key, type_ in dict.fromkeys(
-        ((e.node, e.kind, e.role, e.name), e.type) for e in seen.system.ends
+        ((e.node, e.kind, e.role, e.name), e.type) for e in seen.sure.system.ends
     ):
         node, *_, name = key
         common = name in common_names

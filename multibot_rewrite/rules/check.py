@@ -78,7 +78,7 @@ def judge(seen: Index) -> list[Finding]:
         asked = (it for it in _rules(planned=False) if it is not _LACKS or missing(plan, seen))
         recorded = is_recorded(seen.system)
         only = (it for it in _rules(planned=True) if not (recorded and it.options["nodes"]))
-        by_plan = [it for rule in only if rule.check for it in rule.check(seen)]
+        by_plan = [*_found_by(only, seen)]
         found = _judged(seen, asked)
         return one_for_a_cause(seen, plan, found, by_plan, RULES, bool(doubts(seen.system)))
 
@@ -89,8 +89,15 @@ def _rules(planned: bool) -> Iterator[Rule]:
 
 def _judged(seen: Index, rules: Iterable[Rule]) -> list[Finding]:
     with gc_paused():
-        found = [it for rule in rules if rule.check for it in rule.check(seen)]
+        found = [*_found_by(rules, seen)]
         return differing.unexplained(_of_localizers(seen, _of_readers(found)))
+
+
+def _found_by(rules: Iterable[Rule], seen: Index) -> Iterator[Finding]:
+    """What the rules find; what only may be there may give what is missing, and is itself no cause."""
+    for rule in rules:
+        if rule.check:
+            yield from rule.check(seen if rule.code in ABSENCE else seen.sure)
 
 
 def _of_localizers(seen: Index, found: Sequence[Finding]) -> list[Finding]:

@@ -26,6 +26,7 @@ from multibot_rewrite.system.records import (
     End,
     Node,
     System,
+    surely,
 )
 
 # What such a node is from, and the folder of the files.
@@ -66,7 +67,7 @@ def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
         name, own = bridge_name(robot), [it for it in found if it.robot == robot]
         here, there = f"/{name}_{numbers[robot]}", f"/{name}_{numbers['']}"
         made = [Node(f"/{name}", robot=robot), Node(here, robot=robot), Node(there)]
-        nodes += [it._replace(stack=DOMAIN_BRIDGE) for it in made]
+        nodes += [it._replace(stack=DOMAIN_BRIDGE, known=DOMAIN_BRIDGE) for it in made]
         for it in own:
             from_, to = (here, there) if it.out else (there, here)
             ends.append(End(TOPIC, SUBSCRIBES, it.name, it.type, node=from_, code_name=it.name))
@@ -84,7 +85,7 @@ def beyond(plan: System) -> dict[str, str]:
 def crossings(plan: System, given: Sequence[str]) -> list[Crossing]:
     """What a node of one domain reads and none of its domain sends, and what is asked for."""
     numbers = domain_of(plan)
-    found = [*_needed(plan, numbers), *_given(plan, numbers, given)]
+    found = [*_needed(surely(plan), numbers), *_given(plan, numbers, given)]
     return sorted(dict.fromkeys(found))
 
 
@@ -142,10 +143,11 @@ def services_apart(plan: System) -> Iterator[tuple[End, int, int]]:
     numbers = domain_of(plan)
     robot_of = _robots(plan)
     served: dict[tuple[str, str], set[int]] = defaultdict(set)
-    for it in plan.ends if numbers else ():
+    ends = surely(plan).ends if numbers else ()
+    for it in ends:
         if it.role == SERVES:
             served[it.kind, it.name].add(numbers[robot_of[it.node]])
-    for it in plan.ends:
+    for it in ends:
         own = served.get((it.kind, it.name), ()) if it.role == CALLS else ()
         if own and (at := numbers[robot_of[it.node]]) not in own:
             yield it, at, min(own)

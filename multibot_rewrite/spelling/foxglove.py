@@ -19,7 +19,7 @@ from multibot_rewrite.base.conventions import BODY_FRAMES
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.spelling.shown import Shown, shown_by_robot, world_of_plan
-from multibot_rewrite.system.records import PUBLISHES, System
+from multibot_rewrite.system.records import PUBLISHES, System, surely
 
 # What a 3D panel shows, and what an Image panel does.
 _SHOWN = {
@@ -51,7 +51,7 @@ def to_layout(plan: System) -> str:
     if not layout.frames and len(plan.robots) > 1:
         return ""
     robots, shared = shown_by_robot(plan)
-    sent = {it.name for it in plan.ends if it.role == PUBLISHES}
+    sent = {it.name for it in surely(plan).ends if it.role == PUBLISHES}
     prefixed = layout.at_run_time
     every = _scene(robots, shared, world_of_plan(plan), prefixed)
     tabs = [

@@ -83,3 +83,12 @@ def ends_of(run: Run) -> Iterator[End]:
             Sure(MAY.word, end.when) if end.when else RUNS,
             given.place if given else run.place,
         )
+
+
+def each_once(ends: Iterable[End]) -> Iterator[End]:
+    """The ends, and of those that only may be there one of each name that no other end has."""
+    every = dict.fromkeys(ends)
+    known = {(it.node, it.kind, it.role, it.name): it for it in every if it.sure == RUNS}
+    for it in every:
+        if known.setdefault((it.node, it.kind, it.role, it.name), it) is it or it.sure == RUNS:
+            yield it

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
-from multibot_rewrite.spelling.of_runs import ends_of
+from multibot_rewrite.spelling.of_runs import each_once, ends_of
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.ways import HOST, PLUGIN, PROCESS, deliveries
 from multibot_rewrite.system.records import (
@@ -125,14 +125,28 @@ def _further(others: Iterable[str], own: Iterable[str], naming: Naming) -> tuple
 def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
     """Each node with its plugin and what else names it, and its way and taker, where it has no
     --ros-args of its own."""
-    ways = dict(_ways(table))
+    ways, known = dict(_ways(table)), dict(_known(table))
     plugins = {it.full_name: it.place for it in table.runs if it.written}
     origins = {it.full_name: it.fact.origin for it in table.runs if it.fact.origin != NO_ORIGIN}
     for it in nodes:
         way, taker = ways.get(it.name, ("", ""))
         stack, place = origins.get(it.name, NO_ORIGIN)
         plugin = plugins.get(it.name, NOWHERE)
-        yield it._replace(way=way, taker=taker, plugin=plugin, stack=stack, place=place)
+        yield it._replace(
+            way=way,
+            taker=taker,
+            plugin=plugin,
+            stack=stack,
+            place=place,
+            known=known.get(it.name, ""),
+        )
+
+
+def _known(table: Table) -> Iterator[tuple[str, str]]:
+    """What each known node is, also of those that it makes for itself."""
+    for run in (it for it in table.runs if it.fact.is_known):
+        yield run.full_name, run.fact.kind
+        yield from ((f"{run.full_name}{it.by}", run.fact.kind) for it, _ in run.names if it.by)
 
 
 def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:
@@ -174,13 +188,13 @@ def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, .
 
 
 def _planned(table: Table) -> Iterator[End]:
-    """The ends that do not depend on parameters."""
+    """The ends of nodes; what a helper without a name has is nobody's."""
     for run in table.runs:
         # What is planned is not said by a place.
         bare = run._replace(values={}, place=NOWHERE)
-        for (fact, _), end in zip(run.names, ends_of(bare), strict=True):
-            if (fact.by or not fact.helper) and end.sure == RUNS and end.role:
-                yield from [end] * (end.name not in SENT_BY_EVERY_NODE)
+        pairs = zip(run.names, ends_of(bare), strict=True)
+        own = (end for (fact, _), end in pairs if (fact.by or not fact.helper) and end.role)
+        yield from each_once(end for end in own if end.name not in SENT_BY_EVERY_NODE)
 
 
 def tf_topic(robot: str, naming: Naming) -> str:

@@ -18,9 +18,9 @@ from multibot_rewrite.system.records import System
 
 HEAD = """\
 # What the graph of this fleet is to look like: each robot with its nodes, and each node with its ends:
-# [role, kind, name, type, name in the code]. `multibot check` compares exactly this: take out what is
-# not started, add what is. A node with `sure: may` may be missing. The page "The plan" of the
-# documentation has all keys.
+# [role, kind, name, type, name in the code]; one that only may be there has its condition besides.
+# `multibot check` compares exactly this: take out what is not started, add what is. A node with
+# `sure: may` may be missing. The page "The plan" of the documentation has all keys.
 """
 # lifecycle_msgs/msg/State, the primary ones.
 LIFECYCLE = ("unconfigured", "inactive", "active", "finalized")

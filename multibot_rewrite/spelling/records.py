@@ -104,7 +104,7 @@ class Run(NamedTuple):
     @property
     def has_fact(self) -> bool:
         """Is known what it does?"""
-        return self.fact != UNKNOWN
+        return self.fact.is_known
 
     @property
     def is_known(self) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Robot, System
+from multibot_rewrite.system.records import PUBLISHES, RUNS, SUBSCRIBES, TOPIC, Robot, System
 
 _STRING, _DESCRIPTION = "std_msgs/msg/String", "robot_description"
 
@@ -50,7 +50,7 @@ def shown_by_robot(plan: System) -> tuple[list[Shown], Shown]:
     tags = {it.tag or it.name: it.name for it in plan.robots}
     owners = {it.name: it.robot for it in plan.nodes}
     for end in plan.ends:
-        if end.kind == TOPIC:
+        if end.kind == TOPIC and end.sure == RUNS:
             _add(every.get(owners.get(end.node, "")), end.role, end.name, end.type)
     for topic in plan.topics:
         words = topic.name.strip("/").split("/")

@@ -28,6 +28,7 @@ from multibot_rewrite.system.records import (
     System,
     may_miss,
     nodes_by_robot,
+    surely,
 )
 from multibot_rewrite.system.tf_copies import copying_nodes, tree_topic
 from multibot_rewrite.system.tool_nodes import is_tool, is_viewer
@@ -125,6 +126,13 @@ class Index(NamedTuple):
     known: Known
     memo: dict[object, Any]
     expected: Index | None = None
+
+    @property
+    @once
+    def sure(self) -> Index:
+        """The same without the ends that only may be there."""
+        system = surely(self.system)
+        return self if system is self.system else self._replace(system=system, memo={})
 
     @property
     @once

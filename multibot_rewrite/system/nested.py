@@ -24,6 +24,7 @@ from multibot_rewrite.system.record_values import (
 )
 from multibot_rewrite.system.records import (
     KINDS,
+    MAY,
     NOWHERE,
     ROLES,
     RUNS,
@@ -31,14 +32,17 @@ from multibot_rewrite.system.records import (
     Node,
     Parameter,
     Robot,
+    Sure,
     System,
 )
 
 ROW = ("role", "kind", "name", "type", "code_name")
+# What a row of an end that only may be there says besides.
+WHEN = "when"
 # Between the types of a row.
 OR = " | "
 _TEXTS = {str}
-_NOTHING_MORE = ("", None, "", RUNS, NOWHERE)
+_NOTHING_MORE = ("", None, "", NOWHERE)
 _ROLES, _KINDS = frozenset(ROLES), frozenset(KINDS)
 
 
@@ -101,8 +105,12 @@ def _is_plain(value: object) -> bool:
 
 def _row(end: End) -> object:
     """Return a row of the texts of an end; an object where more is known of it."""
-    if (end.type_hash, end.qos, end.process, end.sure, end.place) == _NOTHING_MORE:
-        return [end.role, end.kind, end.name, OR.join((end.type, *end.also)), end.code_name]
+    when = end.sure.why
+    if (end.type_hash, end.qos, end.process, end.place) == _NOTHING_MORE and (
+        end.sure == RUNS or (when and end.sure == Sure(MAY.word, when))
+    ):
+        row = [end.role, end.kind, end.name, OR.join((end.type, *end.also)), end.code_name]
+        return [*row, when] if when else row
     return plain_value(end._replace(node=""))
 
 
@@ -153,16 +161,17 @@ def _read_end(node: str, value: object) -> Any:
     """Return the end that a row or an object is; raises WrongValue."""
     if type(value) is not list:
         return reader(End)({"node": node, **value} if isinstance(value, dict) else value)
-    if len(value) != len(ROW) or {*map(type, value)} != _TEXTS:
+    if len(value) - len(ROW) not in (0, 1) or {*map(type, value)} != _TEXTS:
         raise unexpected("[role, kind, name, type, name in the node's code]", value)
     # Many nodes have the same names, types and words.
-    role, kind, name, types, code_name = map(intern, value)
+    role, kind, name, types, code_name, *when = map(intern, value)
+    sure = Sure(MAY.word, when[0]) if when else RUNS
     also: tuple[str, ...] = ()
     if OR in types:
         types, *others = types.split(OR)
         also = (*others,)
     if role in _ROLES and kind in _KINDS and name.startswith("/"):
-        return End(kind, role, name, types, "", node, None, "", code_name, also)
+        return End(kind, role, name, types, "", node, None, "", code_name, also, sure)
     # The reader of an end says which text is wrong.
     return reader(End)({"kind": kind, "role": role, "name": name, "type": types, "node": node})
 

@@ -366,6 +366,12 @@ class System(NamedTuple):
     domains: tuple[Domain, ...] = ()
 
 
+def surely(system: System) -> System:
+    """The system without the ends that only may be there."""
+    ends = tuple(it for it in system.ends if it.sure == RUNS)
+    return system if len(ends) == len(system.ends) else system._replace(ends=ends)
+
+
 def incomplete(system: System) -> tuple[Caveat, ...]:
     """Why something may be missing in the view; empty for a complete one."""
     return tuple(caveat for caveat in system.environment.caveats if caveat.incomplete)

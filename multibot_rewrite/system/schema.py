@@ -9,7 +9,7 @@ from types import NoneType
 from typing import Any, get_args, get_origin, get_type_hints
 
 from multibot_rewrite.system.json import BEFORE, SCHEMA
-from multibot_rewrite.system.nested import ROW
+from multibot_rewrite.system.nested import ROW, WHEN
 from multibot_rewrite.system.record_values import (
     ALLOWED_WORDS,
     FULL_NAMES,
@@ -26,10 +26,11 @@ _PLAIN = {str: "string", int: "integer", bool: "boolean"}
 _TEXT = {"type": "string"}
 _ROW = {
     "type": "array",
-    "description": f"[{', '.join(ROW)}]; types are joined with |",
+    "description": f"[{', '.join(ROW)}], and {WHEN} for what only may be there; types are"
+    " joined with |",
     "prefixItems": [
         *({"enum": [*ALLOWED_WORDS[End, it]]} for it in ROW[:2]), {"type": "string", "pattern": "^/"},
-        _TEXT, _TEXT,
+        _TEXT, _TEXT, _TEXT,
     ],
     "items": False,
     "minItems": len(ROW),

@@ -6,7 +6,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Edge, System, nodes_by_robot
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SUBSCRIBES,
+    Edge,
+    System,
+    nodes_by_robot,
+    surely,
+)
 
 _TF, _GLOBAL = "/tf", ("/tf", "/tf_static")
 
@@ -29,6 +36,7 @@ def copying_nodes(plan: System) -> Mapping[str, str]:
     }
     if not home:
         return {}
+    plan = surely(plan)
     senders = {it.node for it in plan.ends if it.role == PUBLISHES and it.name in _GLOBAL}
     trees: dict[str, set[tuple[str, str]]] = defaultdict(set)
     for end in plan.ends if senders else ():

@@ -18,7 +18,7 @@ from multibot_rewrite.fleet.file.fleet_file import (
 )
 from multibot_rewrite.fleet.fleet import Fleet, expected
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.system.records import RUNS, Place
 
 MODEL = """\
 structure:
@@ -49,6 +49,42 @@ def written(folder: Path, text: str = FLEET) -> str:
     (folder / "system_model.yaml").write_text(MODEL)
     (folder / "fleet.yaml").write_text(text)
     return str(folder / "fleet.yaml")
+
+
+BRAIN = """\
+    /x/brain:
+      pkg: acme
+      exec: brain
+      node_name: brain
+      remaps: [{from: in, to: /scan}, {from: ~/out, to: result}, {from: /tf, to: tf}]
+"""
+
+
+@pytest.mark.parametrize(
+    ("layout", "rules"),
+    [
+        ("tf-per-robot", [("in", "scan"), ("~/out", "result"), ("/tf", "tf")]),
+        ("frames-per-robot", [("in", "scan"), ("~/out", "result")]),
+        (
+            "postfix",
+            [("in", "/scan/robot2"), ("~/out", "result/robot2"), ("/tf", "/tf/robot2")],
+        ),
+    ],
+)
+def test_a_node_that_nobody_knows_keeps_its_rules_for_each_robot(
+    layout: str, rules: list[tuple[str, str]], tmp_path: Path
+) -> None:
+    """rcl matches a rule whatever the node does with the name; `/tf` leads where the layout has it."""
+    written(tmp_path, FLEET.replace("tf-per-robot", layout))
+    (tmp_path / "system_model.yaml").write_text(MODEL + BRAIN)
+    fleet = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})).fleet
+    (run,) = (it for it in fleet.table.runs if (it.robot, it.node) == ("robot2", "brain"))
+    assert [*run.rules] == rules
+    (node,) = (it for it in expected(fleet).nodes if it.name == run.full_name)
+    amcl = next(it for it in expected(fleet).nodes if "amcl" in it.name)
+    assert (node.known, node.sure, amcl.known) == ("", RUNS, "amcl")
+    # What it does with them is not known.
+    assert not [it for it in expected(fleet).ends if it.node == run.full_name]
 
 
 def test_the_plan_of_every_robot_has_what_is_launched(tmp_path: Path) -> None:

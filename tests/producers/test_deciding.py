@@ -16,7 +16,7 @@ from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import would_run
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.system.records import MAY, RUNS, End, Place
 
 CLOUD = "depth_image_proc/point_cloud_xyz_node"
 
@@ -37,10 +37,14 @@ def node(
 
 
 def read(known: Knowledge, *nodes: LaunchedNode, role: str = "subscribes") -> set[str]:
-    """What the first node reads, or has in another role."""
+    """What the first node surely reads, or has in another role."""
+    return {it.name for it in _ends(known, *nodes) if it.role == role and it.sure == RUNS}
+
+
+def _ends(known: Knowledge, *nodes: LaunchedNode) -> list[End]:
+    """The ends of the first node."""
     made = would_run(LaunchGraph(nodes), known)
-    first = made.nodes[0].name
-    return {it.name for it in made.ends if it.role == role and it.node == first}
+    return [it for it in made.ends if it.node == made.nodes[0].name]
 
 
 def test_a_node_listens_where_somebody_listens_to_it(known: Knowledge) -> None:
@@ -88,7 +92,10 @@ def test_a_node_has_what_its_file_asks_for(
 
 def test_a_file_that_is_not_there_says_nothing(known: Knowledge, tmp_path: Path) -> None:
     words = ("-configuration_directory", str(tmp_path), "-configuration_basename", "robot.lua")
-    assert "/r/odom" not in read(known, node("cartographer_ros/cartographer_node", *words))
+    cartographer = node("cartographer_ros/cartographer_node", *words)
+    assert "/r/odom" not in read(known, cartographer)
+    (odom,) = (it for it in _ends(known, cartographer) if it.name == "/r/odom")
+    assert (odom.sure.word, bool(odom.sure.why)) == (MAY.word, True)
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     SentTransform,
 )
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan import expect, named_frames, tf_topic
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table import build_table
@@ -40,6 +41,7 @@ from multibot_rewrite.system.records import (
     TOPIC,
     Origin,
     Place,
+    Sure,
     System,
     edge_of,
     origin_of,
@@ -63,11 +65,35 @@ def plan(layout: str = "L1", *facts: NodeFacts, **more: object) -> System:
     return expect(table, naming, {"a": ["base"]}, **more)  # type: ignore[arg-type]
 
 
-def test_ends_that_hang_on_nothing_are_planned() -> None:
+def test_ends_are_planned_those_under_a_condition_as_what_may_be_there() -> None:
+    maybe = planned_end("/a/driver", TOPIC, PUBLISHES, "/a/maybe", "", "maybe")
     assert plan("L1", DRIVER).ends == (
         planned_end("/a/driver", TOPIC, PUBLISHES, "/a/scan", "a/msg/Scan", "scan", ("a/msg/Old",)),
         planned_end("/a/driver_private_*", TOPIC, SUBSCRIBES, "/a/own", "", "/own"),
+        maybe._replace(sure=Sure("may", "x: true")),
     )
+
+
+def test_an_end_that_surely_is_there_stands_for_those_that_may_be() -> None:
+    """A node opens a name under several conditions: one that holds always says more than the others."""
+    own = Endpoint(TOPIC, PUBLISHES, "scan", when="x: true"), SCAN, MAYBE, MAYBE._replace(when="y")
+    found = plan("L1", NodeFacts("driver", "acme", own)).ends
+    assert [(it.name, it.sure) for it in found] == [
+        ("/a/scan", RUNS),
+        ("/a/maybe", Sure("may", "x: true")),
+    ]
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_an_end_that_may_be_there_is_neither_missed_nor_unplanned(there: bool) -> None:
+    """``/fixed`` has no robot's name: of a node that is not planned to have it, that is a finding."""
+    fixed = Endpoint(TOPIC, PUBLISHES, "/fixed", "a/msg/B", fixed="its code", when="x: true")
+    planned = plan("L1", NodeFacts("driver", "acme", (SCAN, fixed)))
+    ends = tuple(it._replace(sure=RUNS) for it in planned.ends if there or it.sure == RUNS)
+    graph = System(planned.nodes, ends, robots=planned.robots)
+    assert [str(it) for it in check(planned, graph) if it.level != "note"] == []
+    unplanned = planned._replace(ends=tuple(it for it in planned.ends if it.sure == RUNS))
+    assert bool(check(unplanned, graph)) is there
 
 
 def test_nodes_are_planned_with_those_that_they_make() -> None:

@@ -28,6 +28,7 @@ from multibot_rewrite.spelling.plan_file import HEAD, is_fleet, read_plan, to_ya
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
+    CALLS,
     MAY,
     PUBLISHES,
     RUNS,
@@ -60,6 +61,7 @@ DRIVE = Node(
     plugin=Place("r.urdf", 7),
 )
 # What has more than its short form says stands where it is said whole.
+WITH_RATE = MAY._replace(why="rate set")
 PLAN = System(
     nodes=(
         DRIVE,
@@ -70,6 +72,7 @@ PLAN = System(
     ends=(
         End(TOPIC, PUBLISHES, "/r1/x", STRING, node="/r1/drive", code_name="x", also=("a/msg/B",)),
         End(TOPIC, SUBSCRIBES, "/r1/y", STRING, node="/r1/drive", sure=MAY),
+        End(SERVICE, CALLS, "/r1/go", "a/srv/Go", "", "/r1/drive", None, "", "go", (), WITH_RATE),
         End(SERVICE, SERVES, "/map", "", node="/map_server", code_name="/map"),
         End(TOPIC, PUBLISHES, "/z", STRING, node="/gone", place=Place("odd:1")),
     ),
@@ -122,6 +125,7 @@ robots:
     ends:
     - [publishes, topic, /r1/x, std_msgs/msg/String | a/msg/B, x]
     - {kind: topic, role: subscribes, name: /r1/y, type: std_msgs/msg/String, sure: may}
+    - [calls, service, /r1/go, a/srv/Go, go, "rate set"]
   - {name: /r1/arm, way: spawner, stack: nav2, sure: may}
   - {name: /r1/spare, sure: {word: may, instead: [/r1/drive, /r1/spare]}}
 nodes:
@@ -299,7 +303,7 @@ def test_what_is_below_something_is_its() -> None:
 def test_what_is_below_something_may_be_taken_out() -> None:
     text = re.sub("{use_sim_time.*}", "", TEXT)
     rows = [
-        it for it in text.splitlines() if not it.startswith(("    - [pub", "    - {kind", "  - [s"))
+        it for it in text.splitlines() if not it.startswith(("    - [", "    - {kind", "  - [s"))
     ]
     left = "\n".join(rows)
     plan = read_plan(left.encode(), "p")

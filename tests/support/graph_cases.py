@@ -30,6 +30,7 @@ from multibot_rewrite.system.records import (
     Qos,
     Robot,
     System,
+    surely,
 )
 
 # As a user names them: messages hold the paths.
@@ -83,11 +84,12 @@ def environment(*caveats: Caveat) -> Environment:
 def as_planned(plan: System) -> System:
     """The graph that a plan is of; a type that is not known is that of the other end."""
     types: dict[tuple[str, str], str] = {}
-    for wanted in plan.ends:
+    planned = surely(plan).ends
+    for wanted in planned:
         both = (wanted.kind, wanted.name)
         types[both] = types.get(both) or wanted.type
     ends = [
-        End(w.kind, w.role, w.name, types[w.kind, w.name], "", w.node, None, "") for w in plan.ends
+        End(w.kind, w.role, w.name, types[w.kind, w.name], "", w.node, None, "") for w in planned
     ]
     nodes = [Node(it.name, "") for it in plan.nodes if it.robot]
     edges = [edge for robot in plan.robots for edge in robot_edges(robot)]

@@ -29,6 +29,7 @@ from multibot_rewrite.system.records import (
     Node,
     Robot,
     System,
+    surely,
 )
 
 ROVER = ROBOTS / "rover.urdf"
@@ -101,7 +102,7 @@ def _topic(robot: str, at: int) -> tuple[End, End]:
 def healthy(plan: System) -> System:
     """The graph exactly as planned, with what every node has."""
     nodes = [it.name for it in plan.nodes]
-    every = (End(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.ends)
+    every = (End(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in surely(plan).ends)
     usual = (
         End(kind, role, name.format(node), type_, "", node, None, "")
         for node in nodes

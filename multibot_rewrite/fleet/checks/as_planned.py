@@ -35,7 +35,15 @@ from multibot_rewrite.spelling.ways import HOST, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.questions import LIST_CONTROLLERS
-from multibot_rewrite.system.records import RUNS, SERVES, Environment, Node, Place, System
+from multibot_rewrite.system.records import (
+    RUNS,
+    SERVES,
+    Environment,
+    Node,
+    Place,
+    System,
+    surely,
+)
 
 # Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
 # no parameter file names. Between robots they are the build's.
@@ -134,7 +142,7 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
 def _is_of_a_lack(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
     """Is it about a planned name that a node of the launch file lacks? What it has instead is known."""
     there = {(one.node, one.kind, one.role, one.name) for one in seen.ends}
-    named = (one for one in planned.ends if one.name in it.names)
+    named = (one for one in surely(planned).ends if one.name in it.names)
     lacks = [one.node for one in named if (one.node, one.kind, one.role, one.name) not in there]
     of_nodes = (it._replace(code=_LACKS, node=node) for node in lacks)
     return any(_is_of_launch(one, planned, seen, started) for one in of_nodes)

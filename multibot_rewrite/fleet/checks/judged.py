@@ -37,7 +37,6 @@ from multibot_rewrite.system.records import (
     EXPORTS,
     JOINT,
     NOWHERE,
-    RUNS,
     End,
     Environment,
     Interface,
@@ -60,9 +59,7 @@ def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Findi
     met = {(it.code, name) for it in plan.fleet.table.problems for name in it.names}
     shared = {f"/{it}" for it in plan.fleet.naming.shared_topics}
     robots = {it.spec.namespace: it for it in plan.robots}
-    sure = tuple(it for it in whole.ends if it.sure == RUNS)
-    found = contradictions(index(whole._replace(ends=sure), whose))
-    for it in found:
+    for it in contradictions(index(whole, whose)):
         if it.names and shared.issuperset(it.names):
             continue
         if any((it.code, about) in met for about in (*it.names, it.node)):

@@ -18,6 +18,7 @@ from multibot_rewrite.system.records import (
     Heard,
     Qos,
     System,
+    surely,
 )
 
 # In place of the RMW: such a snapshot has no nodes, so what asks for nodes has no answer.
@@ -63,7 +64,7 @@ def as_snapshot(found: Recording, plan: System | None = None) -> System:
     those that publish its topic by the plan."""
     seconds = round(found.seconds, 2)
     senders: dict[str, dict[str, None]] = defaultdict(dict)
-    for end in plan.ends if plan else ():
+    for end in surely(plan).ends if plan else ():
         if end.role == PUBLISHES:
             senders[end.name][end.node] = None
     frames = tuple(

@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.plugin_classes import NODE, plugin_bases
-from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.records import UNKNOWN, NodeFacts
 from multibot_rewrite.producers.evidence.alternatives import GUESSED, alternatives
 from multibot_rewrite.producers.evidence.claims import claims_of
 from multibot_rewrite.producers.evidence.filling import filled
@@ -155,8 +155,13 @@ def _added(given: GivenNode, known: Mapping[str, NodeFacts], either: str) -> Nod
     node = known.get(given.known)
     if node is None:
         package = given.type.partition("/")[0]
-        found = NodeFacts(given.name, package, (), host=MANAGER, when=either)
-        return found._replace(origin=Origin(place=given.place))
+        return UNKNOWN._replace(
+            name=given.name,
+            package=package,
+            host=MANAGER,
+            when=either,
+            origin=Origin(place=given.place),
+        )
     runs = given.manager or node.name == MANAGER
     when = either or node.when if runs else f"its parameters are in {given.place.file}"
     return filled(node, given)._replace(when=when)

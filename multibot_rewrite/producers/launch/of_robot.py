@@ -15,12 +15,12 @@ from typing import Any
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.remapped import remapped
@@ -33,7 +33,7 @@ from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
 from multibot_rewrite.spelling.records import GivenNode
-from multibot_rewrite.system.records import NO_ORIGIN, Origin, Place
+from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
 
 # The name of a file for what a launch file gives itself.
 _OWN = "parameters of a launch file"
@@ -57,7 +57,6 @@ class Launched(NamedTuple):
 class _Pair(NamedTuple):
     node: LaunchedNode
     facts: NodeFacts
-    known: bool
 
 
 def with_launched(
@@ -85,7 +84,7 @@ def with_launched(
     inside = [*hosted, *(it for it in kept if it.host)]
     given = list(_controllers(spawned, pairs, words, parameters))
     given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
-    unknown = [(it.node, it.facts.name) for it in pairs if not it.known]
+    unknown = [(it.node, it.facts.name) for it in pairs if not it.facts.is_known]
     return Launched(
         (*kept, *nodes.values(), *hosted),
         tuple({it.name: it for it in reversed(given)}.values()),
@@ -149,7 +148,7 @@ def _pair(
     base = known_node(it, stack, known)
     own = own_name(it, base)
     name = it.name or own or last_word(it)
-    facts = base or NodeFacts(name, it.package, ())
+    facts = base or UNKNOWN._replace(name=name, package=it.package, endpoints=_named_by(it))
     unnamed = "" if it.name or own else NO_NAME
     rows = bridge_rows(it, words)
     found = facts._replace(
@@ -161,8 +160,15 @@ def _pair(
         when=it.later or unnamed,
         container=_below(it.container, "", words),
         origin=_origin(it.place),
+        is_known=facts.is_known or bool(rows),
     )
-    return _Pair(it, found, base is not None or bool(rows))
+    return _Pair(it, found)
+
+
+def _named_by(it: LaunchedNode) -> tuple[Endpoint, ...]:
+    """What the rules of a node that nobody knows name: topics, as far as anybody can say."""
+    names = dict.fromkeys(old for old, _ in it.remappings if not check_topic_name(old))
+    return tuple(Endpoint(TOPIC, "", old) for old in names)
 
 
 def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:

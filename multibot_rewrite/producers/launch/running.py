@@ -290,7 +290,7 @@ def _started(
 
 
 def _with_values(facts: NodeFacts, given: GivenNode, words: Sequence[str] = ()) -> NodeFacts:
-    if facts == UNKNOWN:
+    if not facts.is_known:
         return facts
     made = as_named(filled(facts, given)._replace(known=facts.kind), words, given.values)
     return with_static_transform(made, words)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a launch starts -> the graph that it would make: a snapshot, and what is not known of it.
 
-Names are those that rcl makes of the rules, transforms those that parameters name. What depends on a
-condition that nobody knows is left out.
+Names are those that rcl makes of the rules, transforms those that parameters name. An end under a
+condition that nobody knows may be there.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ from multibot_rewrite.producers.launch.running import (
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_on
 from multibot_rewrite.producers.transforms import lookups_of
-from multibot_rewrite.spelling.of_runs import ends_of, with_names
+from multibot_rewrite.spelling.of_runs import each_once, ends_of, with_names
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
@@ -144,7 +144,8 @@ def _parts(nodes: Sequence[Run], inside: Sent) -> tuple[list[_Part], list[str]]:
 
 def _read(parts: Iterable[_Part]) -> Iterator[str]:
     """The topics that somebody subscribes to."""
-    yield from (it.name for part in parts for it in part.endpoints if it.role == SUBSCRIBES)
+    ends = (it for part in parts for it in part.endpoints if it.sure == RUNS)
+    yield from (it.name for it in ends if it.role == SUBSCRIBES)
 
 
 def _listened_to(it: Run, heard: Collection[str]) -> Run:
@@ -168,7 +169,7 @@ def _heard(nodes: Iterable[Run], sensors: Sequence[SensorFrame]) -> Iterator[Hea
 def _measured(parts: Iterable[_Part], frames: Mapping[str, str]) -> Iterator[Heard]:
     """The frames of what nodes of plugins measure."""
     for end in (it for part in parts if part.name in frames for it in part.endpoints):
-        if end.role == PUBLISHES and end.type.startswith("sensor_msgs/"):
+        if end.sure == RUNS and end.role == PUBLISHES and end.type.startswith("sensor_msgs/"):
             yield Heard(end.name, frames[end.node])
 
 
@@ -253,11 +254,11 @@ def _part(it: Run, inside: Sent) -> _Part:
     name = f"{bound.namespace.rstrip('/')}/{bound.node}"
     bound_of(it.name, it.process_namespace, it.process_rules)
     own = () if is_bridge(it) else ends_of(with_names(it))
-    ends = [*(end for end in own if end.sure == RUNS), *_bridged(it, name, bound)]
+    ends = [*own, *_bridged(it, name, bound)]
     if it.value(SIM_TIME) is True and all(end.name != CLOCK for end in ends):
         ends.append(End(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
     return _Part(
-        name, tuple(dict.fromkeys(ends)), (*edges_of(it, bound), *passed_on(it, bound, inside))
+        name, tuple(each_once(ends)), (*edges_of(it, bound), *passed_on(it, bound, inside))
     )
 
 
@@ -270,7 +271,7 @@ def _bridged(it: Run, name: str, bound: BoundNode) -> Iterator[End]:
 def _without_own_time(ends: Sequence[End]) -> Iterator[End]:
     """Without those who wait for a time that nobody sends, and have it of the simulator around them
     (gz_ros2_control jazzy gz_ros2_control_plugin.cpp, PostUpdate)."""
-    sent = any(it.role == PUBLISHES and it.name == CLOCK for it in ends)
+    sent = any(it.role == PUBLISHES and it.name == CLOCK for it in ends if it.sure == RUNS)
     yield from (it for it in ends if sent or it.name != CLOCK or it.process != SIMULATED)
 
 

@@ -24,7 +24,7 @@ from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_
 from multibot_rewrite.rules.declaration import LAUNCH, launch_rule
 from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.records import GivenNode, Run
-from multibot_rewrite.system.records import PUBLISHES, SERVICE, SUBSCRIBES
+from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVICE, SUBSCRIBES
 
 START_MANAGER = (
     "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
@@ -238,7 +238,7 @@ def read_by_joints(launched: Launched) -> Iterator[tuple[Run, str]]:
     """What each joint_state_publisher subscribes to."""
     known = {it.full_name: it for it in launched.nodes if it.fact.kind in _KINDS}
     for end in launched.system.ends:
-        if end.role == SUBSCRIBES and end.node in known:
+        if end.role == SUBSCRIBES and end.node in known and end.sure == RUNS:
             yield known[end.node], end.name
 
 

@@ -60,7 +60,8 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
     """Where the other name has no sender, its reader is the finding, but for the drive beside a
     twist_mux: what it chooses is meant for the drive. What RViz offers is a note."""
     obeyed, plainly = defaultdict(list), defaultdict(list)
-    unread = {name: it for name, it in seen.orders.items() if it.publishers and not _obeyed(it)}
+    sent = {name: _sent_for_sure(it) for name, it in seen.orders.items() if not _obeyed(it)}
+    unread = {name: it for name, it in sent.items() if it.publishers}
     for (kind, name), ends in seen.by_name.items() if unread else ():
         if kind == TOPIC and ends.publishers and _obeyed(ends):
             obeyed[ends.type].append(name)
@@ -81,6 +82,10 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
                     f"publishes {name}, which no node reads; {absent}", ABSENT,
                     level=WARNING, node=node, names=(name,),
                 )  # fmt: skip
+
+
+def _sent_for_sure(ends: Ends) -> Ends:
+    return ends._replace(publishers=tuple(it for it in ends.publishers if it.sure == RUNS))
 
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:

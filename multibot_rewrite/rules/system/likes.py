@@ -14,7 +14,7 @@ from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Index, at_work, ends_of, once
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, End
+from multibot_rewrite.system.records import CALLS, PUBLISHES, RUNS, SERVES, SUBSCRIBES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 # Fewer nodes in common say nothing.
@@ -52,7 +52,8 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
             # Two robots of which each has a node of its own are made for two things.
             if lost and (others > 1 or not more):
                 yield from _lost_nodes(seen, made, robot, likes, lost)
-            gone = [it for it in ends_but_one if it not in made[robot].ends]
+            surely = {k for it in likes for k, end in made[it].ends.items() if end.sure == RUNS}
+            gone = [it for it in ends_but_one if it not in made[robot].ends and it in surely]
             yield from _lost_ends(
                 seen, made, robot, likes, [k for k in gone if k[0] in made[robot].nodes]
             )

@@ -226,7 +226,7 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
     """A service that is nowhere to be found may be optional: it is no finding."""
     for ends in seen.by_name.values():
         if ends.kind != TOPIC and not ends.servers:
-            for end in _each_node(ends.clients):
+            for end in filter(_runs, _each_node(ends.clients)):
                 yield from _unserved(seen, end, _served(seen).get((end.kind, end.type), _NOBODY))
 
 

@@ -17,9 +17,9 @@ MOST_CANDIDATES = 50
 
 @once
 def missing(plan: Index, seen: Index) -> Mapping[EndKey, End]:
-    """The planned ends that are not there."""
+    """The planned ends that are not there, without those that only may be."""
     there = seen.by_key
-    return {key: end for key, end in plan.by_key.items() if key not in there}
+    return {key: end for key, end in plan.sure.by_key.items() if key not in there}
 
 
 @once
@@ -27,7 +27,7 @@ def unplanned_ends(plan: Index, seen: Index) -> Mapping[str, Sequence[End]]:
     """By node: the ends that are not planned, each once, without hidden ones."""
     found: dict[str, list[End]] = defaultdict(list)
     known = set(plan.by_key)
-    for end in seen.system.ends:
+    for end in seen.sure.system.ends:
         key = (end.node, end.kind, end.role, end.name)
         # A node may subscribe to a topic more than once.
         if key not in known and "/_" not in end.name:

@@ -226,7 +226,7 @@ def _recorded(plan: Index, seen: Index) -> Iterator[Finding]:
     """Where it is not known which nodes run: a topic that each robot sends by the plan, and that is
     there for some of them, or is there under a name of no robot."""
     there = {name: ends for (kind, name), ends in seen.by_name.items() if kind == TOPIC}
-    for names in _of_each(plan, PUBLISHES).values():
+    for names in _of_each(plan.sure, PUBLISHES).values():
         others = [name for name in names.values() if name in there]
         for robot, name in names.items() if others else ():
             if name not in there:
