@@ -110,7 +110,7 @@ def so_far(seen: System, judge: Judge | None) -> str:
     sure = [it for it in found if it.code not in ABSENCE]
     nodes = f"{plural(len(seen.nodes), 'node')} so far"
     if not sure:
-        return f"{nodes}, nothing wrong" if seen.nodes else nodes
+        return f"{nodes}, nothing wrong seen" if seen.nodes else nodes
     first = min(sure, key=lambda it: it.level != ERROR)
     more = f", and {plural(len(sure) - 1, 'more finding')}" if len(sure) > 1 else ""
     return f"{nodes}; {first.code} {first.message}{more}"

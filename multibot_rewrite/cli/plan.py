@@ -20,7 +20,6 @@ from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet, expected, possible
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
-from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.plan_file import to_yaml
@@ -28,7 +27,7 @@ from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.ownership import without_name
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import System, doubts
 
 PLAN, POLICY = "plan", "sros2"
 # How a plan calls a robot without a name; its frames are those of its description.

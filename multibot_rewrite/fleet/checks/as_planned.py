@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
-from multibot_rewrite.rules.check import ABSENCE, absences, doubts
+from multibot_rewrite.rules.check import ABSENCE, absences
 from multibot_rewrite.rules.domains import check_view
 from multibot_rewrite.rules.launch.judge import CLAIMS
 from multibot_rewrite.rules.system import (
@@ -35,7 +35,15 @@ from multibot_rewrite.spelling.ways import HOST, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.questions import LIST_CONTROLLERS
-from multibot_rewrite.system.records import RUNS, SERVES, Environment, Node, Place, System
+from multibot_rewrite.system.records import (
+    RUNS,
+    SERVES,
+    Environment,
+    Node,
+    Place,
+    System,
+    doubts,
+)
 
 # Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
 # no parameter file names. Between robots they are the build's.
