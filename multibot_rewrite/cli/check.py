@@ -13,7 +13,6 @@ from multibot_rewrite.base.file_kinds import SNAPSHOT, recognised
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
@@ -22,9 +21,7 @@ from multibot_rewrite.cli.report import (
     About,
     check_report,
     chosen,
-    counted_findings,
     report_first,
-    with_coverage,
 )
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import follow
@@ -42,7 +39,7 @@ from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.spelling.plan_file import is_fleet, read_plan
-from multibot_rewrite.system.coverage import Coverage, coverage
+from multibot_rewrite.system.coverage import coverage
 from multibot_rewrite.system.domains import by_domain, side_by_side
 from multibot_rewrite.system.records import System, answering, doubts
 
@@ -182,7 +179,8 @@ def conclude(
     """Report the findings, draw what is asked for; the exit code. ``compared`` are those about the
     graph and its plan, ``before`` those from before there was a graph."""
     found = chosen(options, compared)
-    of_graph, gaps = [*before, *found], _gaps(options, plan)
+    gaps = _gaps(options, plan)
+    of_graph = [it for it in (*before, *found) if it not in gaps]
     findings = [*of_graph, *gaps]
     held = coverage(plan, graph)
     about = About([plan_name(options)], robot_words(plan), plan.release, held)
@@ -195,8 +193,7 @@ def conclude(
     verdict = Verdict.WRONG if fails(of_graph, options.fail_on) else verdict
     words = verdict_words(verdict, of_graph, held, gaps=gaps)
     outcome = Outcome(verdict, words, f"{options.program} {options.command}")
-    pictures.deliver(options, plan, graph, findings, outcome)
-    _sum_up(options, plan, findings, outcome, held)
+    pictures.conclude(options, plan, graph, findings, outcome, about)
     return STOPPED if failed else live.CODES[verdict]
 
 
@@ -218,17 +215,6 @@ def plan_name(options: argparse.Namespace) -> str:
     return str(given.get("plan") or given["input"])
 
 
-def _sum_up(
-    options: argparse.Namespace,
-    plan: System,
-    findings: Sequence[Finding],
-    outcome: Outcome,
-    held: Coverage,
-) -> None:
-    verdict = f"{counted_findings(findings)}: {outcome.words}{facts_of_release(plan.release)}"
-    note(options, with_coverage(held, verdict))
-
-
 def _watch(options: argparse.Namespace, plan: System, domains: Sequence[int] = ()) -> int:
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
@@ -243,12 +229,11 @@ def _watch(options: argparse.Namespace, plan: System, domains: Sequence[int] = (
         return live.INCONCLUSIVE
     live.note_answers(options, last.graph)
     findings = [*last.findings, *gaps]
+    about = About([options.plan], robot_words(plan), plan.release, last.coverage)
     if options.output:
-        about = About([options.plan], robot_words(plan), plan.release, last.coverage)
         report_first(options, findings, about)
     verdict = final(last)
     words = final_words(last, planned=True, gaps=gaps)
     outcome = Outcome(verdict, words, f"{options.program} {options.command}")
-    pictures.deliver(options, plan, last.graph, findings, outcome)
-    _sum_up(options, plan, findings, outcome, last.coverage)
+    pictures.conclude(options, plan, last.graph, findings, outcome, about)
     return STOPPED if any(it.level == ERROR for it in gaps) else live.CODES[verdict]

@@ -79,8 +79,7 @@ def graph(
         from multibot_rewrite.producers.bags.recording import as_snapshot
 
         return as_snapshot(read_bag(options.bag))
-    asked = request or Request(options.timeout or LOOK_SECONDS)
-    asked = asked._replace(headers=vars(options).get("no_frame_ids") is False)
+    asked = (request or Request(options.timeout or LOOK_SECONDS))._replace(headers=True)
     looking = f"looking at the graph, for {asked.timeout:g} s at most"
     with shown(looking) as show:
         if options.zenoh:

@@ -49,9 +49,9 @@ def counted_findings(findings: Sequence[Finding]) -> str:
     return plural(len(findings), "note" if only_notes else "finding")
 
 
-def with_coverage(held: Coverage, text: str) -> str:
+def with_coverage(held: Coverage | None, text: str) -> str:
     """Return a verdict behind how much of the robots it is about."""
-    return "; ".join(filter(None, (in_words(held), text)))
+    return "; ".join(filter(None, (in_words(held) if held else "", text)))
 
 
 def by_themselves(robots: Iterable[str]) -> dict[str, str]:

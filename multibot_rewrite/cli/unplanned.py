@@ -20,9 +20,7 @@ from multibot_rewrite.cli.report import (
     by_themselves,
     check_report,
     chosen,
-    counted_findings,
     report_first,
-    with_coverage,
 )
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import Look, follow
@@ -118,34 +116,29 @@ def _report(
 ) -> int:
     """The findings, and what is asked for; ``empty`` says that there was nothing to see."""
     findings = chosen(options, seen.findings)
-    failed = _listed(options, seen, findings)
+    about = _about(options, seen)
+    failed = report_first(options, findings, about)
     unsure = [caveat.message for caveat in doubts(seen.graph)] or empty
     for reason in unsure:
         say(f"incomplete: {reason}", PROGRAM)
     inconclusive = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     verdict = Verdict.WRONG if failed else inconclusive
     words = verdict_words(verdict, findings, seen.coverage, planned=False)
-    _draw(options, seen, findings, _outcome(verdict, words, unsure))
+    outcome = Outcome(verdict, words, "multibot check", planned=False, reasons=tuple(unsure))
     _suggest(options, each)
-    note(options, with_coverage(seen.coverage, f"{counted_findings(findings)}: {words}"))
+    plan = seen_plan(seen) if options.report else seen.graph
+    pictures.conclude(options, plan, seen.graph, findings, outcome, about)
     return live.CODES[verdict]
 
 
-def _outcome(verdict: Verdict, words: str, reasons: Sequence[str] = ()) -> Outcome:
-    return Outcome(verdict, words, "multibot check", planned=False, reasons=tuple(reasons))
+def _about(options: argparse.Namespace, seen: Diagnosis) -> About:
+    return About(options.snapshot, by_themselves(seen.whose.robots), coverage=seen.coverage)
 
 
 def _nothing_seen(graph: System) -> Iterator[str]:
     """A graph in which nothing runs is not a healthy one; a recording never has nodes."""
     if not is_recorded(graph) and all(is_tool(node.name) for node in graph.nodes):
         yield "no node of a robot is in this graph, so there is nothing to judge"
-
-
-def _draw(
-    options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], outcome: Outcome
-) -> None:
-    if options.report:
-        pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
 
 
 def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None:
@@ -164,11 +157,6 @@ def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None
         note(options, f"wrote {', '.join(texts)}: see {next(iter(texts))}")
 
 
-def _listed(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
-    about = About(options.snapshot, by_themselves(seen.whose.robots), coverage=seen.coverage)
-    return report_first(options, findings, about)
-
-
 def _watch(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
     each: dict[int, Diagnosis] = {}
     last = follow(_looking(each), live.watched(options, domains=domains), planned=False)
@@ -176,12 +164,13 @@ def _watch(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
     live.note_answers(options, last.graph)
-    seen, words = diagnose(last.graph), final_words(last, planned=False)
+    seen = diagnose(last.graph)
+    about, words = _about(options, seen), final_words(last, planned=False)
     if options.output:
-        _listed(options, seen, last.findings)
-    _draw(options, seen, last.findings, _outcome(final(last), words))
+        report_first(options, last.findings, about)
+    outcome = Outcome(final(last), words, "multibot check", planned=False)
     _suggest(options, each)
-    note(options, with_coverage(seen.coverage, f"{counted_findings(last.findings)}: {words}"))
+    pictures.conclude(options, seen_plan(seen), last.graph, last.findings, outcome, about)
     return live.CODES[final(last)]
 
 

@@ -101,6 +101,8 @@ class Sure(NamedTuple):
 RUNS, MAY, UNKNOWN, OFF = Sure("runs"), Sure("may"), Sure("unknown"), Sure("off")
 # The code of a caveat: nodes that no source names may run, such as the driver of a robot.
 UNKNOWN_NODES = "unknown-nodes"
+# The code of a finding: what a part of a launch file starts is not in the plan.
+NOT_READ = "MF823"
 # The code of a caveat: a node that was waited for did not come.
 WAITED_FOR = "expected-not-seen"
 
