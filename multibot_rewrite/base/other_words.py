@@ -143,6 +143,7 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
         "--snapshot": "--from FILE",
         "--bag": "--from BAG",
         "--zenoh": "--from ROUTER",
+        "--no-frame-ids": "no option: a look receives one message of each sensor topic, --watch none",
         "--jobs": "taskset, or the quota of a container",
         "--groups": "--separator group=_",
         "--shared-frames": "--shared FRAME,FRAME",

@@ -7,7 +7,7 @@ import argparse
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.changed import deliver_changed
+from multibot_rewrite.cli.changed import deliver_changed, note_unread, proof_words
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
@@ -33,7 +33,7 @@ def _tell(options: argparse.Namespace, made: Adopted) -> None:
         many = plural(len(made.proved), "description")
         if made.configurations:
             many += f" and {plural(len(made.configurations), 'other configuration')}"
-        end = "proved" if made.proved else "not proved, see what is left"
+        end = proof_words(made.unread) if made.proved else "not proved, see what is left"
         where = plural(len(made.after), "file")
         note(options, f"argument {made.argument}: {many} in {where}; {end}")
     if made.namespace:
@@ -47,5 +47,4 @@ def _tell(options: argparse.Namespace, made: Adopted) -> None:
         note(options, f"{path}: it has such an argument already: {name}")
     for one in made.left:
         note(options, f"{one.place}: left as it is: {one.why}")
-    for path, why in made.unread.items():
-        note(options, f"not looked at: {why or path}")
+    note_unread(options, made.unread)

@@ -16,7 +16,13 @@ from multibot_rewrite.cli.fleet import note_interfaces
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
-from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
+from multibot_rewrite.cli.report import (
+    About,
+    check_report,
+    chosen,
+    report_beside,
+    with_coverage,
+)
 from multibot_rewrite.cli.usage import asked_number
 from multibot_rewrite.cli.walk import check_link, is_same_file
 from multibot_rewrite.description.checks.verdict import not_proved
@@ -40,6 +46,7 @@ from multibot_rewrite.fleet.manifest import (
     read_manifest,
 )
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
+from multibot_rewrite.system.coverage import Coverage, coverage
 
 
 def run(options: argparse.Namespace) -> int:
@@ -56,7 +63,8 @@ def run(options: argparse.Namespace) -> int:
     back = read_back(plan, made, os.path.abspath(options.output))
     # What is told in both is said once, at the level of the folder.
     told = (it for it in made.findings if it._replace(level=ERROR) not in back)
-    if _reported(options, plan, (*told, *plan.with_names(back))):
+    held = coverage(made.planned)
+    if _reported(options, plan, (*told, *plan.with_names(back)), held):
         say("nothing was written", PROGRAM)
         return STOPPED
     read = _read(plan, made.files)
@@ -70,16 +78,17 @@ def run(options: argparse.Namespace) -> int:
             return _stale(options, found)
         why = not_proved({*made.findings, *plan.fleet.table.problems})
         end = f"; not proved: {', '.join(why)}" if why else ""
-        robots = plural(len(plan.robots), "robot")
         end = f"{end}{facts_of_release(plan.file.distro, plan.file.why)}"
-        return _written(options, files, found, robots, end)
+        return _written(options, files, found, held, end)
 
 
-def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding]) -> bool:
+def _reported(
+    options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding], held: Coverage
+) -> bool:
     """Report what is wrong with the files and the remap table; does it stop the build?"""
     both = dict.fromkeys((*found, *plan.with_names(plan.fleet.table.problems)))
     ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
-    about = About([options.fleet], plan.words, plan.file.distro)
+    about = About([options.fleet], plan.words, plan.file.distro, held)
     return report_beside(options, chosen(options, ordered), about)
 
 
@@ -145,10 +154,10 @@ def _written(
     options: argparse.Namespace,
     files: Sequence[OutputFile],
     found: OutputChanges,
-    robots: str,
+    held: Coverage,
     end: str,
 ) -> int:
-    """Write what changed, and sum up; ``robots`` and ``end`` are the begin and the end of that line."""
+    """Write what changed, and sum up; ``end`` is the end of that line."""
     if not options.force:
         _refuse(options.output, found.foreign, "no build made it")
         _refuse(options.output, found.edited, "it was edited since it was built")
@@ -164,7 +173,8 @@ def _written(
         )
     for path in found.write:
         detail(options, f"wrote {os.path.join(options.output, path)}")
-    note(options, f"{robots}, {plural(len(files), 'file')}, {len(found.write)} written{end}")
+    written = f"{plural(len(files), 'file')}, {len(found.write)} written{end}"
+    note(options, with_coverage(held, written))
     note(options, f"next: ros2 launch {os.path.join(options.output, LAUNCH)}")
     return DONE
 

@@ -7,8 +7,9 @@ import argparse
 import os
 from collections.abc import Mapping
 
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.cli.output import deliver, diff, prints_colour
+from multibot_rewrite.cli.output import deliver, diff, note, prints_colour
 
 
 def deliver_changed(
@@ -28,3 +29,14 @@ def deliver_changed(
         for path, data in after.items()
     )
     deliver(options, b"".join(patches))
+
+
+def proof_words(unread: Mapping[str, str]) -> str:
+    """Return the word for a change that is proved, with how many descriptions were not read for it."""
+    return f"proved, {plural(len(unread), 'description')} not read" if unread else "proved"
+
+
+def note_unread(options: argparse.Namespace, unread: Mapping[str, str]) -> None:
+    """Name the descriptions that could not be read, each with the reason."""
+    for path, why in unread.items():
+        note(options, f"not looked at: {why or path}")

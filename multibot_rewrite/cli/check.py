@@ -13,7 +13,6 @@ from multibot_rewrite.base.file_kinds import SNAPSHOT, recognised
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
@@ -22,21 +21,27 @@ from multibot_rewrite.cli.report import (
     About,
     check_report,
     chosen,
-    counted_findings,
     report_first,
 )
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.live.watching import WORDS, Outcome, Verdict, final, in_words
+from multibot_rewrite.live.watching import (
+    Outcome,
+    Verdict,
+    final,
+    final_words,
+    verdict_words,
+)
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
-from multibot_rewrite.rules.check import check, doubts
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.spelling.plan_file import is_fleet, read_plan
+from multibot_rewrite.system.coverage import coverage
 from multibot_rewrite.system.domains import by_domain, side_by_side
-from multibot_rewrite.system.records import System, answering
+from multibot_rewrite.system.records import System, answering, doubts
 
 
 def run(options: argparse.Namespace) -> int:
@@ -174,9 +179,11 @@ def conclude(
     """Report the findings, draw what is asked for; the exit code. ``compared`` are those about the
     graph and its plan, ``before`` those from before there was a graph."""
     found = chosen(options, compared)
-    of_graph, gaps = [*before, *found], _gaps(options, plan)
+    gaps = _gaps(options, plan)
+    of_graph = [it for it in (*before, *found) if it not in gaps]
     findings = [*of_graph, *gaps]
-    about = About([plan_name(options)], robot_words(plan), plan.release)
+    held = coverage(plan, graph)
+    about = About([plan_name(options)], robot_words(plan), plan.release, held)
     failed = report_first(options, findings, about)
     caveats = doubts(graph)
     for caveat in caveats:
@@ -184,9 +191,9 @@ def conclude(
     unsure = caveats or any(it.level == INCONCLUSIVE for it in of_graph)
     verdict = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     verdict = Verdict.WRONG if fails(of_graph, options.fail_on) else verdict
-    outcome = _outcome(options, verdict, gaps)
-    pictures.deliver(options, plan, graph, findings, outcome)
-    _sum_up(options, plan, findings, outcome)
+    words = verdict_words(verdict, of_graph, held, gaps=gaps)
+    outcome = Outcome(verdict, words, f"{options.program} {options.command}")
+    pictures.conclude(options, plan, graph, findings, outcome, about)
     return STOPPED if failed else live.CODES[verdict]
 
 
@@ -208,25 +215,6 @@ def plan_name(options: argparse.Namespace) -> str:
     return str(given.get("plan") or given["input"])
 
 
-def _outcome(
-    options: argparse.Namespace, verdict: Verdict, gaps: Sequence[Finding], words: str = ""
-) -> Outcome:
-    """A graph may be as planned, and the plan have faults."""
-    is_open = any(it.level != NOTE for it in gaps)
-    word = "but" if verdict == Verdict.PLANNED else "and"
-    but = f", {word} the plan has faults" if is_open else ", with notes on the plan" if gaps else ""
-    return Outcome(
-        verdict, f"{words or WORDS[verdict]}{but}", f"{options.program} {options.command}"
-    )
-
-
-def _sum_up(
-    options: argparse.Namespace, plan: System, findings: Sequence[Finding], outcome: Outcome
-) -> None:
-    counted = f"{plural(len(plan.robots), 'robot')}, {counted_findings(findings)}"
-    note(options, f"{counted}: {outcome.words}{facts_of_release(plan.release)}")
-
-
 def _watch(options: argparse.Namespace, plan: System, domains: Sequence[int] = ()) -> int:
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
@@ -241,10 +229,11 @@ def _watch(options: argparse.Namespace, plan: System, domains: Sequence[int] = (
         return live.INCONCLUSIVE
     live.note_answers(options, last.graph)
     findings = [*last.findings, *gaps]
+    about = About([options.plan], robot_words(plan), plan.release, last.coverage)
     if options.output:
-        report_first(options, findings, About([options.plan], robot_words(plan), plan.release))
+        report_first(options, findings, about)
     verdict = final(last)
-    outcome = _outcome(options, verdict, gaps, in_words(last))
-    pictures.deliver(options, plan, last.graph, findings, outcome)
-    _sum_up(options, plan, findings, outcome)
+    words = final_words(last, planned=True, gaps=gaps)
+    outcome = Outcome(verdict, words, f"{options.program} {options.command}")
+    pictures.conclude(options, plan, last.graph, findings, outcome, about)
     return STOPPED if any(it.level == ERROR for it in gaps) else live.CODES[verdict]

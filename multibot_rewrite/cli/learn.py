@@ -22,8 +22,7 @@ from multibot_rewrite.live.learning.choosing import choose_nodes, helpers_withou
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml
 from multibot_rewrite.live.learning.nodl_file import to_nodl
-from multibot_rewrite.rules.check import doubts
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import System, doubts
 
 NODES, NODL = "nodes", "nodl"
 

@@ -79,8 +79,7 @@ def graph(
         from multibot_rewrite.producers.bags.recording import as_snapshot
 
         return as_snapshot(read_bag(options.bag))
-    asked = request or Request(options.timeout or LOOK_SECONDS)
-    asked = asked._replace(headers=vars(options).get("no_frame_ids") is False)
+    asked = (request or Request(options.timeout or LOOK_SECONDS))._replace(headers=True)
     looking = f"looking at the graph, for {asked.timeout:g} s at most"
     with shown(looking) as show:
         if options.zenoh:
@@ -110,7 +109,7 @@ def so_far(seen: System, judge: Judge | None) -> str:
     sure = [it for it in found if it.code not in ABSENCE]
     nodes = f"{plural(len(seen.nodes), 'node')} so far"
     if not sure:
-        return f"{nodes}, nothing wrong" if seen.nodes else nodes
+        return f"{nodes}, nothing wrong seen" if seen.nodes else nodes
     first = min(sure, key=lambda it: it.level != ERROR)
     more = f", and {plural(len(sure) - 1, 'more finding')}" if len(sure) > 1 else ""
     return f"{nodes}; {first.code} {first.message}{more}"

@@ -9,7 +9,9 @@ from collections.abc import Iterable, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import MultibotError, UsageError
-from multibot_rewrite.cli.output import STANDARD, write_files
+from multibot_rewrite.base.releases import facts_of_release
+from multibot_rewrite.cli.output import STANDARD, note, write_files
+from multibot_rewrite.cli.report import About, counted_findings, with_coverage
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.live.watching import Outcome
@@ -57,6 +59,20 @@ def deliver(
     lines = snippets(row.place for row in scene.rows)
     page = to_html(scene, rules=rules(), snippets=lines, robots=framed(options, graph))
     write_files(options, [(options.report, page)])
+
+
+def conclude(
+    options: argparse.Namespace,
+    plan: System,
+    graph: System,
+    found: Sequence[Finding],
+    outcome: Outcome,
+    about: About,
+) -> None:
+    """Write the page if it is asked for, and say the verdict behind how much it is about."""
+    deliver(options, plan, graph, found, outcome)
+    verdict = f"{counted_findings(found)}: {outcome.words}{facts_of_release(about.release)}"
+    note(options, with_coverage(about.coverage, verdict))
 
 
 def snippets(places: Iterable[str]) -> dict[str, list[str]]:

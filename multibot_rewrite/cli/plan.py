@@ -20,34 +20,22 @@ from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet, expected, possible
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
-from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
+from multibot_rewrite.system.coverage import Coverage, coverage, in_words
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.ownership import without_name
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import System, doubts
 
 PLAN, POLICY = "plan", "sros2"
 # How a plan calls a robot without a name; its frames are those of its description.
 ALONE, LAYOUT_ALONE = NAMELESS.name, "tf-per-robot"
 # What a plan of a description has, and that of a launch file has not.
-NOT_OF_LAUNCH = {
-    it: f"--{it}"
-    for it in (
-        "robots",
-        "count",
-        "stack",
-        "launch",
-        "layout",
-        "affix",
-        "topics",
-        "separator",
-        "shared",
-    )
-}
+_OF_ROBOTS = ("robots", "count", "stack", "launch", "layout", "affix", "topics", "separator")
+NOT_OF_LAUNCH = {it: f"--{it}" for it in (*_OF_ROBOTS, "shared")}
 # A launch file is told by its name: no description or fleet file is called so.
 _LAUNCH = re.compile(r".*(\.py|[._]launch(\.\w+)?|system_model\.yaml)")
 TABLE, BRIDGE = "table", "bridge"
@@ -66,6 +54,7 @@ def run(options: argparse.Namespace) -> int:
     if options.form == PLAN:
         plan = expected(made)
         _write(options, without_name(plan) if alone else plan)
+        _note_coverage(options, coverage(plan))
     elif options.form == POLICY:
         deliver(options, to_policy(expected(made), possible(made)).encode())
     else:
@@ -77,6 +66,12 @@ def _is_alone(options: argparse.Namespace) -> bool:
     """Is it the plan of a robot that is called nothing? A layout, or rules, are for one with a name."""
     unnamed = not options.input.endswith(fleet.FLEET_FILES) and not robots(options)
     return unnamed and options.form == PLAN and not given_options(options, {"layout": "--layout"})
+
+
+def _note_coverage(options: argparse.Namespace, held: Coverage) -> None:
+    """Say how much the plan holds, unless that is all."""
+    if not held.is_whole:
+        note(options, in_words(held))
 
 
 def _write(options: argparse.Namespace, plan: System) -> None:
@@ -103,6 +98,7 @@ def _of_launch(options: argparse.Namespace) -> int:
     for caveat in doubts(made):
         say(f"incomplete: {caveat.message}", PROGRAM)
     _write(options, seen_plan(seen)._replace(release=made.release))
+    _note_coverage(options, seen.coverage)
     return DONE
 
 

@@ -7,7 +7,7 @@ import argparse
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.changed import deliver_changed
+from multibot_rewrite.cli.changed import deliver_changed, note_unread, proof_words
 from multibot_rewrite.cli.output import detail, note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
@@ -33,9 +33,11 @@ def run(options: argparse.Namespace) -> int:
 
 def _tell(options: argparse.Namespace, made: Renaming) -> None:
     where = f"{plural(made.places, 'place')} in {plural(len(made.after), 'file')}"
-    note(options, f"{options.kind} {options.old} -> {options.new}: {where}; proved")
-    for path, why in made.unread.items():
-        note(options, f"not looked at: {why or path}")
+    note(
+        options,
+        f"{options.kind} {options.old} -> {options.new}: {where}; {proof_words(made.unread)}",
+    )
+    note_unread(options, made.unread)
     left = made.mentions
     if left:
         note(options, f"left as they are: {plural(len(left), 'line')} with {options.old!r}")

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.formats import Report, rendered
+from multibot_rewrite.base.findings.formats import NO_COVERAGE, Report, rendered
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import (
     Selection,
@@ -22,6 +22,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
+from multibot_rewrite.system.coverage import Coverage, as_value, in_words
 
 TEXT = "text"
 FEW_NOTES = 3
@@ -33,17 +34,24 @@ NO_RULES: Mapping[str, Rule] = MappingProxyType({})
 
 class About(NamedTuple):
     """What findings are about: the files that were read, the words that stand for robots in texts (a
-    name, a prefix), each with its robot, and the release whose facts they rest on."""
+    name, a prefix), each with its robot, the release whose facts they rest on, and how much of the
+    robots was there to be judged."""
 
     files: Sequence[str]
     robots: Mapping[str, str] = NO_ROBOTS
     release: str = ""
+    coverage: Coverage | None = None
 
 
 def counted_findings(findings: Sequence[Finding]) -> str:
     """How many there are; notes are called so, since with them nothing is wrong."""
     only_notes = findings and all(it.level == NOTE for it in findings)
     return plural(len(findings), "note" if only_notes else "finding")
+
+
+def with_coverage(held: Coverage | None, text: str) -> str:
+    """Return a verdict behind how much of the robots it is about."""
+    return "; ".join(filter(None, (in_words(held) if held else "", text)))
 
 
 def by_themselves(robots: Iterable[str]) -> dict[str, str]:
@@ -159,5 +167,6 @@ def _text(
 
         rules = all_rules()
     made_by = f"{options.program} {options.command}".removesuffix(f" {options.program}")
-    report = Report(made_by, about.files, rules, about.release)
+    held = as_value(about.coverage) if about.coverage else NO_COVERAGE
+    report = Report(made_by, about.files, rules, about.release, held)
     return rendered(options.format, shown, report, colour=colour)

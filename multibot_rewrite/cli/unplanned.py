@@ -8,7 +8,7 @@ import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.wording import plural
@@ -20,27 +20,19 @@ from multibot_rewrite.cli.report import (
     by_themselves,
     check_report,
     chosen,
-    counted_findings,
     report_first,
 )
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import Look, follow
 from multibot_rewrite.live.diagnose import Diagnosis, diagnose, diagnose_domains, survey
 from multibot_rewrite.live.seen_plan import seen_plan
-from multibot_rewrite.live.watching import Outcome, Verdict, final, in_words
+from multibot_rewrite.live.watching import Outcome, Verdict, final, final_words, verdict_words
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
-from multibot_rewrite.rules.check import doubts
 from multibot_rewrite.rules.system.planned_nodes import missing_robot
 from multibot_rewrite.system.domains import unnamed
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import System, doubts
 from multibot_rewrite.system.tool_nodes import is_tool
-
-WORDS = {
-    Verdict.PLANNED: "nothing wrong seen",
-    Verdict.INCONCLUSIVE: "inconclusive, the view may be incomplete",
-    Verdict.WRONG: "something is wrong",
-}
 
 
 def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
@@ -124,33 +116,29 @@ def _report(
 ) -> int:
     """The findings, and what is asked for; ``empty`` says that there was nothing to see."""
     findings = chosen(options, seen.findings)
-    failed = _listed(options, seen, findings)
+    about = _about(options, seen)
+    failed = report_first(options, findings, about)
     unsure = [caveat.message for caveat in doubts(seen.graph)] or empty
     for reason in unsure:
         say(f"incomplete: {reason}", PROGRAM)
     inconclusive = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     verdict = Verdict.WRONG if failed else inconclusive
-    _draw(options, seen, findings, _outcome(verdict, unsure))
+    words = verdict_words(verdict, findings, seen.coverage, planned=False)
+    outcome = Outcome(verdict, words, "multibot check", planned=False, reasons=tuple(unsure))
     _suggest(options, each)
-    return _sum_up(options, findings, verdict)
+    plan = seen_plan(seen) if options.report else seen.graph
+    pictures.conclude(options, plan, seen.graph, findings, outcome, about)
+    return live.CODES[verdict]
 
 
-def _outcome(verdict: Verdict, reasons: Sequence[str] = ()) -> Outcome:
-    words = WORDS[verdict]
-    return Outcome(verdict, words, "multibot check", planned=False, reasons=tuple(reasons))
+def _about(options: argparse.Namespace, seen: Diagnosis) -> About:
+    return About(options.snapshot, by_themselves(seen.whose.robots), coverage=seen.coverage)
 
 
 def _nothing_seen(graph: System) -> Iterator[str]:
     """A graph in which nothing runs is not a healthy one; a recording never has nodes."""
     if not is_recorded(graph) and all(is_tool(node.name) for node in graph.nodes):
         yield "no node of a robot is in this graph, so there is nothing to judge"
-
-
-def _draw(
-    options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], outcome: Outcome
-) -> None:
-    if options.report:
-        pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
 
 
 def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None:
@@ -169,34 +157,20 @@ def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None
         note(options, f"wrote {', '.join(texts)}: see {next(iter(texts))}")
 
 
-def _listed(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
-    about = About(options.snapshot, by_themselves(seen.whose.robots))
-    return report_first(options, findings, about)
-
-
-def _sum_up(options: argparse.Namespace, findings: Sequence[Finding], verdict: Verdict) -> int:
-    note(options, f"{counted_findings(findings)}: {_words(findings)[verdict]}")
-    return live.CODES[verdict]
-
-
-def _words(findings: Sequence[Finding]) -> Mapping[Verdict, str]:
-    """With a warning, not that there is nothing wrong."""
-    warned = any(it.level == WARNING for it in findings)
-    return {**WORDS, Verdict.PLANNED: "no error, see the warnings"} if warned else WORDS
-
-
 def _watch(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
     each: dict[int, Diagnosis] = {}
-    last = follow(_looking(each), live.watched(options, domains=domains), WORDS)
+    last = follow(_looking(each), live.watched(options, domains=domains), planned=False)
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
     live.note_answers(options, last.graph)
+    seen = diagnose(last.graph)
+    about, words = _about(options, seen), final_words(last, planned=False)
     if options.output:
-        _listed(options, diagnose(last.graph), last.findings)
-    _draw(options, diagnose(last.graph), last.findings, _outcome(final(last)))
+        report_first(options, last.findings, about)
+    outcome = Outcome(final(last), words, "multibot check", planned=False)
     _suggest(options, each)
-    note(options, f"{counted_findings(last.findings)}: {in_words(last, _words(last.findings))}")
+    pictures.conclude(options, seen_plan(seen), last.graph, last.findings, outcome, about)
     return live.CODES[final(last)]
 
 

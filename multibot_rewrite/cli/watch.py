@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, render
-from multibot_rewrite.live.watching import WORDS, Verdict, WatchState, with_found
+from multibot_rewrite.live.watching import WatchState, verdict_words, with_found
 from multibot_rewrite.rules.system.planned_nodes import missing_robot
 from multibot_rewrite.system.records import CHANGING, System
 
@@ -25,14 +25,14 @@ Look = Callable[[Views], tuple[System, System, Sequence[Finding]]]
 
 
 def follow(
-    look: Look, snapshots: Generator[Views, None, None], words: Mapping[Verdict, str] = WORDS
+    look: Look, snapshots: Generator[Views, None, None], planned: bool = True
 ) -> WatchState | None:
     """Show every change until the snapshots end or the user ends it; the last state."""
     state: WatchState | None = None
     with ExitStack() as stack:
         stack.enter_context(closing(snapshots))
         screen = sys.stdout.isatty()
-        show = stack.enter_context(_screen(words)) if screen else partial(_print_lines, words)
+        show = stack.enter_context(_screen(planned)) if screen else partial(_print_lines, planned)
         try:
             for views in snapshots:
                 state = with_found(*look(views), state)
@@ -43,29 +43,29 @@ def follow(
     return state
 
 
-def _print_lines(words: Mapping[Verdict, str], state: WatchState) -> None:
+def _print_lines(planned: bool, state: WatchState) -> None:
     """What changed, for a log: findings come with + and go with -."""
     at = f"{state.graph.environment.seconds:7.1f} s"
     changes = (("+", state.appeared), ("-", state.solved)) if state.complete else ()
     lines = [f"{at}  {sign} {finding}" for sign, findings in changes for finding in findings]
-    print_lines([*lines, f"{at}  {_headline(words, state)}"])
+    print_lines([*lines, f"{at}  {_headline(planned, state)}"])
 
 
 @contextmanager
-def _screen(words: Mapping[Verdict, str]) -> Iterator[Show]:
+def _screen(planned: bool) -> Iterator[Show]:
     """A screen that is drawn anew at every change."""
     from rich.live import Live
     from rich.text import Text
 
     with Live(auto_refresh=False) as live:
         yield lambda state: live.update(
-            Text.from_ansi(render(_parts(words, state), live.console.width, colour=True)),
+            Text.from_ansi(render(_parts(planned, state), live.console.width, colour=True)),
             refresh=True,
         )
 
 
-def _parts(words: Mapping[Verdict, str], state: WatchState) -> Iterator[str | Grid]:
-    yield _headline(words, state)
+def _parts(planned: bool, state: WatchState) -> Iterator[str | Grid]:
+    yield _headline(planned, state)
     yield ""
     per_robot = {robot.robot: 0 for robot in state.robots}
     for finding in state.findings:
@@ -89,12 +89,13 @@ def _more(count: int, what: str) -> Iterator[str]:
         yield f"and {count - _SHOWN} more {what}"
 
 
-def _headline(words: Mapping[Verdict, str], state: WatchState) -> str:
+def _headline(planned: bool, state: WatchState) -> str:
     """One line: how much is there, and what it comes to."""
     nodes = _of(_sum(it.nodes for it in state.robots))
     names = _of(_sum(it.names for it in state.robots))
     moving = state.graph.environment.settled == CHANGING
-    said = "still changing" if moving else words[state.verdict]
+    words = verdict_words(state.verdict, state.findings, state.coverage, planned)
+    said = "still changing" if moving else words
     found = plural(len(state.findings), "finding")
     gone = [it.robot for it in state.findings if it.code == missing_robot.code]
     without = f", without {shorten(gone)}" if gone else ""

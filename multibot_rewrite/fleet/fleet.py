@@ -42,6 +42,7 @@ from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, Edges, edges_o
 from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
+    NOT_READ,
     SIM_TIME,
     Edge,
     End,
@@ -280,12 +281,18 @@ def planned(fleet: Fleet) -> System:
     whole = plan._replace(
         edges=tuple(_sends(fleet)),
         release=fleet.table.release,
-        gaps=fleet.gaps,
+        gaps=(*fleet.gaps, *_not_read(fleet)),
         topics=fleet.bridged,
         parameters=tuple(_parameters(fleet)),
         domains=fleet.apart.domains,
     )
     return with_bridges(whole, fleet.apart.crossing) if whole.domains else whole
+
+
+def _not_read(fleet: Fleet) -> Iterator[Finding]:
+    """Yield what could not be read of launch files: the nodes in it are not in the plan."""
+    problems = fleet.table.problems
+    yield from (it for it in problems if (it.code, it.level) == (NOT_READ, WARNING))
 
 
 def _parameters(fleet: Fleet) -> Iterator[Parameter]:

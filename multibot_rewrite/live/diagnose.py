@@ -15,10 +15,11 @@ from multibot_rewrite.rules.check import ABSENCE, inconclusive_where_in_doubt, j
 from multibot_rewrite.rules.domains import in_domain
 from multibot_rewrite.rules.system.differing import COMPARED
 from multibot_rewrite.rules.system.equal_robots import less_than_another_robot
+from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import named, side_by_side, space_of, unnamed
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
 from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, ends_of, index
-from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, System
+from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, Robot, System
 from multibot_rewrite.system.tf_copies import tree_topic
 
 # Rules that hold robots against each other, which they are in whatever domain.
@@ -39,6 +40,13 @@ class Diagnosis(NamedTuple):
     layout: Layout | None
     tf: tuple[tuple[str, tuple[str, ...]], ...]
     findings: tuple[Finding, ...]
+
+    @property
+    def coverage(self) -> Coverage:
+        """How much of the robots is in the graph, or in the launch file."""
+        nodes = (it._replace(robot=self.whose.robot(it.name)) for it in self.graph.nodes)
+        robots = (Robot(it.name) for it in self.robots if not it.only_frames)
+        return coverage(self.graph._replace(nodes=tuple(nodes), robots=tuple(robots)))
 
 
 def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosis:

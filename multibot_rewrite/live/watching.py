@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from enum import IntEnum
 
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.rules.check import ABSENCE, doubts
-from multibot_rewrite.system.records import CHANGING, System, nodes_by_robot, surely
+from multibot_rewrite.rules.check import ABSENCE
+from multibot_rewrite.system.coverage import Coverage, coverage
+from multibot_rewrite.system.records import CHANGING, System, doubts, nodes_by_robot, surely
 
 
 class Verdict(IntEnum):
@@ -20,10 +21,12 @@ class Verdict(IntEnum):
     WRONG = 2
 
 
-WORDS = {
-    Verdict.PLANNED: "as planned",
-    Verdict.INCONCLUSIVE: "inconclusive, the view may be incomplete",
-    Verdict.WRONG: "not as planned",
+# By whether there was a plan.
+_WORDS = {
+    (Verdict.PLANNED, True): "nothing wrong seen",
+    (Verdict.INCONCLUSIVE, True): "inconclusive, the view may be incomplete",
+    (Verdict.WRONG, True): "not as planned",
+    (Verdict.WRONG, False): "something is wrong",
 }
 
 
@@ -39,6 +42,28 @@ class Outcome(NamedTuple):
     by: str = "multibot check"
     planned: bool = True
     reasons: tuple[str, ...] = ()
+
+
+def verdict_words(
+    verdict: Verdict,
+    findings: Iterable[Finding],
+    held: Coverage,
+    planned: bool = True,
+    gaps: Sequence[Finding] = (),
+) -> str:
+    """Return the verdict in words, which say no more than was seen.
+
+    ``planned`` is whether there was a plan to compare with, ``gaps`` are the findings about that plan.
+    """
+    is_open = any(it.level != NOTE for it in gaps)
+    words = _WORDS.get((verdict, planned)) or _WORDS[verdict, True]
+    if verdict == Verdict.PLANNED and any(it.level in (ERROR, WARNING) for it in findings):
+        words = "no error, see the warnings"
+    elif verdict == Verdict.PLANNED and planned and not is_open:
+        words = "as planned" if held.is_whole else "as planned as far as known"
+    if is_open:
+        return f"{words}, {'but' if verdict == Verdict.PLANNED else 'and'} the plan has faults"
+    return f"{words}, with notes on the plan" if gaps else words
 
 
 class Progress(NamedTuple):
@@ -58,6 +83,7 @@ class WatchState(NamedTuple):
 
     graph: System
     findings: tuple[Finding, ...]
+    coverage: Coverage
     appeared: tuple[Finding, ...]
     solved: tuple[Finding, ...]
     robots: tuple[Progress, ...]
@@ -90,6 +116,7 @@ def with_found(
     return WatchState(
         graph,
         found,
+        coverage(plan, graph),
         _not_in(old, found),
         _not_in(found, old),
         robots,
@@ -124,12 +151,13 @@ def final(state: WatchState) -> Verdict:
     return max(state.worst, state.verdict)
 
 
-def in_words(state: WatchState, words: Mapping[Verdict, str] = WORDS) -> str:
-    """The verdict at the end in a command's words, and that of before where it was worse."""
-    worst = final(state)
+def final_words(state: WatchState, planned: bool, gaps: Sequence[Finding] = ()) -> str:
+    """Return the verdict at the end in words, and that of before where it was worse."""
+    worst, held = final(state), state.coverage
     if worst == state.verdict:
-        return words[worst]
-    return f"{words[state.verdict]} now, but before: {words[worst]}"
+        return verdict_words(worst, state.findings, held, planned, gaps)
+    now = verdict_words(state.verdict, state.findings, held, planned)
+    return f"{now} now, but before: {verdict_words(worst, (), held, planned, gaps)}"
 
 
 def progress(plan: System, graph: System) -> list[Progress]:

@@ -10,17 +10,10 @@ from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
-from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.page_sections import LEVELS, PageSection, ids_in, ids_of, link_to
 from multibot_rewrite.pages.scene import FindingRow, Scene
 from multibot_rewrite.pages.svg import Ids, safe
-
-# By whether the verdict is good, and whether there is a plan.
-NOTHING = {
-    (True, True): "No faults: everything planned is in the graph, and no name leaks.",
-    (True, False): "No faults were seen in what runs now.",
-}
-DOUBTFUL = "No faults were found, but the view of the graph may be incomplete."
+from multibot_rewrite.system.coverage import in_words
 
 
 class Sources(NamedTuple):
@@ -53,9 +46,8 @@ def finding_list(
     """The findings in their order."""
     yield '<section id="findings">\n<h2>Findings</h2>\n'
     if not scene.rows:
-        outcome = scene.outcome
-        text = NOTHING.get((outcome.verdict == Verdict.PLANNED, outcome.planned), DOUBTFUL)
-        yield f'<p class="none">{text}</p>\n'
+        text = f"{in_words(scene.coverage)}; no findings: {scene.outcome.words}"
+        yield f'<p class="none">{safe(text)}</p>\n'
     order = {robot: at for at, robot in enumerate(scene.robots)}
     inside = {one.group.robot: (one.id, ids_in(one, ids)) for one in sections}
     for at, row in enumerate(scene.rows):

@@ -28,9 +28,9 @@ from multibot_rewrite.pages.page_sections import (
 )
 from multibot_rewrite.pages.robot_cards import robot_cards
 from multibot_rewrite.pages.scene import Scene
-from multibot_rewrite.pages.states import MISSING
 from multibot_rewrite.pages.svg import Ids, safe
 from multibot_rewrite.rules.check import RULES
+from multibot_rewrite.system.coverage import in_words
 from multibot_rewrite.system.records import QUIET, ZENOH
 
 # The CSS class of a verdict; a good one with findings is not drawn as good.
@@ -136,12 +136,11 @@ def _header(
     scene: Scene, sections: Sequence[PageSection], rules: Mapping[str, Rule]
 ) -> Iterator[str]:
     about = next((one.about for one in LAYOUTS if scene.layout in (one.name, one.short)), "")
-    nodes = {n.name for g in scene.groups for n in g.nodes if not n.is_robot and n.state != MISSING}
     layout = "layout" if scene.outcome.planned else "looks like layout"
     facts = (
         _count(scene),
         f"{plural(len(scene.robots), 'robot')}: {shorten(scene.robots, SEVERAL)}",
-        plural(len(nodes), "node"),
+        in_words(scene.coverage),
         f"{layout} {scene.layout}{f': {about}' if about else ''}",
     )
     yield f'<header class="{_look(scene)}">\n<p>{safe(scene.outcome.by)}</p>\n'

@@ -10,7 +10,7 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import said_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.live.watching import Verdict
+from multibot_rewrite.live.watching import Verdict, verdict_words
 from multibot_rewrite.pages.page_sections import PageSection, concerns_of, look_of, summarize
 from multibot_rewrite.pages.scene import FindingRow, Scene
 from multibot_rewrite.pages.states import MISSING
@@ -67,16 +67,18 @@ def _html(card: _Card, scene: Scene, order: Mapping[str, int], rules: Mapping[st
 def _state(card: _Card, scene: Scene) -> str:
     levels = Counter(scene.rows[at].finding.level for at in card.rows)
     sure = scene.outcome.planned and scene.outcome.verdict != Verdict.INCONCLUSIVE
-    fine = "as planned" if sure else "nothing wrong seen"
-    state = summarize(levels) or ("notes only" if card.rows else fine)
+    robots = {it.group.robot for it in card.sections}
+    own = tuple(it for it in scene.coverage.robots if it.robot in robots)
+    planned = verdict_words(Verdict.PLANNED, (), scene.coverage._replace(robots=own), sure)
+    state = summarize(levels) or ("notes only" if card.rows else planned)
     nodes = sum(
         node.robot == section.group.robot and not node.is_robot and node.state != MISSING
         for section in card.sections
         for node in section.group.nodes
     )
     each = " each" if len(card.sections) > 1 and card.rows else ""
-    robots = f"{len(card.sections)} robots, " if len(card.sections) > 1 else ""
-    return f"{robots}{state}{each}; {plural(nodes, 'node')} running"
+    many = f"{len(card.sections)} robots, " if len(card.sections) > 1 else ""
+    return f"{many}{state}{each}; {plural(nodes, 'node')} running"
 
 
 def _line(at: int, row: FindingRow, rules: Mapping[str, Rule], robot: str) -> str:

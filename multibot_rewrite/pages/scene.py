@@ -9,7 +9,7 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping, 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.selection import with_members
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.live.watching import WORDS, Outcome, judge
+from multibot_rewrite.live.watching import Outcome, judge, verdict_words
 from multibot_rewrite.pages.states import (
     FAULTY,
     LEAK,
@@ -28,6 +28,7 @@ from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.rules.check import side_by_side
 from multibot_rewrite.rules.system.planned import matches
 from multibot_rewrite.spelling.plan import robot_words
+from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.index import EndKey, Index
 from multibot_rewrite.system.records import (
     ACTION,
@@ -146,6 +147,7 @@ class Scene(NamedTuple):
     environment: Environment
     one_of: tuple[tuple[str, ...], ...]
     running: frozenset[str]
+    coverage: Coverage = Coverage(())
 
 
 class _RobotOf(NamedTuple):
@@ -160,7 +162,7 @@ def make_scene(
 ) -> Scene:
     """What is drawn of ``graph`` with its plan and findings; the outcome follows from these if a
     command does not say otherwise."""
-    verdict = judge(found, graph)
+    verdict, held = judge(found, graph), coverage(plan, graph)
     by_plan, seen = side_by_side(plan, graph)
     targets = find_targets(by_plan, seen, found)
     states = make_states(found, targets)
@@ -168,7 +170,7 @@ def make_scene(
     robot_of = _robot_of(by_plan, seen, states, edges)
     nodes = _nodes(by_plan, seen, states, edges, robot_of)
     return Scene(
-        outcome or Outcome(verdict, WORDS[verdict]),
+        outcome or Outcome(verdict, verdict_words(verdict, found, held)),
         plan.layout,
         tuple(robot.name for robot in plan.robots),
         tuple(_groups(plan, edges, nodes, robot_of)),
@@ -179,6 +181,7 @@ def make_scene(
         graph.environment,
         alternatives(plan),
         frozenset(seen.nodes),
+        held,
     )
 
 

@@ -49,7 +49,7 @@ from multibot_rewrite.rules.with_plan import one_for_a_cause
 from multibot_rewrite.system.index import NO_COUNTS, Index, beside, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.patterns import fitted
-from multibot_rewrite.system.records import Caveat, System, incomplete
+from multibot_rewrite.system.records import System, doubts
 from multibot_rewrite.system.records import clocks as time_by_node
 from multibot_rewrite.system.tf_copies import without_bridged
 
@@ -61,7 +61,6 @@ _MODULES = (
 )
 _FOUND = (it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule))
 RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
-WAITED_FOR = "expected-not-seen"
 _LACKS = likes.lacks_what_its_likes_have
 # Findings about something missing: an incomplete view cannot prove them.
 ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
@@ -164,14 +163,6 @@ def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Fin
     told, mixed = time_by_node(graph), clocks.clocks_mixed.code
     sure = {it for it in found if it.code not in ABSENCE or (it.code == mixed and it.node in told)}
     return [it if it in sure else _inconclusive(it) for it in found]
-
-
-def doubts(graph: System) -> tuple[Caveat, ...]:
-    """The caveats that make a view incomplete.
-
-    That an expected node did not come is not one of them: once the graph is quiet it is missing.
-    """
-    return tuple(caveat for caveat in incomplete(graph) if caveat.code != WAITED_FOR)
 
 
 def _inconclusive(finding: Finding) -> Finding:

@@ -15,7 +15,15 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
-from multibot_rewrite.system.records import CHANGING, TIMEOUT, UNKNOWN_NODE, Caveat, End, Node
+from multibot_rewrite.system.records import (
+    CHANGING,
+    TIMEOUT,
+    UNKNOWN_NODE,
+    WAITED_FOR,
+    Caveat,
+    End,
+    Node,
+)
 
 MAX_DOMAIN = 232
 RANGES = ("OFF", "LOCALHOST", "SUBNET", "SYSTEM_DEFAULT")
@@ -156,7 +164,7 @@ def view_caveats(
     if nodes and absent:
         missing = shorten(absent, SEVERAL)
         text = f"expected names not in the graph: {missing}; is all started, are the names right?"
-        yield Caveat("expected-not-seen", True, text)
+        yield Caveat(WAITED_FOR, True, text)
     yield from _cut_off(endpoints, asked)
     yield from unfinished(nodes, endpoints, asked.discovery_server)
     twins = [name for name, times in names.items() if times > 1]

@@ -101,6 +101,10 @@ class Sure(NamedTuple):
 RUNS, MAY, UNKNOWN, OFF = Sure("runs"), Sure("may"), Sure("unknown"), Sure("off")
 # The code of a caveat: nodes that no source names may run, such as the driver of a robot.
 UNKNOWN_NODES = "unknown-nodes"
+# The code of a finding: what a part of a launch file starts is not in the plan.
+NOT_READ = "MF823"
+# The code of a caveat: a node that was waited for did not come.
+WAITED_FOR = "expected-not-seen"
 
 
 class Qos(NamedTuple):
@@ -375,6 +379,14 @@ def surely(system: System) -> System:
 def incomplete(system: System) -> tuple[Caveat, ...]:
     """Why something may be missing in the view; empty for a complete one."""
     return tuple(caveat for caveat in system.environment.caveats if caveat.incomplete)
+
+
+def doubts(system: System) -> tuple[Caveat, ...]:
+    """Return the caveats that make a view incomplete.
+
+    That an expected node did not come is not one of them: once the graph is quiet it is missing.
+    """
+    return tuple(caveat for caveat in incomplete(system) if caveat.code != WAITED_FOR)
 
 
 def clocks(system: System) -> dict[str, bool]:

@@ -42,7 +42,6 @@ from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.live import staged
 from multibot_rewrite.live.learning.learn import LearnedNode
-from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -436,15 +435,6 @@ def test_a_graph_of_tools_alone_has_nothing_to_judge() -> None:
         assert [*unplanned._nothing_seen(graph)] == reasons
 
 
-def test_words_of_a_check_without_a_plan() -> None:
-    words = ["nothing wrong seen", "inconclusive, the view may be incomplete", "something is wrong"]
-    verdicts = (Verdict.PLANNED, Verdict.INCONCLUSIVE, Verdict.WRONG)
-    assert [unplanned._outcome(it, ["a"]) for it in verdicts] == [
-        Outcome(it, text, "multibot check", False, ("a",))
-        for it, text in zip(verdicts, words, strict=True)
-    ]
-
-
 def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) -> None:
     given = options(
         quiet=False, verbose=True, program="multibot", kind="link", old="a", new="b"
@@ -460,7 +450,8 @@ def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) ->
     left = [f"f:{at}" for at in range(rename.MOST_MENTIONS + 1)]
     more = {**usual, "unread": {"p": "p: odd", "q": ""}, "mentions": left}
     rename._tell(given, options(**more))  # type: ignore[arg-type]
-    assert capsys.readouterr().err.splitlines()[1:] == [
+    assert capsys.readouterr().err.splitlines() == [
+        "multibot: link a -> b: 3 places in 2 files; proved, 2 descriptions not read",
         "multibot: not looked at: p: odd", "multibot: not looked at: q",
         f"multibot: left as they are: {len(left)} lines with 'a'",
         *(f"multibot:   {it}" for it in left[:-1]),
@@ -484,6 +475,10 @@ def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) ->
     ]
     assert told(proved=("a", "b"), configurations=("c",)) == [
         "argument prefix: 2 descriptions and 1 other configuration in 1 file; proved"
+    ]
+    assert told(unread={"u": "u: odd"}) == [
+        "argument prefix: 1 description in 1 file; proved, 1 description not read",
+        "not looked at: u: odd",
     ]
     files = {"l": b"<arg prefix:= />", "m": b"<arg ns:= prefix:= />"}
     assert told(argument="", unread={"u": "u: odd", "v": ""}, already={"x": "tf_prefix"}) == [

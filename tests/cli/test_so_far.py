@@ -22,8 +22,8 @@ def judge(seen: System) -> object:
 
 def test_a_healthy_view_has_nothing_wrong_so_far() -> None:
     seen = small_fleet.healthy("L2")
-    assert so_far(seen, judge) == f"{len(seen.nodes)} nodes so far, nothing wrong"  # type: ignore[arg-type]
-    assert so_far(seen, None) == f"{len(seen.nodes)} nodes so far, nothing wrong"
+    assert so_far(seen, judge) == f"{len(seen.nodes)} nodes so far, nothing wrong seen"  # type: ignore[arg-type]
+    assert so_far(seen, None) == f"{len(seen.nodes)} nodes so far, nothing wrong seen"
     assert so_far(seen._replace(nodes=(), ends=()), None) == "0 nodes so far"
 
 
@@ -36,7 +36,7 @@ def test_what_contradicts_is_shown_and_what_is_missing_is_not() -> None:
         "running: /robot1/amcl subscribes /clock rosgraph_msgs/msg/Clock\n"
     ).system
     assert "MG501" in {it.code for it in diagnose(missing).findings} & ABSENCE
-    assert so_far(missing, judge) == "1 node so far, nothing wrong"  # type: ignore[arg-type]
+    assert so_far(missing, judge) == "1 node so far, nothing wrong seen"  # type: ignore[arg-type]
 
 
 def test_a_request_for_what_is_seen_so_far_survives_the_command_line() -> None:

@@ -163,16 +163,15 @@ def test_a_live_graph_is_asked_for_with_what_the_options_say(
     monkeypatch.setattr(child, "watch", watch)
     plain = {**USUAL, "timeout": None, "domain": None}
     live.graph(options(**plain))
-    live.graph(options(**{**plain, "timeout": 2.0, "domain": 7}, no_frame_ids=False))
-    live.graph(options(**plain, no_frame_ids=True))
+    live.graph(options(**{**plain, "timeout": 2.0, "domain": 7}))
     next(live.watched(options(**plain), {"a": ["b"]}))
     asks = options(**{**plain, "timeout": 4.0, "state": True})
     # Nothing is said before each has been seen.
     assert [*live.watched(asks, {"a": ["b"]}, (11, 12))] == [{11: "b", 12: "c"}, {11: "d", 12: "c"}]
-    first, second, third, watched, asking = (it for it, _ in asked)
-    assert [it for _, it in asked] == ["3", "7", "3", "3", "11,12"]
-    assert (first.timeout, first.headers, first.watch) == (15.0, False, False)
-    assert (second.timeout, second.headers, third.headers) == (2.0, True, False)
+    first, second, watched, asking = (it for it, _ in asked)
+    assert [it for _, it in asked] == ["3", "7", "3", "11,12"]
+    assert (first.timeout, first.headers, first.watch) == (15.0, True, False)
+    assert (second.timeout, second.headers, watched.headers) == (2.0, True, False)
     assert (watched.timeout, watched.watch, watched.asks) == (float("inf"), True, None)
     assert (asking.timeout, asking.asks) == (4.0, {"a": ["b"]})
 

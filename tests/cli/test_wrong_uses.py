@@ -15,7 +15,6 @@ from refusals import said
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.cli import check, lint, live, plan, rewrite_use, unplanned, view
-from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.system.records import System
 
 
@@ -216,6 +215,9 @@ WATCH = {
 }  # fmt: skip
 
 
+HELD = "2 robots, 2 nodes each"
+
+
 def watched(
     monkeypatch: pytest.MonkeyPatch, run: Callable[..., int], *graphs: System, **more: object
 ) -> int:
@@ -228,9 +230,9 @@ def watched(
 @pytest.mark.parametrize(
     ("gap", "code", "words"),
     [
-        ((), 0, "2 robots, 0 findings: as planned (ROS 2 lyrical)"),
-        ((WARNING,), 0, "2 robots, 1 finding: as planned, but the plan has faults (ROS 2 lyrical)"),
-        ((ERROR,), 1, "2 robots, 1 finding: as planned, but the plan has faults (ROS 2 lyrical)"),
+        ((), 0, "0 findings: as planned"),
+        ((WARNING,), 0, "1 finding: nothing wrong seen, but the plan has faults"),
+        ((ERROR,), 1, "1 finding: nothing wrong seen, but the plan has faults"),
     ],
 )
 def test_a_watch_of_a_plan_ends_with_its_worst(
@@ -240,7 +242,7 @@ def test_a_watch_of_a_plan_ends_with_its_worst(
     of = small_fleet.plan()._replace(gaps=gaps, release="lyrical")
     assert watched(monkeypatch, check._watch, small_fleet.healthy(), of=of) == code
     told = capsys.readouterr()
-    assert told.err == f"multibot: {words}\n"
+    assert told.err == f"multibot: {HELD}: all known, all seen; {words} (ROS 2 lyrical)\n"
     assert told.out.startswith("".join(f"robot1: {it}: MF801 is open\n" for it in gap))
 
 
@@ -252,7 +254,7 @@ def test_a_watch_with_a_fault_writes_its_findings(
     given = {"output": str(out), "of": small_fleet.plan()}
     assert watched(monkeypatch, check._watch, *graphs, **given) == 1
     assert "MG306" in out.read_text()
-    assert "2 robots, 1 finding: not as planned" in capsys.readouterr().err
+    assert f"{HELD}: all known, all seen; 1 finding: not as planned" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("run", [check._watch, unplanned._watch])
@@ -269,27 +271,10 @@ def test_a_watch_without_a_plan(
 ) -> None:
     out = tmp_path / "found.txt"
     assert watched(monkeypatch, unplanned._watch, small_fleet.healthy()) == 0
-    assert capsys.readouterr().err == "multibot: 0 findings: nothing wrong seen\n"
+    assert capsys.readouterr().err == f"multibot: {HELD}; 0 findings: nothing wrong seen\n"
     assert watched(monkeypatch, unplanned._watch, small_fleet.clash(), output=str(out)) == 1
-    assert capsys.readouterr().err == "multibot: 1 finding: something is wrong\n"
+    assert capsys.readouterr().err == f"multibot: {HELD}; 1 finding: something is wrong\n"
     assert "types-differ" in out.read_text() or "MG306" in out.read_text()
-
-
-@pytest.mark.parametrize(
-    ("verdict", "levels", "words"),
-    [
-        (Verdict.PLANNED, (), "as planned"),
-        (Verdict.PLANNED, (NOTE,), "as planned, with notes on the plan"),
-        (Verdict.PLANNED, (NOTE, WARNING), "as planned, but the plan has faults"),
-        (Verdict.WRONG, (ERROR,), "not as planned, and the plan has faults"),
-        (Verdict.INCONCLUSIVE, (), "inconclusive, the view may be incomplete"),
-    ],
-)  # fmt: skip
-def test_the_outcome_of_a_check(verdict: Verdict, levels: tuple[str, ...], words: str) -> None:
-    gaps = [Finding("MF801", it, "") for it in levels]
-    assert check._outcome(options(program="p", command="c"), verdict, gaps) == Outcome(
-        verdict, words, "p c"
-    )
 
 
 def test_what_a_check_does_not_take_together() -> None:

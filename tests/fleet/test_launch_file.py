@@ -22,8 +22,9 @@ from multibot_rewrite import launch, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.live.rehearsal import with_substitutes
 from multibot_rewrite.live.staged import stage, staged
-from multibot_rewrite.rules.check import check, doubts
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.system.records import doubts
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 

@@ -11,7 +11,6 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.pages.finding_list import (
-    DOUBTFUL,
     Sources,
     explanations,
     filters,
@@ -23,6 +22,7 @@ from multibot_rewrite.pages.page_sections import make_ids, make_sections
 from multibot_rewrite.pages.robot_cards import robot_cards
 from multibot_rewrite.pages.scene import DrawnGroup, DrawnNode, FindingRow, Scene
 from multibot_rewrite.pages.states import MISSING, OK, Targets
+from multibot_rewrite.system.coverage import SEEN, Coverage, Covered
 from multibot_rewrite.system.records import Caveat, Environment
 
 NOTHING = Targets((), (), ())
@@ -146,23 +146,12 @@ def test_many_robots_and_names_are_shortened() -> None:
     assert 'title="r1, r2">r1, r2</b>' in findings(scene("r1", "r2", rows=(other,)))
 
 
-@pytest.mark.parametrize(
-    ("verdict", "planned", "said"),
-    [
-        (
-            Verdict.PLANNED,
-            True,
-            "No faults: everything planned is in the graph, and no name leaks.",
-        ),
-        (Verdict.PLANNED, False, "No faults were seen in what runs now."),
-        (Verdict.INCONCLUSIVE, True, DOUBTFUL),
-        (Verdict.INCONCLUSIVE, False, DOUBTFUL),
-    ],
-)
-def test_what_is_said_where_nothing_is_found(verdict: Verdict, planned: bool, said: str) -> None:
-    outcome = Outcome(verdict, "", planned=planned)
-    assert findings(scene("r1", outcome=outcome)) == (
-        f'<section id="findings">\n<h2>Findings</h2>\n<p class="none">{said}</p>\n</section>\n'
+def test_where_nothing_is_found_no_more_is_said_than_was_seen() -> None:
+    rows = (Covered("r1", 2, 1, 2, 0),)
+    made = scene("r1", outcome=Outcome(Verdict.INCONCLUSIVE, "not <sure>"))
+    assert findings(made._replace(coverage=Coverage(rows, compared=SEEN))) == (
+        '<section id="findings">\n<h2>Findings</h2>\n<p class="none">1 robot, 2 nodes: 1 known, 1'
+        " started as it is, all seen; no findings: not &lt;sure&gt;</p>\n</section>\n"
     )
 
 
@@ -229,6 +218,12 @@ def test_the_state_of_a_robot(outcome: Outcome, rows: tuple[FindingRow, ...], sa
     assert f"<p>{said}; 1 node running</p>" in cards(scene("r1", outcome=outcome, rows=rows))
 
 
+def test_only_robots_whose_nodes_are_known_are_as_planned() -> None:
+    rows = (Covered("r1", 2, 2, 2, 0), Covered("r2", 2, 1, 2, 0))
+    made = scene("r1", "r2", rows=(row("r1"),))._replace(coverage=Coverage(rows))
+    assert "<p>as planned as far as known; 1 node running</p>" in cards(made)
+
+
 def test_many_findings_and_robots_of_a_card_are_folded() -> None:
     made = cards(scene("r1", rows=tuple(row("r1") for _ in range(7))))
     assert "<details><summary>2 more</summary><ul><li>" in made
@@ -249,16 +244,16 @@ def head(made: Scene) -> str:
 
 
 def test_the_head_of_the_page() -> None:
-    """Nodes that run are counted; a good verdict with findings is not drawn as good."""
+    """It says how much was there; a good verdict with findings is not drawn as good."""
     caveats = (Caveat("a", True, "cut <off>"), Caveat("b", False, "a note"))
     made = scene(
         "r1", "r2", rows=(row("r1", level="warning"),), environment=Environment(caveats=caveats),
         outcome=Outcome(Verdict.PLANNED, "as planned", reasons=("a rule was left out", "cut <off>")),
-    )  # fmt: skip
+    )._replace(coverage=Coverage((Covered("r1", 2, 1, 1, 0),), compared=SEEN))  # fmt: skip
     assert head(made) == (
         '<header class="unsure">\n<p>multibot check</p>\n<h1>as planned</h1>\n<ul><li>1 warning</li>'
-        "<li>2 robots: r1, r2</li><li>3 nodes</li><li>layout both: tf topic and frames per"
-        " robot</li></ul>\n"
+        "<li>2 robots: r1, r2</li><li>1 robot, 2 nodes: 1 known, 1 started as it is, 1 of 2"
+        " seen</li><li>layout both: tf topic and frames per robot</li></ul>\n"
         '<p class="doubt">cut &lt;off&gt;</p>\n<p class="doubt">a rule was left out</p>\n'
     )
 

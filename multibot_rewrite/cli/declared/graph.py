@@ -38,10 +38,6 @@ STATE = switch(
     about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers, and"
     " parameters that multibot build wrote",
 )
-HEADERS = switch(
-    "--no-frame-ids",
-    about="do not receive a message of each sensor topic, for its frame",
-)
 WATCH = switch(
     "--watch",
     about="show every change until Ctrl-C or --timeout, without the frames of sensors' messages; with"
@@ -55,7 +51,7 @@ DOMAINS = several(
     read=values.domains,
 )
 LISTENING = SOURCE._replace(
-    options=(*(it for it in SOURCE.options if it.names != DOMAINS.names), DOMAINS, HEADERS)
+    options=(*(it for it in SOURCE.options if it.names != DOMAINS.names), DOMAINS)
 )
 CHECK = Command(
     "check",
@@ -215,7 +211,6 @@ SNAPSHOT = Command(
                 ),
                 FROM,
                 STATE,
-                HEADERS,
                 *LIVE.options,
             )
         ),

@@ -9,11 +9,11 @@ from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, WARNING, 
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.system.records import NOT_READ, Place
 
 NOT_LAUNCHED = declare("MF821", "node-not-launched", NOTE, formats=("fleet",))
 NOT_KNOWN = declare("MF822", "launched-node-not-known", NOTE, formats=("fleet",))
-NOT_WHOLE = declare("MF823", "launch-not-whole", WARNING, formats=("fleet",))
+NOT_WHOLE = declare(NOT_READ, "launch-not-whole", WARNING, formats=("fleet",))
 STOOD_IN = "launch is not installed here: a stand-in read the launch file"
 _WITHOUT_VALUES = "the node is in the plan without what the file sets"
 

@@ -26,6 +26,7 @@ from multibot_rewrite.system.records import (
     EXPECTED,
     QUIET,
     TIMEOUT,
+    WAITED_FOR,
     ZENOH,
     Caveat,
     Environment,
@@ -133,7 +134,7 @@ def _absent(seen: _Seen, request: Request) -> Iterator[Caveat]:
     absent = sorted({*request.expected} - _names(seen.tokens))
     if absent and seen.tokens:
         text = f"expected names not in the graph: {shorten(absent, SEVERAL)}"
-        yield Caveat("expected-not-seen", True, f"{text}; is all started, are the names right?")
+        yield Caveat(WAITED_FOR, True, f"{text}; is all started, are the names right?")
 
 
 def _strays(session: RouterSession, found: Iterable[Token], router: Router) -> Iterator[Caveat]:

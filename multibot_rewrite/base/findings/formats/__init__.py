@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from importlib import import_module
+from types import MappingProxyType
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
@@ -27,14 +28,19 @@ FORMATS = {
 }
 
 
+NO_COVERAGE: Mapping[str, object] = MappingProxyType({})
+
+
 class Report(NamedTuple):
     """What a report says beside its findings: the command that made it, the files that were read,
-    all rules by code, and the ROS 2 release whose facts it rests on."""
+    all rules by code, the ROS 2 release whose facts it rests on, and how much of the robots it is
+    about (``system.coverage.as_value``)."""
 
     tool: str
     files: Sequence[str]
     rules: Mapping[str, Rule]
     release: str = ""
+    coverage: Mapping[str, object] = NO_COVERAGE
 
 
 def rendered(

@@ -22,6 +22,7 @@ def render(findings: Sequence[Finding], report: Report) -> str:
         "tool": report.tool,
         "distro": report.release or None,
         "files": len(report.files),
+        **({"coverage": report.coverage} if report.coverage else {}),
         "counts": counts(findings),
         "findings": [_finding(it, report) for it in findings],
     }

@@ -34,6 +34,9 @@ def _add_suite(suites: etree._Element, report: Report, found: Sequence[Finding])
     suite = etree.SubElement(suites, "testsuite", {"name": path, **_totals(found, report)})
     # Jenkins takes what stands before the last dot for a package.
     home = {"classname": f"{report.tool}.{path.replace('.', '_')}", "time": "0"}
+    if report.coverage:
+        about = {"name": "coverage", "value": str(report.coverage["text"])}
+        etree.SubElement(etree.SubElement(suite, "properties"), "property", about)
     if not found:
         etree.SubElement(suite, "testcase", {"name": _PASSED, **home})
     for finding, name in zip(found, _names(found), strict=True):

@@ -30,7 +30,8 @@ def render(findings: Sequence[Finding], report: Report) -> str:
     """Counts, then a table for each file with findings, as many as a comment holds."""
     found = in_words(counts(findings)) or "no findings"
     files = plural(len(report.files), "file")
-    text = f"**{report.tool}**: {found} in {files}\n"
+    held = f" ({_escaped(str(report.coverage['text']))})" if report.coverage else ""
+    text = f"**{report.tool}**: {found} in {files}{held}\n"
     shown = 0
     for is_row, part in _parts(findings, report):
         if len(text) + len(part) > ROOM:

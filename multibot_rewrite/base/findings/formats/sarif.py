@@ -43,12 +43,13 @@ def render(findings: Sequence[Finding], report: Report) -> str:
         "semanticVersion": __version__,
         "rules": [_rule(it) for it in report.rules.values()],
     }
+    properties = {"distro": report.release, "coverage": report.coverage}
     run = {
         "tool": {"driver": driver},
         "originalUriBaseIds": {_ROOT: {"description": {"text": _ROOT_SAID}}},
         "artifacts": [{"location": _file(path)} for path in dict.fromkeys(report.files)],
         "columnKind": "unicodeCodePoints",
-        **({"properties": {"distro": report.release}} if report.release else {}),
+        **({"properties": said} if (said := {k: v for k, v in properties.items() if v}) else {}),
         "results": [
             _result(it, report, numbers, fingerprint)
             for it, fingerprint in zip(findings, fingerprints(findings), strict=True)

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How much of what is there a system holds: what every verdict says beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from multibot_rewrite.base.conventions import OF_EVERY_NODE
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
+from multibot_rewrite.system.records import (
+    NOT_READ,
+    NOWHERE,
+    Node,
+    System,
+    answering,
+    doubts,
+)
+from multibot_rewrite.system.tool_nodes import is_tool
+
+# How nodes came into the graph that a plan is compared with.
+LAUNCHED, SEEN = "launched", "seen"
+
+
+class Covered(NamedTuple):
+    """The nodes of a robot (or those for all robots, with an empty name): how many there are, of how
+    many it is ``known`` what they do, how many are in the graph (``seen``), and how many of these
+    were ``silent``: asked for their state, and no answer came."""
+
+    robot: str
+    nodes: int
+    known: int
+    seen: int
+    silent: int
+
+    @property
+    def unknown(self) -> int:
+        """The number of nodes of which only the name is known: they are started as they are."""
+        return self.nodes - self.known
+
+
+class Coverage(NamedTuple):
+    """How much a system holds of each robot, and of the nodes for all robots.
+
+    With ``told`` it says what nodes do; a graph that was only seen does not. ``compared`` is
+    ``LAUNCHED`` or ``SEEN`` where a plan was compared with a graph. ``incomplete`` counts the reasons
+    why something may be missing in the view, ``unread`` the parts of launch files of which the plan has
+    no nodes.
+    """
+
+    robots: tuple[Covered, ...]
+    told: bool = True
+    compared: str = ""
+    incomplete: int = 0
+    unread: int = 0
+
+    @property
+    def total(self) -> Covered:
+        """The sums over all robots."""
+        columns = zip(*(it[1:] for it in self.robots), strict=True)
+        return Covered("", *map(sum, columns)) if self.robots else Covered("", 0, 0, 0, 0)
+
+    @property
+    def is_whole(self) -> bool:
+        """Is all read and all nodes known, did all answer that were asked, and was any seen?"""
+        total, lost = self.total, self.compared and not self.total.seen
+        return not (total.unknown or total.silent or lost or self.unread)
+
+
+def coverage(system: System, graph: System | None = None) -> Coverage:
+    """Return how much a system holds, and how much of it is in a graph that it is compared with."""
+    told = bool(system.layout) or _is_launched(system)
+    compared = "" if graph is None else LAUNCHED if _is_launched(graph) else SEEN
+    ends = {it.node for it in system.ends if it.name not in OF_EVERY_NODE}
+    there = {it.name for it in graph.nodes} if graph else set()
+    answers = answering(graph) if graph and compared == SEEN else ()
+    nodes: dict[str, list[Node]] = {it.name: [] for it in system.robots}
+    # A name that is made at run time is that of a node's helper.
+    for it in {it.name: it for it in system.nodes if "*" not in it.name}.values():
+        if not is_tool(it.name):
+            nodes.setdefault(it.robot, []).append(it)
+    rows = []
+    for robot, own in nodes.items():
+        known = sum(not told or _is_known(it) or it.name in ends for it in own)
+        seen = there.intersection(it.name for it in own)
+        silent = len(seen.difference(answers)) if answers else 0
+        rows.append(Covered(robot, len(own), known, len(seen), silent))
+    unread = sum(it.code == NOT_READ for it in system.gaps)
+    return Coverage(tuple(rows), told, compared, len(doubts(graph or system)), unread)
+
+
+def _is_known(node: Node) -> bool:
+    return bool(node.known or node.stack or node.plugin != NOWHERE)
+
+
+def _is_launched(system: System) -> bool:
+    """Was the system read from a launch file?"""
+    return not system.layout and any(it.place != NOWHERE for it in system.nodes)
+
+
+def in_words(held: Coverage) -> str:
+    """Return the coverage as ``2 robots, 15 nodes each: 12 known, 3 started as they are``."""
+    robots, total = [it for it in held.robots if it.robot], held.total
+    counts = sorted({it.nodes for it in robots if total.nodes})
+    shared = total.nodes - sum(it.nodes for it in robots)
+    head = [plural(len(robots), "robot")] if robots else []
+    if any(counts):
+        least = f"{counts[0]} to " if len(counts) > 1 else ""
+        head.append(f"{least}{plural(counts[-1], 'node')}{' each' * (len(robots) > 1)}")
+    if shared:
+        head.append(f"{shared} for all" if robots else plural(shared, "node"))
+    details = ", ".join(_details(held)) if total.nodes else ""
+    return f"{', '.join(head)}{': ' * bool(details)}{details}"
+
+
+def _details(held: Coverage) -> Iterator[str]:
+    total = held.total
+    if held.told and not total.unknown:
+        yield "all known"
+    elif held.told:
+        alike = len({it[1:3] for it in held.robots}) == 1
+        shown = held.robots[0] if alike else total
+        whose = (f"{it.robot or 'for all'} {it.unknown}" for it in held.robots if it.unknown)
+        where = "" if alike else f" ({shorten(whose, SEVERAL)})"
+        verb = "it is" if shown.unknown == 1 else "they are"
+        yield f"{shown.known} known, {shown.unknown} started as {verb}{where}"
+    if held.compared:
+        count = "all" if total.seen == total.nodes else f"{total.seen} of {total.nodes}"
+        yield f"{count} {held.compared}"
+    if total.silent:
+        yield f"{total.silent} silent"
+    if held.unread:
+        yield f"{plural(held.unread, 'part')} of launch files not read"
+
+
+def as_value(held: Coverage) -> Mapping[str, object]:
+    """Return the coverage as JSON has it; null for what is not said."""
+    rows = [{"robot": it.robot, **_row(held, it)} for it in held.robots]
+    total = {**_row(held, held.total), "incomplete": held.incomplete, "unread": held.unread}
+    return {**total, "robots": rows, "text": in_words(held)}
+
+
+def _row(held: Coverage, row: Covered) -> Mapping[str, object]:
+    told, compared, asked = held.told, bool(held.compared), held.compared == SEEN
+    return {
+        "nodes": row.nodes,
+        "known": row.known if told else None,
+        "as_they_are": row.unknown if told else None,
+        "seen": row.seen if compared else None,
+        "silent": row.silent if asked else None,
+    }

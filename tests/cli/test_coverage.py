@@ -1,0 +1,337 @@
+# SPDX-License-Identifier: Apache-2.0
+"""No verdict is said of more than was seen: each has the nodes that are known, started as they are,
+seen and silent, as text and as JSON, and a graph with something unknown is not simply as planned."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from graph_cases import as_planned, environment, without_node
+
+from multibot_rewrite.cli import live
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.system.coverage import coverage, in_words
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    TOPIC,
+    Caveat,
+    End,
+    Node,
+    Parameter,
+    Robot,
+    System,
+)
+
+URDF = """\
+<robot name="pole">
+  <link name="base_link"/>
+  <link name="top"/>
+  <joint name="up" type="fixed"><parent link="base_link"/><child link="top"/></joint>
+</robot>
+"""
+LAUNCH = """\
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    state = Node(package="robot_state_publisher", executable="robot_state_publisher",
+                 name="robot_state_publisher")
+    return LaunchDescription([state, {}])
+"""
+OWN = 'Node(package="ours", executable="{0}", name="{0}")'
+INCLUDE = """\
+__import__("launch").actions.IncludeLaunchDescription(
+        __import__("launch_ros").substitutions.FindPackageShare("not_installed_here"))"""
+FLEET = """\
+description: pole.urdf
+distro: jazzy
+layout: both
+simulator: none
+launch: one.launch.py
+robots:
+- {name: robot1}
+- {name: robot2}
+"""
+# What the launch file starts: robot_state_publisher is known, the programs of `ours` are not.
+UNKNOWN = "2 robots, 3 nodes each: 1 known, 2 started as they are"
+KNOWN = "2 robots, 1 node each: all known"
+
+
+class Built:
+    """A fleet that was built, with its plan and the graph that the plan asks for."""
+
+    def __init__(self, folder: Path, *more: str) -> None:
+        for name, text in {
+            "pole.urdf": URDF, "fleet.yaml": FLEET, "one.launch.py": LAUNCH.format(", ".join(more)),
+        }.items():  # fmt: skip
+            (folder / name).write_text(text)
+        self.fleet, self.out = str(folder / "fleet.yaml"), folder / "out"
+        self.plan, self.launch = str(self.out / "plan.yaml"), str(self.out / "fleet.launch.py")
+        self.graph = folder / "graph.json"
+        assert main(["build", self.fleet, "--trust", "-o", str(self.out)]) == 0
+        self.planned = read_plan(Path(self.plan).read_bytes(), self.plan)
+        self.see(as_planned(self.planned))
+
+    def see(self, graph: System) -> None:
+        self.seen = graph
+        self.graph.write_bytes(to_json(graph))
+
+    def check(self, *words: str) -> int:
+        return main(["check", self.plan, "--from", str(self.graph), *words])
+
+
+@pytest.fixture
+def unknown(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Built:
+    return Built(tmp_path, OWN.format("blinker"), OWN.format("horn"))
+
+
+@pytest.fixture
+def known(tmp_path: Path) -> Built:
+    return Built(tmp_path)
+
+
+def last(capsys: pytest.CaptureFixture[str]) -> str:
+    return capsys.readouterr().err.splitlines()[-1].removeprefix("multibot: ")
+
+
+def numbers(capsys: pytest.CaptureFixture[str]) -> Mapping[str, object]:
+    found: Mapping[str, object] = json.loads(capsys.readouterr().out)["coverage"]
+    return found
+
+
+def row(nodes: int, known: int | None, seen: int | None, silent: int | None) -> dict[str, object]:
+    left = None if known is None else nodes - known
+    return {"nodes": nodes, "known": known, "as_they_are": left, "seen": seen, "silent": silent}
+
+
+def whole(text: str, total: dict[str, object], each: dict[str, object]) -> dict[str, object]:
+    robots = [{"robot": it, **each} for it in ("robot1", "robot2")]
+    return {**total, "incomplete": 0, "unread": 0, "robots": robots, "text": text}
+
+
+def test_a_build_and_its_plan_say_what_they_start_as_it_is(
+    unknown: Built, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    build = ["build", unknown.fleet, "--trust", "-o", str(unknown.out)]
+    assert main(build) == 0
+    assert f"multibot: {UNKNOWN}; " in capsys.readouterr().err
+    assert main([*build, "--format", "json"]) == 0
+    assert numbers(capsys) == whole(UNKNOWN, row(6, 2, None, None), row(3, 1, None, None))
+    made = str(tmp_path / "plan.yaml")
+    assert main(["plan", unknown.fleet, "--trust", "-o", made]) == 0
+    assert last(capsys) == UNKNOWN
+
+
+def test_a_graph_of_unknown_nodes_is_as_planned_as_far_as_known(
+    unknown: Built, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    text = f"{UNKNOWN}, all seen"
+    assert unknown.check() == 0
+    assert last(capsys) == f"{text}; 0 findings: as planned as far as known (ROS 2 jazzy)"
+    assert unknown.check("--format", "json") == 0
+    assert numbers(capsys) == whole(text, row(6, 2, 6, 0), row(3, 1, 3, 0))
+
+
+def test_a_graph_of_known_nodes_is_as_planned(
+    known: Built, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    assert known.check() == 0
+    assert last(capsys) == f"{KNOWN}, all seen; 0 findings: as planned (ROS 2 jazzy)"
+
+
+def test_what_is_not_seen_is_counted(unknown: Built, capsys: pytest.CaptureFixture[str]) -> None:
+    unknown.see(without_node(unknown.seen, "/robot2/horn"))
+    capsys.readouterr()
+    assert unknown.check() == 1
+    assert last(capsys).startswith(f"{UNKNOWN}, 5 of 6 seen; 1 finding: not as planned")
+    assert unknown.check("--format", "json") == 1
+    found = numbers(capsys)
+    assert (found["seen"], [it["seen"] for it in found["robots"]]) == (5, [3, 2])  # type: ignore[attr-defined]
+
+
+def test_what_does_not_answer_is_silent(known: Built, capsys: pytest.CaptureFixture[str]) -> None:
+    answer = Parameter("/robot1/robot_state_publisher", "use_sim_time", "false")
+    known.see(known.seen._replace(parameters=(answer,)))
+    capsys.readouterr()
+    assert known.check() == 0
+    end = "all seen, 1 silent; 0 findings: as planned as far as known (ROS 2 jazzy)"
+    assert last(capsys) == f"{KNOWN}, {end}"
+    assert known.check("--format", "json") == 0
+    found = numbers(capsys)
+    assert (found["silent"], [it["silent"] for it in found["robots"]]) == (1, [0, 1])  # type: ignore[attr-defined]
+
+
+def test_a_view_that_may_lack_something_is_no_verdict(
+    known: Built, capsys: pytest.CaptureFixture[str]
+) -> None:
+    known.see(known.seen._replace(environment=environment(Caveat("a", True, "it was cut short"))))
+    capsys.readouterr()
+    assert known.check() == 3
+    words = "inconclusive, the view may be incomplete"
+    assert last(capsys) == f"{KNOWN}, all seen; 0 findings: {words} (ROS 2 jazzy)"
+    assert known.check("--format", "json") == 3
+    assert numbers(capsys)["incomplete"] == 1
+
+
+def test_beside_a_warning_nothing_is_as_planned(
+    known: Built, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stranger = End(TOPIC, PUBLISHES, "/robot1/x", "std_msgs/msg/Empty", "", "/robot1/stranger")
+    more = {"nodes": (*known.seen.nodes, Node("/robot1/stranger")), "ends": (stranger,)}
+    known.see(known.seen._replace(nodes=more["nodes"], ends=(*known.seen.ends, *more["ends"])))  # type: ignore[arg-type]
+    capsys.readouterr()
+    assert known.check() == 0
+    out, err = capsys.readouterr()
+    assert "warning: MG108" in out
+    assert "finding: no error, see the warnings" in err and "as planned" not in err
+
+
+def test_a_launch_file_with_unknown_nodes_is_not_as_planned(
+    unknown: Built, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    for words, text in (((), UNKNOWN), (("--plan", unknown.plan), f"{UNKNOWN}, all launched")):
+        assert main(["check-launch", unknown.launch, *words]) == 3
+        said = last(capsys)
+        assert said.startswith(f"{text}; ") and ": inconclusive, the view may be incomplete" in said
+        assert main(["check-launch", unknown.launch, *words, "--format", "json"]) == 3
+        seen = {"all launched": 6}.get(text.rpartition(", ")[2])
+        each = None if seen is None else 3
+        found = whole(text, row(6, 2, seen, None), row(3, 1, each, None))
+        assert numbers(capsys) == {**found, "incomplete": 1}
+
+
+def test_a_launch_file_that_is_not_read_whole_leaves_the_plan_open(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    built = Built(tmp_path, INCLUDE)
+    text = f"{KNOWN}, 1 part of launch files not read"
+    assert f"multibot: {text}; " in capsys.readouterr().err
+    assert built.check() == 0
+    out, err = capsys.readouterr()
+    assert "MF823" in out and "one.launch.py" in out
+    assert "nothing wrong seen, but the plan has faults" in err
+    assert built.check("--format", "json") == 0
+    assert numbers(capsys)["unread"] == 1
+
+
+def test_a_graph_without_a_plan_says_nothing_of_what_is_known(
+    unknown: Built, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    assert main(["check", "--from", str(unknown.graph)]) == 0
+    assert last(capsys) == "2 robots, 3 nodes each; 0 findings: nothing wrong seen"
+    assert main(["check", "--from", str(unknown.graph), "--format", "json"]) == 0
+    text = "2 robots, 3 nodes each"
+    assert numbers(capsys) == whole(text, row(6, None, None, None), row(3, None, None, None))
+
+
+def test_a_watch_and_its_lines_say_as_far_as_known(
+    unknown: Built, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(live, "watched", lambda *_, **__: (it for it in ({0: unknown.seen},)))
+    capsys.readouterr()
+    assert main(["check", unknown.plan, "--watch", "--timeout", "1"]) == 0
+    out, err = capsys.readouterr()
+    assert out.endswith("6/6 nodes, 8/8 names, 0 findings: as planned as far as known\n")
+    assert f"{UNKNOWN}, all seen; 0 findings: as planned as far as known" in err
+
+
+def test_every_form_of_a_report_has_the_same_words(
+    unknown: Built, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text, page = f"{UNKNOWN}, all seen", tmp_path / "report.html"
+    capsys.readouterr()
+    assert unknown.check("--format", "sarif", "--report", str(page)) == 0
+    (run,) = json.loads(capsys.readouterr().out)["runs"]
+    assert (run["properties"]["coverage"]["text"], run["properties"]["distro"]) == (text, "jazzy")
+    assert f"<li>{text}</li>" in page.read_text()
+    assert "<h1>as planned as far as known</h1>" in page.read_text()
+    assert "<p>2 robots, as planned as far as known; 6 nodes running</p>" in page.read_text()
+    assert unknown.check("--format", "junit") == 0
+    suites = ElementTree.fromstring(capsys.readouterr().out.encode())
+    assert [it.attrib for it in suites.iter("property")] == [{"name": "coverage", "value": text}]
+    assert unknown.check("--format", "markdown") == 0
+    assert f"({text})" in capsys.readouterr().out
+
+
+@pytest.mark.live
+def test_a_rehearsal_has_unknown_nodes_by_name_alone(
+    unknown: Built, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    assert main(["rehearse", unknown.fleet, "--trust"]) == 0
+    assert f"{UNKNOWN}, all seen; " in (said := last(capsys))
+    assert ": as planned as far as known" in said
+
+
+def planned(robots: Iterable[tuple[str, int, int]]) -> System:
+    """A plan with nodes of robots: of so many something is known, of so many nothing but the name."""
+    nodes, ends, names = [], [], []
+    for robot, known, unknown in robots:
+        names += [Robot(robot)] if robot else []
+        for at in range(known + unknown):
+            nodes.append(Node(f"/{robot}/node{at}".replace("//", "/"), robot=robot))
+            topic = f"/{robot}/topic{at}"
+            if at < known:
+                ends.append(End(TOPIC, PUBLISHES, topic, "", node=nodes[-1].name))
+    return System(tuple(nodes), tuple(ends), robots=tuple(names), layout="both")
+
+
+@pytest.mark.parametrize(
+    ("robots", "text"),
+    [
+        ([("a", 12, 3), ("b", 12, 3)], "2 robots, 15 nodes each: 12 known, 3 started as they are"),
+        ([("a", 1, 0)], "1 robot, 1 node: all known"),
+        ([("a", 1, 1)], "1 robot, 2 nodes: 1 known, 1 started as it is"),
+        (
+            [(f"robot{it}", 12, 3) for it in range(100)],
+            "100 robots, 15 nodes each: 12 known, 3 started as they are",
+        ),
+        (
+            [("a", 2, 0), ("b", 5, 1), ("c", 4, 2)],
+            "3 robots, 2 to 6 nodes each: 11 known, 3 started as they are (b 1, c 2)",
+        ),
+        (
+            [("a", 2, 1), ("b", 2, 1), ("", 3, 0)],
+            "2 robots, 3 nodes each, 3 for all: 7 known, 2 started as they are (a 1, b 1)",
+        ),
+        (
+            [("a", 2, 0), ("b", 2, 0), ("", 0, 1)],
+            "2 robots, 2 nodes each, 1 for all: 4 known, 1 started as it is (for all 1)",
+        ),
+        (
+            [(f"r{it}", 1, it % 2) for it in range(20)],
+            "20 robots, 1 to 2 nodes each: 20 known, 10 started as they are"
+            " (r1 1, r3 1, r5 1, r7 1, r9 1 and 5 more)",
+        ),
+        ([("", 2, 1)], "3 nodes: 2 known, 1 started as it is"),
+        ([("a", 0, 0)], "1 robot"),
+    ],
+)
+def test_robots_that_differ_are_named(robots: list[tuple[str, int, int]], text: str) -> None:
+    assert in_words(coverage(planned(robots))) == text
+
+
+def test_what_is_no_node_of_a_robot_does_not_count() -> None:
+    """Tools come and go; what a node makes for itself has a name of its own in each run."""
+    plan = planned([("a", 1, 0)])
+    more = (Node("/a/rviz2", robot="a"), Node("/a/transform_listener_impl_*", robot="a"))
+    twice = (*plan.nodes, *plan.nodes, *more)
+    assert in_words(coverage(plan._replace(nodes=twice))) == "1 robot, 1 node: all known"
+
+
+def test_a_recording_has_no_nodes() -> None:
+    held = coverage(planned([("a", 2, 0)]), System(environment=environment()))
+    assert in_words(held) == "1 robot, 2 nodes: all known, 0 of 2 seen"
+    assert not held.is_whole
