@@ -161,6 +161,8 @@ def _configuration(it: Any, context: LaunchContext) -> str:
 
 def _variable(it: Any, context: LaunchContext) -> str:
     name = text_of(context, it.name)
+    if name not in context.environment:
+        os.environ.get(name)  # raises for one that is set and hidden
     return _found(context, context.environment, name, it.default_value, "environment variable")
 
 
