@@ -42,6 +42,8 @@ NO_LAUNCH = (
     "launch is not installed here, and its stand-in does not know all of it: source ROS 2 "
     "(. /opt/ros/jazzy/setup.bash), or give a system_model.yaml of play_launch"
 )
+# All files together have the time of so many.
+_MOST_FILES = 2
 # How long each frame may be.
 _LONGEST: Mapping[bytes, int] = {QUESTION: 2**24, REPORT: 2**28}
 
@@ -50,9 +52,13 @@ def main() -> None:
     """Read the orders, write the answers: a graph, or why there is none."""
     seconds, orders = orders_of(sys.stdin.read())
     linked: dict[object, str] = {}
-    answers = []
+    answers: list[object] = []
+    end = monotonic() + _MOST_FILES * seconds
     with standing_in() if not is_there() else nullcontext():
         for at, order in enumerate(orders):
+            if monotonic() > end:
+                answers.append({"error": "those before it took too long"})
+                continue
             folder = os.path.join(tempfile.gettempdir(), f"{at}")
             os.mkdir(folder)
             same = package_of(order.file), sources_around(order.file), order.roots
@@ -129,7 +135,7 @@ def _work(order: LaunchOrder, folder: str, first: str, seconds: float, place: in
     try:
         if not order.trusted:
             confine(order, folder, [first], seconds)
-            conversation.child = relayed(asking(inbox.read, send))
+            vars(conversation)["child"] = relayed(asking(inbox.read, send))
         graph = read_graph(order, folder)
         answer: object = {"graph": graph._replace(stood_in=stood_in)}
     except NotFencedError:

@@ -52,7 +52,8 @@ def start_nothing() -> list[str]:
     one is in the list."""
     lost: list[str] = []
     started: Any = type("Popen", (_Program,), {"lost": lost})
-    subprocess.Popen, os.system = started, lambda line: started(line).returncode
+    vars(subprocess)["Popen"] = started
+    vars(os)["system"] = lambda line: started(line).returncode
     return lost
 
 

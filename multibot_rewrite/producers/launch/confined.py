@@ -15,15 +15,30 @@ from typing import Any
 
 from multibot_rewrite.description.sources.access import VARIABLES, Access, Reach
 from multibot_rewrite.description.sources.child.fences import Files, put_up
-from multibot_rewrite.description.sources.child.frames import FENCES, KERNEL, LANDLOCK, LIMITS, SECCOMP
+from multibot_rewrite.description.sources.child.frames import (
+    KERNEL,
+    LANDLOCK,
+    LIMITS,
+    SECCOMP,
+)
 from multibot_rewrite.producers.launch.records import LaunchOrder
 
 # What the loader of Linux reads for a library.
 _LIBRARIES = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache")
 _DEVICES = ("/dev/null", "/dev/urandom")
 # Variables that are no secret, beside those that xacro sees.
-_PLAIN = ("DISPLAY", "HOME", "HOSTNAME", "LANG", "LOGNAME", "PATH", "USER", "MULTIBOT_",
-    "LD_LIBRARY_PATH", "PYTHONPATH")
+_PLAIN = (
+    "DISPLAY",
+    "HOME",
+    "HOSTNAME",
+    "LANG",
+    "LOGNAME",
+    "PATH",
+    "USER",
+    "MULTIBOT_",
+    "LD_LIBRARY_PATH",
+    "PYTHONPATH",
+)
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 NOT_FENCED = (
     "a launch file is a program, and this system has not both Landlock and seccomp to fence it in;"
@@ -52,7 +67,7 @@ def confine(order: LaunchOrder, folder: str, more: Sequence[str], seconds: float
     # A library that may start no thread would end the process.
     os.environ |= dict.fromkeys(_THREADS, "1")
     # They would change files that are only read; what copies files asks for them.
-    os.chmod = os.utime = os.listxattr = _nothing
+    vars(os).update(dict.fromkeys(("chmod", "utime", "listxattr"), _nothing))
 
 
 def _nothing(*_: object, **__: object) -> tuple[()]:

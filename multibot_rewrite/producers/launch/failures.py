@@ -30,6 +30,7 @@ _NO_TEXT, _REQUIRED = "Failed to normalize given item", "missing required argume
 _NO_VALUE = lazy_compile(
     r"launch configuration '([\w.-]+)' does not exist|Required launch argument \"([\w.-]+)\" was not"
 )
+_REFUSED = "a launch file may compute and read; give --trust if you trust it (SECURITY.md)"
 # The file as Python has it, in launch and in its stand-in; without a description it makes none.
 _MODULE = "launch_file"
 _MAKES = "generate_launch_description"
@@ -71,7 +72,7 @@ def _known(error: BaseException) -> str:
         hint = f"give it with {name}:=VALUE, or where this is included"
         return f"the launch configuration {name!r} is not set; {hint}"
     if isinstance(error, PermissionError):
-        return f"{error}{_line(error)}; a launch file may compute and read; give --trust if you trust it"
+        return f"{error}{_line(error)}; {_REFUSED}"
     if isinstance(error, FileNotFoundError) and _is_program(str(error.filename)):
         return f"it starts the program {error.filename!r} itself, which is not installed here"
     if isinstance(error, SystemExit):
@@ -159,7 +160,12 @@ def is_of_file(error: BaseException) -> bool:
     what is not there."""
     own = (SyntaxError, NameError, RecursionError, FileNotFoundError, SystemExit)
     old = _OF_ROS_1.search(str(error)) is not None
-    return isinstance(error.__cause__ or error, own) or is_without(error) or old or bool(_variable(error))
+    return (
+        isinstance(error.__cause__ or error, own)
+        or is_without(error)
+        or old
+        or bool(_variable(error))
+    )
 
 
 def is_without(error: BaseException) -> bool:

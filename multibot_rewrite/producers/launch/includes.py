@@ -21,6 +21,7 @@ from multibot_rewrite.producers.launch.failures import is_no_text, missing_packa
 from multibot_rewrite.producers.launch.include_arguments import not_among, unread
 from multibot_rewrite.producers.launch.kept_paths import lasting
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchInclude, UnreadArgument
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 
 # The launch files that start Gazebo and nothing else.
 _OF_GZ = ("gz_sim.launch.py", "ign_gazebo.launch.py")
@@ -78,6 +79,7 @@ def _bridge(given: Mapping[str, str], here: Visit) -> Iterator[LaunchedNode]:
 def included(include: Any, here: Visit) -> LaunchInclude:
     """The file of an include, and its arguments."""
     (file,) = lasting((path_of(include, here.context),))
+    file = file.rpartition(f"{NOT_INSTALLED}/share/")[2]
     words = given(include, here.context)
     return LaunchInclude(here.place, file, tuple(zip(words, lasting(words.values()), strict=True)))
 

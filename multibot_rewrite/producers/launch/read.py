@@ -165,6 +165,10 @@ def _check_given(description: Any, order: LaunchOrder) -> None:
     """Raises UnreadableError without an argument that the file itself has to be given."""
     found = description.get_launch_arguments_with_include_launch_description_actions()
     for it, includes in found:
-        free = order.every or it.default_value is not None or getattr(it, "_conditionally_included", False)
+        free = (
+            order.every
+            or it.default_value is not None
+            or getattr(it, "_conditionally_included", False)
+        )
         if not free and not includes and it.name not in dict(order.arguments):
             raise UnreadableError(f"it has to be given {it.name}; write {it.name}:=VALUE after it")

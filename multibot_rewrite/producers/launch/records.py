@@ -100,7 +100,7 @@ class UnreadArgument(NamedTuple):
 
 class LaunchInclude(NamedTuple):
     """A launch file that another one includes, with the arguments that it is given: empty for a value
-    that is not known. Of a file of a package that is not here ``file`` is the last part."""
+    that is not known. Of a package that is not here ``file`` is its path from that package on."""
 
     place: Place
     file: str

@@ -34,8 +34,8 @@ class Files(NamedTuple):
 
 
 def put_up(wanted: Collection[str], seconds: float, files: Files | None = None) -> list[str]:
-    """Put up those fences, for good; the names of those that this system has. Without ``files`` none can
-    be opened."""
+    """Put up those fences, for good; the names of those that this system has. Without ``files`` none
+    can be opened."""
     memory = _memory()
     ways: Mapping[str, Callable[[], bool]] = {
         LIMITS: lambda: limit(seconds, memory, files is not None),

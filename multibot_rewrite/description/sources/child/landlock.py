@@ -55,7 +55,7 @@ def enclose(readable: Iterable[str] = (), writable: Iterable[str] = ()) -> bool:
         for path in paths:
             with suppress(OSError):  # what is not there needs no rule
                 _allow(ruleset, path, rights & files)
-    done = SYSTEM.syscall(RESTRICT_SELF, ruleset, 0) == 0
+    done = bool(SYSTEM.syscall(RESTRICT_SELF, ruleset, 0) == 0)
     os.close(ruleset)
     return done
 

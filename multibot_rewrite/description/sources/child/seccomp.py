@@ -32,7 +32,7 @@ _X32 = 0x40000000
 
 # Flags of openat: to write, and to cut the file off, which older versions of Landlock let through.
 _WRITING, _CUTTING = os.O_WRONLY | os.O_RDWR, os.O_TRUNC
-# What may be asked of a file that is open: that no other program gets it (ioctl and fcntl), and a second
+# What may be asked of an open file by ioctl and fcntl: that no other program gets it, and a second
 # number for it. Who gets signals for it is asked in the same way.
 _ASKED = ((0x5451,), (0, 1, 2, 3, 1030))
 
@@ -61,10 +61,11 @@ _NUMBERS = {
     "aarch64": "63 64 57 62 215 214 134 135 139 124 216 233 172 93 169 132 178 98 128 113 94 278",
 }
 _FILES = {
-    # stat fstat lstat pread64 pwrite64 readv writev access dup nanosleep uname fsync fdatasync ftruncate
-    # getdents getcwd chdir rename mkdir rmdir unlink readlink getrusage sysinfo times getuid getgid
-    # geteuid getegid getppid sched_getaffinity getdents64 clock_getres clock_nanosleep mkdirat
-    # newfstatat unlinkat renameat readlinkat faccessat renameat2 statx faccessat2
+    # stat fstat lstat pread64 pwrite64 readv writev access dup nanosleep uname fsync fdatasync
+    # ftruncate getdents getcwd chdir rename mkdir rmdir unlink readlink getrusage sysinfo times
+    # getuid getgid geteuid getegid getppid sched_getaffinity getdents64 clock_getres
+    # clock_nanosleep mkdirat newfstatat unlinkat renameat readlinkat faccessat renameat2 statx
+    # faccessat2
     "x86_64": "4 5 6 17 18 19 20 21 32 35 63 74 75 77 78 79 80 82 83 84 87 89 98 99 100 102 104 107 108"
     " 110 204 217 229 230 258 262 263 264 267 269 316 332 439",
     # The same but for those that only older processors have.
@@ -72,13 +73,13 @@ _FILES = {
     " 34 79 35 38 78 48 276 291 439",
 }
 # The number of the architecture; mmap and mprotect; openat; ioctl and fcntl.
-_KINDS = {
+_KINDS: Mapping[str, tuple[int, tuple[int, int], int, tuple[int, int]]] = {
     "x86_64": (0xC000003E, (9, 10), 257, (16, 72)),
     "aarch64": (0xC00000B7, (222, 226), 56, (29, 25)),
 }
 MACHINES: Mapping[str, Machine] = {
-    name: Machine(audit, _listed(_NUMBERS[name]), memory, _listed(_FILES[name]), *more)
-    for name, (audit, memory, *more) in _KINDS.items()
+    name: Machine(audit, _listed(_NUMBERS[name]), memory, _listed(_FILES[name]), opens, asks)
+    for name, (audit, memory, opens, asks) in _KINDS.items()
 }
 
 

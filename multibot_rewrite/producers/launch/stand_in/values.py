@@ -82,6 +82,11 @@ class LaunchContext:
         return {key: it for kept in (self._globals, *self._locals) for key, it in kept.items()}
 
     @property
+    def depth(self) -> int:
+        """How many launch files are within each other."""
+        return len(self._locals)
+
+    @property
     def locals(self) -> Any:
         return SimpleNamespace(**self.get_locals_as_dict())
 
