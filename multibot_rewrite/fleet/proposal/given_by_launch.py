@@ -15,6 +15,7 @@ from typing import Any
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.fleet.proposal.searching import text_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_stack
@@ -233,10 +234,12 @@ def _given(it: LaunchGraph, nodes: Sequence[NodeFacts]) -> Iterator[_Given]:
         if node is None:
             continue
         own = os.path.basename(node.name)
-        values = dict(_parameters(one))
-        yield _Given(
-            *one.place[:2], who, own if who in (own, one.executable) else "", values, _rules(one)
-        )
+        named = own if who in (own, one.executable) else ""
+        text, every = text_of(one.place.file), dict(_parameters(one))
+        values = {name: every[name] for name in every if all(it in text for it in name.split("."))}
+        left = len(every) - len(values)
+        more = (f"{plural(left, 'value')} of files that it reads",) if left else ()
+        yield _Given(*one.place[:2], who, named, values, (*_rules(one), *more))
 
 
 def started_elsewhere(
@@ -292,11 +295,18 @@ def _data(value: Any) -> Any:
 
 
 def _is_of_machine(path: str) -> bool:
-    return os.path.exists(path) or NOT_INSTALLED in path
+    home = os.path.join(os.path.expanduser("~"), "")
+    return os.path.exists(path) or NOT_INSTALLED in path or path.startswith(home)
 
 
 def _rules(it: LaunchedNode) -> tuple[str, ...]:
-    return tuple(f"{a}:={b}" for a, b in it.remappings if a and b and _is_moved(a))
+    moved = ((a, b) for a, b in it.remappings if a and b and not _is_name(a))
+    return tuple(f"{a}:={b}" for a, b in moved if _is_moved(a))
+
+
+def _is_name(rule: str) -> bool:
+    """Does a rule name the node (``__node``)?"""
+    return rule.rpartition(":")[2].startswith("__")
 
 
 def _is_moved(topic: str) -> bool:

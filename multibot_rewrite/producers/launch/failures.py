@@ -158,7 +158,7 @@ def _no_value(error: BaseException) -> str:
 def is_of_file(error: BaseException) -> bool:
     """Does launch not read the file either? It is no program or XML, it is of ROS 1, or it asks for
     what is not there."""
-    own = (SyntaxError, NameError, RecursionError, FileNotFoundError, SystemExit)
+    own = (SyntaxError, NameError, RecursionError, FileNotFoundError, PermissionError, SystemExit)
     old = _OF_ROS_1.search(str(error)) is not None
     return (
         isinstance(error.__cause__ or error, own)

@@ -23,6 +23,7 @@ from multibot_rewrite.producers.launch.describe import (
 from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset
 from multibot_rewrite.producers.launch.includes import included, path_of, simulator, unread_of
 from multibot_rewrite.producers.launch.places import place_of
+from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
 # They only change the context, or give further entities.
 EXECUTED = (
@@ -245,6 +246,9 @@ def _flat(actions: Any) -> list[Any]:
 
 
 def _unknown(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    if is_unknown(entity):
+        # It makes what it starts in code that is not here.
+        entity.perform(seen.context)
     if seen.wants(entity):
         message = f"what the action {type(entity).__name__} starts is decided only at run time"
         seen.note(message)

@@ -40,11 +40,16 @@ ROWS = [
     (f"{NODE}parameters=[{{'frequency': 15.0 * 2}}], condition=IfCondition('false'))", RATE, []),
     (f"GroupAction([{NODE}{GIVEN})], condition=UnlessCondition('true'))", RATE, []),
     (f"OpaqueFunction(function=lambda _: [{NODE}{GIVEN})])", RATE, []),
+    # What stands in the file alone: other values are those of a file that it reads.
+    (f"{NODE}parameters=[dict(eval(\"{{'freq'+'uency': 1.0, 'x'+'y': 2}}\"))])", NOTHING,
+     ["ekf_node: 2 values of files that it reads"]),
+
+
     # The fleet starts no node of this name.
     (f"{NODE}name='second', parameters=[{{'frequency': 30.0}}])", NOTHING, ["second: frequency: 30.0"]),
     (
-        f"{EKF}parameters=[{{'odom0_config': [True, False, -1.5]}}])",
-        {"ekf_filter_node": {"odom0_config": [True, False, -1.5]}},
+        f"{EKF}parameters=[{{'odom0_config': [True, False, True]}}])",
+        {"ekf_filter_node": {"odom0_config": [True, False, True]}},
         [],
     ),
     (f"{EKF}parameters=[path])", NOTHING, []),
