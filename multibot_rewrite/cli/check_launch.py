@@ -54,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
 def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchOrder]:
     """The launch files that words name, with the arguments; raises UsageError for other words."""
     orders = orders_in_words(words, shlex.join(words), options.roots)
-    return [it._replace(trusted=True) for it in orders]
+    return [it._replace(trusted=options.trust) for it in orders]
 
 
 def _check_use(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> None:

@@ -110,7 +110,9 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
         trust=options.trust,
-        launch=[launch_order(it, options.roots)._replace(trusted=True) for it in options.launch],
+        launch=[
+            launch_order(it, options.roots)._replace(trusted=options.trust) for it in options.launch
+        ],
         release=release_here(options.distro),
     )
 

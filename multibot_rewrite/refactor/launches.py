@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The launch files of a package with a new argument of its xacros, and the proof that they hand it on.
 
-A launch file is a program, and runs where whoever calls this trusts it. It is read in a copy of the
-package, with the changed files in it: with the argument every link of the description that it gives its
-nodes has the prefix.
+A launch file is read in a copy of the package, with the changed files in it: with the argument every
+link of the description that it gives its nodes has the prefix.
 """
 
 from __future__ import annotations
@@ -39,8 +38,8 @@ class Launches(NamedTuple):
 
 
 class Trial(NamedTuple):
-    """How a launch file is tried: the argument and a value of it, whether the file may run, the
-    parameter files that it may fill in, by their names, and its namespace."""
+    """How a launch file is tried: the argument and a value of it, whether the file may do anything,
+    the parameter files that it may fill in, by their names, and its namespace."""
 
     argument: str
     prefix: str
@@ -68,7 +67,7 @@ def with_launches(
         for name, it in how.parameters.items()
         if sum(name.encode() in text for text in (*texts.values(), *after.values())) == 1
     }
-    how = how._replace(parameters=alone if how.trust else {})
+    how = how._replace(parameters=alone)
     made = [_tried(folder, path, text, after, how) for path, text in texts.items()]
     return Launches(
         {path: data for it in made for path, data in it.after.items()},
@@ -97,9 +96,6 @@ def _one(
     argument = how.argument
     if made.data is None:
         return Launches({}, (), made.left)
-    if not how.trust:
-        why = f"it gets {argument}, which is proved with --trust alone: a launch file is a program"
-        return Launches({path: made.data}, (), (*made.left, Left(path, why)))
     filled = [how.parameters[it] for it in made.filled]
     changed = {path: made.data, **{it.path: it.after for it in filled}}
     it = _read(folder, {**after, **changed}, path, how, filled)
@@ -128,7 +124,7 @@ def _read(
         root = os.path.join(above, os.path.basename(home))
         _copy(home, root, {os.path.realpath(it): data for it, data in files.items()})
         copy = os.path.join(root, os.path.relpath(os.path.realpath(path), os.path.realpath(home)))
-        found = _verdict(LaunchOrder(copy, (), (above,), True), how, filled)
+        found = _verdict(LaunchOrder(copy, (), (above, home), how.trust), how, filled)
         return _Verdict(*(it.replace(f"{root}/", "") for it in found))
 
 

@@ -7,7 +7,9 @@ was when the test is over.
 
 from __future__ import annotations
 
+import json
 import os
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -21,9 +23,9 @@ from multibot_rewrite.producers.launch.records import (
     LaunchGraph,
     LaunchOrder,
     graph_of,
-    order_of,
-    to_json,
+    orders_of,
 )
+from multibot_rewrite.producers.launch.source_packages import link_sources
 from multibot_rewrite.producers.launch.stand_in import actions, parameters, ros, standing_in, values
 
 # Each with its method that is replaced.
@@ -39,25 +41,28 @@ _CHANGED = (
 
 def read_here(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
     """From now on ``launch_graph`` asks no other process; ``folder`` gets its temporary files."""
-    monkeypatch.setattr(child, "_asked", lambda order: _read(order, folder))
+    monkeypatch.setattr(child, "read_launch_files", lambda orders: [_read(*orders, folder)])
 
 
-def _read(order: LaunchOrder, folder: Path) -> LaunchGraph:
+def _read(order: LaunchOrder, folder: Path) -> LaunchGraph | InputError:
     with pytest.MonkeyPatch.context() as kept:
         for kind, method in _CHANGED:
             kept.setattr(kind, method, getattr(kind, method))
         kept.setattr(tempfile, "tempdir", tempfile.mkdtemp(dir=folder))
         kept.setattr(sys, "argv", sys.argv)
+        kept.setattr(os, "system", os.system)
+        kept.setattr(subprocess, "Popen", subprocess.Popen)
         kept.setattr(sys, "path", [*sys.path])
         before = {**os.environ}
         os.environ[child._INSIDE] = "1"
         try:
             with standing_in():
-                graph = read_graph(order_of(to_json(order)), tempfile.gettempdir())
+                (given,) = orders_of(json.dumps([0, [order]]))[1]
+                link_sources(given.file, given.roots, tempfile.gettempdir())
+                graph = read_graph(given, tempfile.gettempdir())
         except UnreadableError as error:
-            problem = f"{order.file}: the launch file cannot be read: {error}"
-            raise InputError(problem) from error
+            return InputError(f"{order.file}: the launch file cannot be read: {error}")
         finally:
             os.environ.clear()
             os.environ.update(before)
-        return graph_of(to_json(graph._replace(stood_in=True)))
+        return graph_of(json.loads(json.dumps(graph._replace(stood_in=True))))

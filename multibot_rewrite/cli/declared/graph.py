@@ -117,7 +117,7 @@ CHECK_LAUNCH = Command(
                     "words",
                     "FILE",
                     "a launch file, or a package and a file in it, and launch arguments; or a"
-                    " system_model.yaml. The file is a program, which runs; nothing is started",
+                    " system_model.yaml. It is read behind fences, and nothing is started",
                     "+",
                 ),
                 path_option(

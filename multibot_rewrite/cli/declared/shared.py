@@ -86,7 +86,7 @@ DISTRO = choice(
 )
 TRUST = switch(
     "--trust",
-    about="run xacro files without the sandbox; in it they can only evaluate expressions and read files"
+    about="run xacro and launch files without the sandbox; in it they can only compute and read files"
     " of their own package or repository (SECURITY.md)",
 )
 KNOWN_NODES = (

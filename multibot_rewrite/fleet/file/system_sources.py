@@ -75,13 +75,15 @@ def system_of_launch(
     arguments: Mapping[str, str] = NO_ARGUMENTS,
     *,
     roots: Sequence[str] = (),
+    trust: bool = False,
     distro: str = "",
 ) -> System:
-    """What a launch file would start. It is a program: name one that you trust. ``roots`` are folders
-    with the sources of packages. Raises InputError for a file that cannot be read."""
+    """What a launch file would start. It is a program: ``trust`` lets it do anything, without it it may
+    compute and read (SECURITY.md). ``roots`` are folders with the sources of packages. Raises
+    InputError for a file that cannot be read."""
     from multibot_rewrite.producers.launch.records import LaunchOrder
 
-    order = LaunchOrder(os.fspath(path), tuple(arguments.items()), tuple(roots), trusted=True)
+    order = LaunchOrder(os.fspath(path), tuple(arguments.items()), tuple(roots), trust)
     return launched_by([order], release_told(distro)).system
 
 

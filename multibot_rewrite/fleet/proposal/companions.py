@@ -17,7 +17,7 @@ from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, launched_by
 from multibot_rewrite.fleet.proposal.fitting import Fitting, check_winner, fitting, not_started
-from multibot_rewrite.fleet.proposal.given_by_launch import files_given, readings
+from multibot_rewrite.fleet.proposal.given_by_launch import files_given, launches_for, readings
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import (
     LEAST,
@@ -169,8 +169,8 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
     """The parameter files that can be read; those with fewest names that the robot has not come first,
     then the nearest. Raises Undecided where none is more likely than another for one node."""
     known = load_known_nodes("", release)
-    launched = readings(found.launch, robot.path, found.every)
-    given = files_given(launched)
+    launched = launches_for(found.launch, robot.path, found.every)
+    given = files_given(readings(found.launch, robot.path, found.every), found.params)
     loaded = {*_loaded(robot)}
     asked = {*filter(lambda it: it in found.meant or os.path.abspath(it) in loaded, found.params)}
     read = []

@@ -12,7 +12,6 @@ from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.proposal.choosing import Undecided
-from multibot_rewrite.fleet.proposal.launch_text import Reading
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.owners import own_names
 from multibot_rewrite.fleet.proposal.searching import Found, text_of
@@ -60,16 +59,14 @@ def not_started(
     path: str,
     nodes: Sequence[GivenNode],
     known: KnownNodes,
-    launched: Sequence[Reading],
+    launched: Sequence[str],
     given: Set[str],
 ) -> str:
     """Why a file of another package than the description's is not the robot's, empty where it may be:
     it is an example beside the code of a node, or its nodes are known to nobody and not started.
     ``given`` are the packages of the nodes that get it from launch files."""
     base, own = os.path.basename(path), package_of(path)
-    naming = {
-        package_of(it.text.file) for it in launched if any(base in one for one in it.text.texts)
-    }
+    naming = {package_of(it) for it in launched if base in text_of(it)}
     packages = {known.nodes[it.known].package for it in nodes if it.known in known.nodes}
     if own and own[0] in packages and naming <= {own}:
         return f"it is an example of {own[0]}, and no launch file of another package names it"

@@ -64,8 +64,12 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
     if it.launched.started:
         yield ""
         yield "# Launch files start nodes that this fleet does not. `launch: FILE` gives each robot the"
-        yield "# nodes of FILE with their rules; it is a program, so `multibot build` needs --trust:"
+        yield "# nodes of FILE with their rules:"
         yield from _placed(it.launched.started, folder)
+    if it.launched.unread:
+        yield ""
+        yield "# Of launch files could not be read:"
+        yield from _placed(it.launched.unread, folder)
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
     yield "robots:"

@@ -1,30 +1,34 @@
 # SPDX-License-Identifier: Apache-2.0
 """What launch files themselves give to nodes that a fleet starts: parameters in their text, files of
 parameters, and remap rules. ``init`` carries what is plain, and names the rest.
+
+All launch files are read once, behind fences, each with all that it starts with any arguments.
 """
 
 from __future__ import annotations
 
-import ast
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import pairwise
+from functools import lru_cache
 from typing import Any
 
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.fleet.proposal.launch_text import (
-    UNKNOWN,
-    Reading,
-    argument,
-    launch_text,
-    word_of,
-)
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.fleet.proposal.searching import text_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.producers.launch.child import read_launch_files
 from multibot_rewrite.producers.launch.programs import programs
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.system.tool_nodes import is_viewer
 
+# What is not plain.
+UNKNOWN = object()
+# For each launch file.
+_SECONDS = 10.0
 # What a build gives each node anyway, or what is of one machine.
 _USUAL = frozenset(("use_sim_time", "autostart", "node_names", "frame_prefix"))
 # The node and its parameter that an included file gives the value of its argument of this name.
@@ -50,11 +54,13 @@ _USUAL_TOPICS = frozenset(("tf", "tf_static", "robot_description"))
 
 class Launched(NamedTuple):
     """What launch files give: values of parameters by node, which are the same in all of them, and what
-    else there is, by file and line; ``started`` are the nodes that the fleet does not start."""
+    else there is, by file and line; ``started`` are the nodes that the fleet does not start, ``unread``
+    is what could not be read."""
 
     values: Mapping[str, Mapping[str, Any]] = {}
     rest: tuple[tuple[str, int, str], ...] = ()
     started: tuple[tuple[str, int, str], ...] = ()
+    unread: tuple[tuple[str, int, str], ...] = ()
 
 
 class _Given(NamedTuple):
@@ -69,66 +75,99 @@ class _Given(NamedTuple):
     rules: tuple[str, ...]
 
 
-def readings(launch: Iterable[str], description: str, every: Sequence[str]) -> list[Reading]:
-    """The launch files, but for those of other descriptions, each with the arguments that others
-    include it with."""
+class Reading(NamedTuple):
+    """A launch file with what it starts and includes, or why it cannot be read."""
+
+    file: str
+    graph: LaunchGraph
+    why: str = ""
+
+
+def readings(launch: Sequence[str], description: str, every: Sequence[str]) -> list[Reading]:
+    """What the launch files of a description start, as far as it stands in one of them. What stands in
+    a file that another one includes is in that one."""
+    own = {os.path.realpath(it): it for it in launches_for(launch, description, every)}
+    read = [it for it in _read_all(tuple(launch), _times(launch)) if it.file in own.values()]
+    within = {
+        os.path.realpath(node.place.file)
+        for it in read
+        for node in it.graph.nodes
+        if os.path.realpath(node.place.file) != os.path.realpath(it.file)
+    }
+    return [
+        it._replace(graph=_of_files(it.graph, own))
+        for it in read
+        if os.path.realpath(it.file) not in within
+    ]
+
+
+def launches_for(launch: Iterable[str], description: str, every: Sequence[str]) -> list[str]:
+    """The launch files, but for those of other descriptions."""
     others = {os.path.basename(it) for it in every} - {os.path.basename(description)}
-    own = (
+    return [
         it
         for it in launch
         if os.path.basename(description) in text_of(it)
         or not any(other in text_of(it) for other in others)
+    ]
+
+
+@lru_cache(maxsize=4)
+def _read_all(launch: tuple[str, ...], times: tuple[object, ...]) -> list[Reading]:
+    """Read launch files in one process; ``times`` tell their changes."""
+    if not launch:
+        return []
+    read = read_launch_files([LaunchOrder(it, every=True) for it in launch], _SECONDS)
+    return [
+        Reading(file, LaunchGraph(), _without(f"{it}", file))
+        if isinstance(it, InputError)
+        else Reading(file, it)
+        for file, it in zip(launch, read, strict=True)
+    ]
+
+
+def _without(message: str, file: str) -> str:
+    return message.removeprefix(f"{file}: the launch file cannot be read: ")
+
+
+def _times(launch: Sequence[str]) -> tuple[object, ...]:
+    return tuple(_time(it) for it in launch)
+
+
+def _time(file: str) -> tuple[int, int]:
+    try:
+        found = os.stat(file)
+    except OSError:  # whoever reads it says so
+        return 0, 0
+    return found.st_mtime_ns, found.st_size
+
+
+def _of_files(graph: LaunchGraph, own: Mapping[str, str]) -> LaunchGraph:
+    """What stands in these files, by their real paths, each at its path there."""
+
+    def kept(rows: Iterable[Any]) -> tuple[Any, ...]:
+        files = ((it, own.get(os.path.realpath(it.place.file))) for it in rows)
+        return tuple(it._replace(place=it.place._replace(file=file)) for it, file in files if file)
+
+    return graph._replace(
+        nodes=kept(graph.nodes), notes=kept(graph.notes), includes=kept(graph.includes)
     )
-    texts = [launch_text(it) for it in own]
-    given: dict[str, dict[str, Any]] = {}
-    for text in texts:
-        for _, target, arguments in _included(Reading(text, {})):
-            known = given.setdefault(os.path.normpath(target), {})
-            for name, value in arguments.items():
-                known[name] = value if known.get(name, value) == value else UNKNOWN
-    return [Reading(it, given.get(os.path.normpath(it.file), {})) for it in texts]
 
 
-def files_given(read: Iterable[Reading]) -> dict[str, set[str]]:
-    """The files that nodes or included launch files get as parameters, each with the packages of these
-    nodes, of which an included file tells none."""
+def files_given(read: Iterable[Reading], paths: Iterable[str]) -> dict[str, set[str]]:
+    """Those of some files that nodes or included launch files get as parameters, each with the packages
+    of these nodes, of which an included file tells none."""
     found: dict[str, set[str]] = {}
-    for path, package in (one for it in read for one in _files(it)):
-        found.setdefault(os.path.normpath(path), set()).add(package)
-    return found
+    for path, package in (one for it in read for one in _files(it.graph)):
+        found.setdefault(path, set()).add(package)
+    real = {it: os.path.realpath(it) for it in paths}
+    return {it: found[path] for it, path in real.items() if path in found}
 
 
-def _files(it: Reading) -> Iterator[tuple[str, str]]:
-    for _, _, arguments in _included(it):
-        texts = (value for value in arguments.values() if isinstance(value, str))
-        yield from ((value, "") for value in texts if value)
-    for call in it.text.nodes:
-        paths = map(it.path, _elements(argument(call, "parameters")))
-        yield from ((path, word_of(argument(call, "package"))) for path in paths if path)
-
-
-def _included(it: Reading) -> Iterator[tuple[int, str, dict[str, Any]]]:
-    """The line and path of each file that is included, and its arguments."""
-    for call in it.text.includes:
-        target = it.path(argument(call, "launch_description_source", 0))
-        pairs = _pairs(argument(call, "launch_arguments", 1))
-        values = ((word_of(key), it.path(value) or it.value(value)) for key, value in pairs)
-        yield call.lineno, target, {name: value for name, value in values if name}
-
-
-def _pairs(it: ast.expr | None) -> Iterator[tuple[ast.expr | None, ast.expr]]:
-    """The arguments of an include: ``{...}.items()``, or pairs."""
-    if isinstance(it, ast.Call) and isinstance(it.func, ast.Attribute) and it.func.attr == "items":
-        it = it.func.value
-    if isinstance(it, ast.Dict):
-        yield from zip(it.keys, it.values, strict=True)
-    for each in _elements(it):
-        if isinstance(each, ast.Tuple) and len(each.elts) == 2:
-            yield each.elts[0], each.elts[1]
-
-
-def _elements(it: ast.expr | None) -> Sequence[ast.expr]:
-    return it.elts if isinstance(it, ast.List | ast.Tuple) else ()
+def _files(it: LaunchGraph) -> Iterator[tuple[str, str]]:
+    yield from ((value, "") for one in it.includes for _, value in one.arguments if value)
+    for node in it.nodes:
+        yield from ((given.source, node.package) for given in node.parameters if given.source)
 
 
 def given_by_launch(
@@ -137,7 +176,7 @@ def given_by_launch(
     """What launch files give to the nodes of these stacks; nothing is ``carried`` where that does not
     build."""
     nodes = [node for stack in stacks for node in load_stack(stack, release)]
-    every = [given for it in read for given in _given(it, nodes)]
+    every = [given for it in read for given in _given(it.graph, nodes)]
     said: dict[tuple[str, str], list[Any]] = {}
     for given in every:
         for name, value in given.values.items():
@@ -146,7 +185,18 @@ def given_by_launch(
     for (node, name), its in said.items():
         if carried and node and its[0] is not UNKNOWN and all(it == its[0] for it in its):
             values.setdefault(node, {})[name] = its[0]
-    return Launched(values, tuple(_rest(every, values)))
+    return Launched(values, tuple(dict.fromkeys(_rest(every, values))))
+
+
+def not_read(read: Iterable[Reading]) -> Iterator[tuple[str, int, str]]:
+    """Yield what of each launch file could not be read: the first of it."""
+    for it in read:
+        notes = [one for one in it.graph.notes if not (one.parameters or one.missing)]
+        if it.why:
+            yield it.file, 1, it.why
+        elif notes:
+            more = f" (and {len(notes) - 1} more)" if notes[1:] else ""
+            yield notes[0].place.file, notes[0].place.line, f"{notes[0].message}{more}"
 
 
 def _fact(nodes: Iterable[NodeFacts], who: str, program: str) -> NodeFacts | None:
@@ -164,28 +214,32 @@ def _rest(
 
 
 def _shown(name: str, value: Any) -> str:
-    plain = isinstance(value, bool | int | float | str) and len(f"{value}") <= _LONGEST
+    if isinstance(value, str) and os.path.isabs(value) and os.path.exists(value):
+        value = os.path.relpath(value)
+    plain = isinstance(value, bool | int | float | str) and 0 < len(f"{value}") <= _LONGEST
     return f"{name}: {value}" if plain else name
 
 
-def _given(it: Reading, nodes: Sequence[NodeFacts]) -> Iterator[_Given]:
+def _given(it: LaunchGraph, nodes: Sequence[NodeFacts]) -> Iterator[_Given]:
     known = {os.path.basename(one.name) for one in nodes}
-    for line, _, arguments in _included(it):
+    for include in it.includes:
+        arguments = dict(include.arguments)
         for name, (server, parameter) in _MAP.items():
             if server in known and arguments.get(name):
                 values = {parameter: arguments[name]}
-                yield _Given(it.text.file, line, server, "", values, ())
-    for call in it.text.nodes:
-        program = word_of(argument(call, "executable"))
-        who = word_of(argument(call, "name")) or program
-        node = _fact(nodes, who, program)
+                yield _Given(*include.place[:2], server, "", values, ())
+    for one in it.nodes:
+        who = one.name or one.executable
+        node = _fact(nodes, who, one.executable)
         if node is None:
             continue
-        values = dict(_parameters(it, call))
         own = os.path.basename(node.name)
-        named = argument(call, "name") is None or who == own
-        rules = tuple(_rules(argument(call, "remappings")))
-        yield _Given(it.text.file, call.lineno, who, own if named else "", values, rules)
+        named = own if who in (own, one.executable) else ""
+        text, every = text_of(one.place.file), dict(_parameters(one))
+        values = {name: every[name] for name in every if all(it in text for it in name.split("."))}
+        left = len(every) - len(values)
+        more = (f"{plural(left, 'value')} of files that it reads",) if left else ()
+        yield _Given(*one.place[:2], who, named, values, (*_rules(one), *more))
 
 
 def started_elsewhere(
@@ -197,15 +251,13 @@ def started_elsewhere(
         name for stack in stacks for node in load_stack(stack, release) for name in _called(node)
     }
     found: dict[str, tuple[str, int, str]] = {}
-    for file, call in ((it.text.file, call) for it in read for call in it.text.nodes):
-        package, program = (word_of(argument(call, key)) for key in ("package", "executable"))
-        program = program or word_of(argument(call, "plugin"))
-        name = word_of(argument(call, "name"))
+    for it in (node for one in read for node in one.graph.nodes):
+        package, program, name = it[:3]
         if program and not known & {name, program} and not _is_usual(package, program):
             who = f"{name} ({package} {program})" if name else f"{program} ({package})"
-            rules = ", ".join(_rules(argument(call, "remappings")))
+            rules = ", ".join(_rules(it))
             text = f"{who}: {rules}" if rules else who
-            found.setdefault(text, (file, call.lineno, text))
+            found.setdefault(text, (*it.place[:2], text))
     return tuple(found.values())
 
 
@@ -220,28 +272,41 @@ def _called(node: NodeFacts) -> frozenset[str]:
     return frozenset((os.path.basename(node.name), *map(os.path.basename, node.programs)))
 
 
-def _parameters(it: Reading, call: ast.Call) -> Iterator[tuple[str, Any]]:
-    for each in _elements(argument(call, "parameters")):
-        assigned = it.text.assigned.get(each.id) if isinstance(each, ast.Name) else each
-        if isinstance(assigned, ast.Dict):
-            for key, value in zip(assigned.keys, assigned.values, strict=True):
-                name = word_of(key)
-                if name and name not in _USUAL and not name.startswith(_DESCRIPTION):
-                    yield name, it.value(value)
+def _parameters(it: LaunchedNode) -> Iterator[tuple[str, Any]]:
+    """The values that the launch file itself gives, UNKNOWN for those that only a run tells."""
+    for given in (one for one in it.parameters if not (one.file or one.source)):
+        sections = load_yaml(given.text, it.place.file)
+        for name, value in sections["/**"]["ros__parameters"].items():
+            if name not in _USUAL and not name.startswith(_DESCRIPTION):
+                yield name, value
+        if given.untold:
+            yield given.untold, UNKNOWN
 
 
 def _data(value: Any) -> Any:
-    """A value as a parameter can have it; a path is another's where this file is read."""
+    """A value as a parameter can have it; a path is another's where this file is read, an empty text
+    may be the output of a program that is not started."""
+    if value == "":
+        return UNKNOWN
     if isinstance(value, list):
         return UNKNOWN if UNKNOWN in map(_data, value) else value
-    is_path = isinstance(value, str) and os.path.exists(value) and os.sep in value
+    is_path = isinstance(value, str) and os.sep in value and _is_of_machine(value)
     return value if isinstance(value, bool | int | float | str) and not is_path else UNKNOWN
 
 
-def _rules(it: ast.expr | None) -> Iterator[str]:
-    for each in _elements(it):
-        words = [word_of(one) for one in each.elts] if isinstance(each, ast.Tuple) else []
-        yield from (f"{a}:={b}" for a, b in pairwise(words) if a and b and _is_moved(a))
+def _is_of_machine(path: str) -> bool:
+    home = os.path.join(os.path.expanduser("~"), "")
+    return os.path.exists(path) or NOT_INSTALLED in path or path.startswith(home)
+
+
+def _rules(it: LaunchedNode) -> tuple[str, ...]:
+    moved = ((a, b) for a, b in it.remappings if a and b and not _is_name(a))
+    return tuple(f"{a}:={b}" for a, b in moved if _is_moved(a))
+
+
+def _is_name(rule: str) -> bool:
+    """Does a rule name the node (``__node``)?"""
+    return rule.rpartition(":")[2].startswith("__")
 
 
 def _is_moved(topic: str) -> bool:

@@ -20,6 +20,7 @@ from multibot_rewrite.fleet.proposal.given_by_launch import (
     VALUES,
     Launched,
     given_by_launch,
+    not_read,
     readings,
     started_elsewhere,
 )
@@ -222,7 +223,10 @@ def propose(
     read = readings(found.launch, robots[0].path, found.every) if len(robots) == 1 else ()
     launched = given_by_launch(read, stacks, release.value, VALUES not in refused)
     every = [one for it in robots for one in readings(found.launch, it.path, found.every)]
-    launched = launched._replace(started=started_elsewhere(every, stacks, release.value))
+    launched = launched._replace(
+        started=started_elsewhere(every, stacks, release.value),
+        unread=tuple(dict.fromkeys(not_read(every))),
+    )
     return Proposal(keys, members, poses, (), _others(found, robots), refused, launched)
 
 

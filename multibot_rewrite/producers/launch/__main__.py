@@ -1,52 +1,150 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The process that reads a launch file: ``python -m multibot_rewrite.producers.launch``.
+"""The process that reads launch files: ``python -m multibot_rewrite.producers.launch``.
 
-Standard input has the order, standard output gets the graph; what the launch file prints goes to
-standard error. Without launch its stand-in reads the file.
+Standard input has the orders, standard output gets an answer for each. Every file is read in a fork of
+this process, behind fences unless it is trusted: here nothing of a launch file runs. Without launch its
+stand-in reads the files.
 """
 
 from __future__ import annotations
 
+import json
 import os
+import signal
+import socket
 import sys
 import tempfile
+from collections.abc import Mapping
 from contextlib import nullcontext
+from time import monotonic
 
+from multibot_rewrite.base.bounded import load_json
+from multibot_rewrite.description.sources import conversation
+from multibot_rewrite.description.sources.child.asking import asking
+from multibot_rewrite.description.sources.child.frames import (
+    QUESTION,
+    REPORT,
+    GarbageError,
+    framed,
+    received,
+)
+from multibot_rewrite.description.sources.child.system import die_with_parent
+from multibot_rewrite.description.sources.packages import package_of, sources_around
+from multibot_rewrite.producers.launch.confined import NOT_FENCED, NotFencedError, confine
 from multibot_rewrite.producers.launch.door import is_there
 from multibot_rewrite.producers.launch.read import UnreadableError, read_graph
-from multibot_rewrite.producers.launch.records import order_of, to_json
-from multibot_rewrite.producers.launch.stand_in import standing_in
+from multibot_rewrite.producers.launch.records import LaunchOrder, orders_of
+from multibot_rewrite.producers.launch.relay import Relay, relayed
+from multibot_rewrite.producers.launch.source_packages import SOURCES, link_sources
+from multibot_rewrite.producers.launch.stand_in import is_stood_in, standing_in
 
-UNREADABLE = 4
 NO_LAUNCH = (
     "launch is not installed here, and its stand-in does not know all of it: source ROS 2 "
     "(. /opt/ros/jazzy/setup.bash), or give a system_model.yaml of play_launch"
 )
+# All files together have the time of so many.
+_MOST_FILES = 2
+# How long each frame may be.
+_LONGEST: Mapping[bytes, int] = {QUESTION: 2**24, REPORT: 2**28}
 
 
-def main() -> int:
-    """Read the order, write the graph; returns the exit code."""
-    order = order_of(sys.stdin.read())
-    # What a launch file prints must not be taken for the answer.
-    answer = os.dup(1)
-    os.dup2(2, 1)
-    with tempfile.TemporaryDirectory(prefix="multibot_launch_") as folder:
-        tempfile.tempdir = os.environ["ROS_LOG_DIR"] = folder
-        stands_in = not is_there()
+def main() -> None:
+    """Read the orders, write the answers: a graph, or why there is none."""
+    seconds, orders = orders_of(sys.stdin.read())
+    linked: dict[object, str] = {}
+    answers: list[object] = []
+    end = monotonic() + _MOST_FILES * seconds
+    with standing_in() if not is_there() else nullcontext():
+        for at, order in enumerate(orders):
+            if monotonic() > end:
+                answers.append({"error": "those before it took too long"})
+                continue
+            folder = os.path.join(tempfile.gettempdir(), f"{at}")
+            os.mkdir(folder)
+            same = package_of(order.file), sources_around(order.file), order.roots
+            first = linked.setdefault(same, folder)
+            if first == folder:
+                link_sources(order.file, order.roots, folder)
+            else:
+                os.symlink(f"{first}/{SOURCES}", f"{folder}/{SOURCES}")
+            answers.append(_answer(order, folder, first, seconds))
+    sys.stdout.write(json.dumps(answers))
+
+
+def _answer(order: LaunchOrder, folder: str, first: str, seconds: float) -> object:
+    """What a fork says of one launch file; ``first`` has the links to packages."""
+    ours, theirs = socket.socketpair()
+    pid = os.fork()
+    if not pid:
+        leave = os._exit
         try:
-            with standing_in() if stands_in else nullcontext():
-                graph = read_graph(order, folder)._replace(stood_in=stands_in)
-        except UnreadableError as error:
-            doubtful = stands_in and not error.of_file
-            print(f"{error}; {NO_LAUNCH}" if doubtful else error, file=sys.stderr)
-            return UNREADABLE
-    with os.fdopen(answer, "w", encoding="utf-8") as out:
-        out.write(to_json(graph))
-    return 0
+            ours.close()
+            die_with_parent()
+            _work(order, folder, first, seconds, theirs.detach())
+        finally:
+            leave(0)
+    theirs.close()
+    try:
+        return _listened(ours, seconds)
+    except TimeoutError:
+        return {"error": f"reading it took more than {seconds:g} s; stopped"}
+    except (OSError, EOFError, GarbageError, ValueError, LookupError, TypeError):
+        return {"error": "its process ended before it was read"}
+    finally:
+        ours.close()
+        os.kill(pid, signal.SIGKILL)
+        os.waitpid(pid, 0)
+
+
+def _listened(ours: socket.socket, seconds: float) -> object:
+    """Hand on what the fork and its xacro children tell each other, until there is a report."""
+    end = monotonic() + seconds
+
+    def read(count: int) -> bytes:
+        parts = bytearray()
+        while len(parts) < count:
+            ours.settimeout(max(end - monotonic(), 0.001))
+            more = ours.recv(min(count - len(parts), 2**20))
+            if not more:
+                raise EOFError
+            parts += more
+        return bytes(parts)
+
+    with Relay(seconds) as relay:
+        while True:
+            kind, data = received(read, _LONGEST)
+            if kind == REPORT:
+                return load_json(data)
+            ours.sendall(relay.answer(*load_json(data)))
+
+
+def _work(order: LaunchOrder, folder: str, first: str, seconds: float, place: int) -> None:
+    """Read a launch file behind the fences, and tell the parent at the socket ``place``."""
+    inbox, outbox = os.fdopen(place, "rb", closefd=False), os.fdopen(place, "wb", closefd=False)
+
+    def send(data: bytes) -> None:
+        outbox.write(data)
+        outbox.flush()
+
+    # What a launch file prints is nobody's.
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for standard in range(3):
+        os.dup2(nothing, standard)
+    tempfile.tempdir = os.environ["ROS_LOG_DIR"] = folder
+    stood_in = is_stood_in()
+    try:
+        if not order.trusted:
+            confine(order, folder, [first], seconds)
+            vars(conversation)["child"] = relayed(asking(inbox.read, send))
+        graph = read_graph(order, folder)
+        answer: object = {"graph": graph._replace(stood_in=stood_in)}
+    except NotFencedError:
+        answer = {"error": NOT_FENCED}
+    except UnreadableError as error:
+        doubtful = stood_in and not error.of_file
+        answer = {"error": f"{error}; {NO_LAUNCH}" if doubtful else f"{error}"}
+    send(framed(REPORT, json.dumps(answer).encode()))
 
 
 if __name__ == "__main__":
-    # What the launch file leaves behind, such as threads, is not waited for.
-    code = main()
-    sys.stderr.flush()
-    os._exit(code)
+    main()

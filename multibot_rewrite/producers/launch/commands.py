@@ -8,19 +8,19 @@ substitutions/command.py (the line is split as a shell does), find_executable.py
 
 from __future__ import annotations
 
+import io
 import os
 import shlex
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache, wraps
-from shutil import which
+from contextlib import redirect_stderr, redirect_stdout
+from functools import lru_cache
+from importlib import import_module
 from types import MappingProxyType
 from typing import Any
 
-from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.sources.access import SECONDS
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.describe import text
@@ -40,32 +40,57 @@ class Output(NamedTuple):
     fault: str = ""
 
 
-def read_commands() -> list[str]:
-    """From now on ``Command`` gives what is known of its output, and no program has to be there. So
-    does ``subprocess.run``, where it is not there; what is not known of its output is in the list."""
+def read_commands() -> None:
+    """From now on ``Command`` gives what is known of its output, and no program has to be there."""
     known = of_launch("substitutions")
-    lost: list[str] = []
     known.Command.perform = _perform
     known.FindExecutable.perform = lambda self, context: text(self.name, context)
-    subprocess.run = _run(subprocess.run, lost)
+
+
+def start_nothing() -> list[str]:
+    """From now on a launch file starts no program itself, either; what is not known of the output of
+    one is in the list."""
+    lost: list[str] = []
+    started: Any = type("Popen", (_Program,), {"lost": lost})
+    vars(subprocess)["Popen"] = started
+    vars(os)["system"] = lambda line: started(line).returncode
     return lost
 
 
-def _run(run: Callable[..., Any], lost: list[str]) -> Callable[..., Any]:
-    """``subprocess.run``, which ``check_output`` calls as well."""
+class _Program:
+    """A program that is not started: it has ended, and has printed what is known of it."""
 
-    @wraps(run)
-    def ran(line: Any, *words: Any, **options: Any) -> Any:
-        program = str(line[0]) if isinstance(line, list | tuple) and line else ""
-        if program not in _READERS or which(program):
-            return run(line, *words, **options)
-        found = output_of(shlex.join(map(str, line)))
-        lost.extend({found.fault} - {"", *lost})
+    lost: list[str]
+    pid = returncode = 0
+    stdin: Any = None
+
+    def __init__(self, line: Any, *_: object, **options: Any) -> None:
+        words = [line] if isinstance(line, str | bytes | os.PathLike) else [*line]
+        plain = [os.fsdecode(it) for it in words]
+        found = output_of(plain[0] if len(plain) == 1 else shlex.join(plain))
+        said = found.fault or f"it starts {' '.join(plain)!r} itself, which is not started here"
+        if (found.fault or not found.text) and said not in self.lost:
+            self.lost.append(said)
         as_text = any(options.get(it) for it in ("text", "universal_newlines", "encoding"))
-        out = found.text if as_text else found.text.encode()
-        return subprocess.CompletedProcess(line, 0, out, out[:0])
+        self.args, self.made = line, found.text if as_text else found.text.encode()
+        self.stdout: Any = io.StringIO(found.text) if as_text else io.BytesIO(found.text.encode())
+        self.stderr = type(self.stdout)()
 
-    return ran
+    def __enter__(self) -> _Program:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """There is nothing to wait for."""
+
+    def communicate(self, *_: object, **__: object) -> tuple[Any, Any]:
+        """What it printed, and no error."""
+        return self.made, self.made[:0]
+
+    def wait(self, timeout: float | None = None) -> int:
+        """It has ended."""
+        return 0
+
+    poll = kill = terminate = wait
 
 
 def faults(context: Any) -> list[str]:
@@ -82,12 +107,12 @@ def _perform(self: Any, context: Any) -> str:
 
 @lru_cache
 def output_of(line: str) -> Output:
-    """What a program prints."""
+    """What a program prints, as far as that is known without it."""
     try:
         program, *words = shlex.split(line)
         read = _READERS.get(os.path.basename(program))
         return Output(read(words) if read else "")
-    except (ValueError, MultibotError, subprocess.SubprocessError) as error:
+    except (ValueError, MultibotError, OSError) as error:
         # A launch fails here, unless it is the boundary, or a package that is told, that is in the way.
         if NOT_INSTALLED in line:
             return Output("")
@@ -108,13 +133,26 @@ def _cat(words: Sequence[str]) -> str:
 def _postfix(words: Sequence[str]) -> str:
     if any(it.startswith("-") and it.partition("=")[0] not in _OPTIONS for it in words):
         return ""
-    line = python(_POSTFIX, *words)
-    done = subprocess.run(
-        line, env=variables(), capture_output=True, text=True, timeout=SECONDS, check=False
-    )
-    if done.returncode:
-        raise ValueError(done.stderr)
-    return done.stdout
+    main = import_module(_POSTFIX).main
+    with redirect_stdout(_Kept()) as out, redirect_stderr(_Kept()) as errors:
+        code = main([*words])
+    if code:
+        raise ValueError(errors.text)
+    return out.text
+
+
+class _Kept(io.TextIOWrapper):
+    """What is written to it, as a text."""
+
+    def __init__(self) -> None:
+        super().__init__(io.BytesIO(), "utf-8", newline="")
+
+    @property
+    def text(self) -> str:
+        """All of it."""
+        self.flush()
+        written: Any = self.buffer
+        return str(written.getvalue().decode())
 
 
 _READERS: Mapping[str, Callable[[Sequence[str]], str]] = MappingProxyType(

@@ -35,6 +35,7 @@ from multibot_rewrite.producers.launch.places import place_of
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
+    LaunchInclude,
     LaunchNote,
     ParameterText,
     UnreadArgument,
@@ -62,7 +63,8 @@ _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
 class Visit(NamedTuple):
     """A visit: the context, what has been found, the files that descriptions name, what an event or a
     timer starts with its visit and the locals that it keeps, the place of what is visited, arguments
-    without effect, what starts it if not the launch itself, and after how many events."""
+    without effect, included files, whether conditions count, what starts it if not the launch itself,
+    and after how many events."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -71,8 +73,14 @@ class Visit(NamedTuple):
     waiting: list[tuple[Any, Any, Mapping[str, Any]]]
     place: Place
     unread: list[UnreadArgument]
+    includes: list[LaunchInclude]
+    every: bool = False
     later: str = ""
     events: int = 0
+
+    def wants(self, action: Any) -> bool:
+        """Does the condition of an action hold, as far as conditions count?"""
+        return self.every or is_wanted(action, self.context)
 
     def note(self, message: str, parameters: bool = False, file: str = "") -> None:
         """Keep what is not known here: nodes, or only ``parameters`` of one, as those of a ``file``."""

@@ -30,6 +30,7 @@ _NO_TEXT, _REQUIRED = "Failed to normalize given item", "missing required argume
 _NO_VALUE = lazy_compile(
     r"launch configuration '([\w.-]+)' does not exist|Required launch argument \"([\w.-]+)\" was not"
 )
+_REFUSED = "a launch file may compute and read; give --trust if you trust it (SECURITY.md)"
 # The file as Python has it, in launch and in its stand-in; without a description it makes none.
 _MODULE = "launch_file"
 _MAKES = "generate_launch_description"
@@ -70,6 +71,8 @@ def _known(error: BaseException) -> str:
     if name := _no_value(error):
         hint = f"give it with {name}:=VALUE, or where this is included"
         return f"the launch configuration {name!r} is not set; {hint}"
+    if isinstance(error, PermissionError):
+        return f"{error}{_line(error)}; {_REFUSED}"
     if isinstance(error, FileNotFoundError) and _is_program(str(error.filename)):
         return f"it starts the program {error.filename!r} itself, which is not installed here"
     if isinstance(error, SystemExit):
@@ -155,11 +158,20 @@ def _no_value(error: BaseException) -> str:
 def is_of_file(error: BaseException) -> bool:
     """Does launch not read the file either? It is no program or XML, it is of ROS 1, or it asks for
     what is not there."""
-    inner = error.__cause__ or error
-    own = (SyntaxError, NameError, RecursionError, FileNotFoundError, SystemExit)
-    without = isinstance(inner, AttributeError) and getattr(inner.obj, "__name__", "") == _MODULE
+    own = (SyntaxError, NameError, RecursionError, FileNotFoundError, PermissionError, SystemExit)
     old = _OF_ROS_1.search(str(error)) is not None
-    return isinstance(inner, own) or without or old or bool(_variable(error))
+    return (
+        isinstance(error.__cause__ or error, own)
+        or is_without(error)
+        or old
+        or bool(_variable(error))
+    )
+
+
+def is_without(error: BaseException) -> bool:
+    """Has the file no function that makes a description?"""
+    inner = error.__cause__ or error
+    return isinstance(inner, AttributeError) and getattr(inner.obj, "__name__", "") == _MODULE
 
 
 def is_no_text(error: BaseException) -> bool:

@@ -20,7 +20,8 @@ from multibot_rewrite.producers.launch.describe import (
 from multibot_rewrite.producers.launch.failures import is_no_text, missing_package
 from multibot_rewrite.producers.launch.include_arguments import not_among, unread
 from multibot_rewrite.producers.launch.kept_paths import lasting
-from multibot_rewrite.producers.launch.records import LaunchedNode, UnreadArgument
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchInclude, UnreadArgument
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 
 # The launch files that start Gazebo and nothing else.
 _OF_GZ = ("gz_sim.launch.py", "ign_gazebo.launch.py")
@@ -48,7 +49,7 @@ _SHARE = re.compile(r"/share/([\w-]+)/")
 def simulator(error: BaseException, include: Any, here: Visit) -> list[LaunchedNode]:
     """The simulator of a package that is missing here, or whose launch file only a build makes: that it
     starts one is known without it, and with which words."""
-    path = _path_of(include, here.context)
+    path = path_of(include, here.context)
     of_path = _SHARE.search(path)
     package = missing_package(error) or (of_path[1] if of_path else "")
     # Before it is read, launch has the parts of the path (jazzy launch_description_source.py).
@@ -75,9 +76,12 @@ def _bridge(given: Mapping[str, str], here: Visit) -> Iterator[LaunchedNode]:
         yield LaunchedNode(*_BRIDGE, name, space, (), rows, "", (), here.later, here.place)
 
 
-def without_effect(include: Any, here: Visit) -> None:
-    """Keep the arguments that the file of an include does not read."""
-    unread_of(_path_of(include, here.context), given(include, here.context), here)
+def included(include: Any, here: Visit) -> LaunchInclude:
+    """The file of an include, and its arguments."""
+    (file,) = lasting((path_of(include, here.context),))
+    file = file.rpartition(f"{NOT_INSTALLED}/share/")[2]
+    words = given(include, here.context)
+    return LaunchInclude(here.place, file, tuple(zip(words, lasting(words.values()), strict=True)))
 
 
 def unread_of(path: str, names: Collection[str], here: Visit) -> None:
@@ -110,7 +114,7 @@ def _not_known() -> Iterator[None]:
             raise
 
 
-def _path_of(include: Any, context: Any) -> str:
+def path_of(include: Any, context: Any) -> str:
     """The path of the file that is included; its last part where a package of it is missing."""
     with suppress(Exception):
         path: Any = include.launch_description_source.location

@@ -44,8 +44,8 @@ def _keeping(made: Callable[..., None]) -> Callable[..., None]:
 def place_of(action: Any, file: str, what: tuple[str, str] | None = None) -> Place:
     """The place of an action; ``file`` is the launch file that has it, ``what`` its package and
     executable, by which it is found in a file that is not Python."""
-    kept: Place | None = getattr(action, _KEPT, None)
-    if kept is not None:
+    kept = getattr(action, _KEPT, None)
+    if isinstance(kept, Place):
         return kept
     real = os.path.realpath(file)
     return Place(real, _lines(real).get(what, 1) if what else 1)

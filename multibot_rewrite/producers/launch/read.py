@@ -9,12 +9,13 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from multibot_rewrite.producers.launch.commands import faults, read_commands
+from multibot_rewrite.producers.launch.commands import faults, read_commands, start_nothing
 from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import (
     failure,
     is_of_file,
+    is_without,
     lost_file,
     missing_module,
     missing_package,
@@ -51,7 +52,8 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     of_launch_ros("actions")
     keep_places()
     keep_sources()
-    unsure, reads = read_commands(), keep_reads()
+    read_commands()
+    unsure, reads = [] if order.trusted else start_nothing(), keep_reads()
     # A launch file may look at the command line itself.
     sys.argv = order.command_line
     missing: list[str] = []
@@ -74,6 +76,9 @@ def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph |
     except UnreadableError:
         raise
     except (Exception, SystemExit) as error:
+        if missing and is_without(error):
+            said = f"the package {missing[-1]!r} makes what it starts, and is not read here"
+            return LaunchGraph(notes=(LaunchNote(Place(os.path.abspath(order.file), 1), said),))
         _stand_in_for(error, folder, missing)
         return None
     # A function of a launch file goes on without them, as the file does.
@@ -127,14 +132,15 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     folder = {"current_launch_file_directory": os.path.dirname(path)}
     context.extend_locals({"current_launch_file_path": path, **folder})
     context.launch_configurations.update(order.arguments)
-    seen = Visit(context, [], [], {}, [], Place(path, 1), [])
+    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], order.every)
     unread_of(path, dict(order.arguments), seen)
     visit_all(description, seen)
     for it in faults(context):
         seen.note(it, parameters=True)
     notes = tuple(dict.fromkeys(_with_unset(seen.notes, path)))
     files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
-    return LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
+    found = LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
+    return found._replace(includes=tuple(seen.includes))
 
 
 def _with_unset(notes: Iterable[LaunchNote], path: str) -> Iterator[LaunchNote]:
@@ -159,6 +165,10 @@ def _check_given(description: Any, order: LaunchOrder) -> None:
     """Raises UnreadableError without an argument that the file itself has to be given."""
     found = description.get_launch_arguments_with_include_launch_description_actions()
     for it, includes in found:
-        free = it.default_value is not None or getattr(it, "_conditionally_included", False)
+        free = (
+            order.every
+            or it.default_value is not None
+            or getattr(it, "_conditionally_included", False)
+        )
         if not free and not includes and it.name not in dict(order.arguments):
             raise UnreadableError(f"it has to be given {it.name}; write {it.name}:=VALUE after it")

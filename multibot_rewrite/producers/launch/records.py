@@ -22,9 +22,9 @@ AT_AN_END = ("at an event (OnProcessExit)", "at an event (on_exit)")
 class LaunchOrder(NamedTuple):
     """A launch file or system_model.yaml to read, with launch arguments.
 
-    ``roots`` are folders with the sources of packages that are not installed; ``trusted`` says that
-    whoever runs this named the file: a launch file is a program. ``package`` is that of the file where
-    it was named by it.
+    ``roots`` are folders with the sources of packages that are not installed; ``trusted`` lifts the
+    fences: a launch file is a program. ``package`` is that of the file where it was named by it.
+    ``every`` asks also for what the file starts with other arguments, whatever its conditions say.
     """
 
     file: str
@@ -32,6 +32,7 @@ class LaunchOrder(NamedTuple):
     roots: tuple[str, ...] = ()
     trusted: bool = False
     package: str = ""
+    every: bool = False
 
     @property
     def command_line(self) -> list[str]:
@@ -97,6 +98,15 @@ class UnreadArgument(NamedTuple):
     near: str
 
 
+class LaunchInclude(NamedTuple):
+    """A launch file that another one includes, with the arguments that it is given: empty for a value
+    that is not known. Of a package that is not here ``file`` is its path from that package on."""
+
+    place: Place
+    file: str
+    arguments: tuple[tuple[str, str], ...]
+
+
 class LaunchGraph(NamedTuple):
     """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
     the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
@@ -107,6 +117,7 @@ class LaunchGraph(NamedTuple):
     files: tuple[tuple[str, ParameterText], ...] = ()
     stood_in: bool = False
     unread: tuple[UnreadArgument, ...] = ()
+    includes: tuple[LaunchInclude, ...] = ()
 
     @property
     def whole(self) -> bool:
@@ -173,24 +184,24 @@ def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
         tuple(file for it in graphs for file in it.files),
         any(it.stood_in for it in graphs),
         tuple(one for it in graphs for one in it.unread),
+        tuple(one for it in graphs for one in it.includes),
     )
 
 
-def to_json(record: LaunchOrder | LaunchGraph) -> str:
-    """The record as a text."""
-    return json.dumps(record)
+def orders_of(text: str) -> tuple[float, list[LaunchOrder]]:
+    """The seconds for each of some orders, and these, from JSON."""
+    seconds, orders = json.loads(text)
+    return seconds, [_order(*it) for it in orders]
 
 
-def order_of(text: str) -> LaunchOrder:
-    """The order that ``to_json`` wrote."""
-    file, arguments, roots, trusted, package = json.loads(text)
+def _order(file: str, arguments: Any, roots: Any, *more: Any) -> LaunchOrder:
     pairs = tuple((name, value) for name, value in arguments)
-    return LaunchOrder(file, pairs, tuple(roots), trusted, package)
+    return LaunchOrder(file, pairs, tuple(roots), *more)
 
 
-def graph_of(text: str) -> LaunchGraph:
-    """The graph that ``to_json`` wrote."""
-    nodes, notes, files, stood_in, unread = json.loads(text)
+def graph_of(values: Any) -> LaunchGraph:
+    """The graph that is this in JSON; raises what an unexpected value does."""
+    nodes, notes, files, stood_in, unread, includes = values
     found = (LaunchNote(Place(*place), *rest) for place, *rest in notes)
     return LaunchGraph(
         tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes),
@@ -198,6 +209,10 @@ def graph_of(text: str) -> LaunchGraph:
         tuple((path, ParameterText(*it)) for path, it in files),
         stood_in,
         tuple(UnreadArgument(Place(*place), *rest) for place, *rest in unread),
+        tuple(
+            LaunchInclude(Place(*place), file, tuple((name, value) for name, value in given))
+            for place, file, given in includes
+        ),
     )
 
 

@@ -25,20 +25,27 @@ from multibot_rewrite.producers.launch.install_rules import link_share
 
 _INDEX = os.path.join("share", "ament_index", "resource_index", "packages")
 _PYTHON = lazy_compile(r"ament_python_install_package\(\s*(\w+)")
-_PATH = "AMENT_PREFIX_PATH"
+# The folder of links to packages, below that of what is made for a launch file.
+SOURCES = "sources"
+PREFIXES = "AMENT_PREFIX_PATH"
 # The prefix of packages that have an empty folder here.
 NOT_INSTALLED = "not_installed"
 
 
-def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
-    """Make the packages below ``roots`` known, and those beside the one of the launch ``file``;
-    ``folder`` gets links to them. What is installed is found first, then what is below the roots.
-    """
+def link_sources(file: str, roots: Iterable[str], folder: str) -> None:
+    """Fill a folder with links to the packages below ``roots``, and to those beside the one of the
+    launch ``file``."""
     for name, path in dict(_packages(file, roots)).items():
-        link_share(name, path, _shared(name, os.path.join(folder, "sources")))
+        link_share(name, path, _shared(name, os.path.join(folder, SOURCES)))
+
+
+def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
+    """Make the packages known that ``link_sources`` has linked. What is installed is found first, then
+    what is below the roots."""
+    for name, path in dict(_packages(file, roots)).items():
         if os.path.isfile(os.path.join(path, name, "__init__.py")) or _installs_python(path):
             sys.path.append(path)
-    _search(os.path.join(folder, "sources"))
+    _search(os.path.join(folder, SOURCES))
 
 
 def _installs_python(folder: str) -> bool:
@@ -80,8 +87,8 @@ def _not_found(error: BaseException | None) -> FileNotFoundError | None:
 
 
 def _search(prefix: str) -> None:
-    paths = os.environ.get(_PATH, "").split(os.pathsep)
-    os.environ[_PATH] = os.pathsep.join(dict.fromkeys(filter(None, (*paths, prefix))))
+    paths = os.environ.get(PREFIXES, "").split(os.pathsep)
+    os.environ[PREFIXES] = os.pathsep.join(dict.fromkeys(filter(None, (*paths, prefix))))
 
 
 def _shared(name: str, prefix: str) -> str:

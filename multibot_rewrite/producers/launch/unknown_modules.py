@@ -48,6 +48,9 @@ class Unknown:
     def __getitem__(self, _: object) -> Unknown:
         return Unknown(self._multibot_module)
 
+    def __setitem__(self, _: object, __: object) -> None:
+        """Nothing is kept."""
+
     def __iter__(self) -> Iterator[Any]:
         return iter(())
 

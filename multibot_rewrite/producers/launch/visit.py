@@ -8,6 +8,7 @@ by the names of its classes, so that this works in every release. Source: launch
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from types import MappingProxyType
 from typing import Any
 
@@ -20,8 +21,9 @@ from multibot_rewrite.producers.launch.describe import (
     text,
 )
 from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset
-from multibot_rewrite.producers.launch.includes import simulator, without_effect
+from multibot_rewrite.producers.launch.includes import included, path_of, simulator, unread_of
 from multibot_rewrite.producers.launch.places import place_of
+from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
 # They only change the context, or give further entities.
 EXECUTED = (
@@ -57,6 +59,8 @@ _PASSED = (
 
 _ENDED = "groups and their launch configurations have ended by then"
 _INCLUDE = "IncludeLaunchDescription"
+# They give further entities: with ``every`` whatever their conditions say.
+_GIVING = ("GroupAction", "OpaqueFunction", _INCLUDE)
 # The locals of a launch that are of this package.
 _OURS = "multibot_"
 # One after the other; a timer may start itself again.
@@ -80,8 +84,11 @@ def visit(entity: Any, seen: Visit) -> None:
     here = _at(entity, seen)
     # An include has the path of its file for what is below it; other actions may leave theirs.
     own = _is(entity, _INCLUDE)
+    apart = seen.every and _is(entity, *_GIVING) and not _holds(entity, seen)
     if own:
         seen.context._push_locals()
+    if apart:
+        seen.context._push_launch_configurations()
     try:
         for below in _handler(entity)(entity, here) or ():
             visit(below, here)
@@ -89,8 +96,16 @@ def visit(entity: Any, seen: Visit) -> None:
         # A launch file is a program: it may raise anything.
         _failed(entity, error, here)
     finally:
+        if apart:
+            seen.context._pop_launch_configurations()
         if own:
             seen.context._pop_locals()
+
+
+def _holds(entity: Any, seen: Visit) -> bool:
+    with suppress(Exception):
+        return is_wanted(entity, seen.context)
+    return False
 
 
 def _failed(entity: Any, error: BaseException, here: Visit) -> None:
@@ -121,14 +136,18 @@ def _is(entity: Any, *names: str) -> bool:
 
 
 def _execute(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    found: Iterable[Any] | None = entity.visit(seen.context)
+    whatever = seen.every and _is(entity, *_GIVING)
+    found: Iterable[Any] | None = (entity.execute if whatever else entity.visit)(seen.context)
     return found
 
 
 def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    if not seen.wants(entity):
+        return None
+    include = included(entity, seen)
+    seen.includes.append(include)
     found = _execute(entity, seen)
-    if is_wanted(entity, seen.context):
-        without_effect(entity, seen)
+    unread_of(path_of(entity, seen.context), dict(include.arguments), seen)
     return found
 
 
@@ -137,7 +156,7 @@ def _pass(entity: Any, seen: Visit) -> None:
 
 
 def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if not is_wanted(entity, seen.context):
+    if not seen.wants(entity):
         return None
     # launch/later.py: an action for a robot gets its options when it runs, or others run in its place.
     instead = entity.resolve(seen.context) if type(entity).__name__ == "OfRobot" else None
@@ -148,7 +167,7 @@ def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _container(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if not is_wanted(entity, seen.context):
+    if not seen.wants(entity):
         return None
     _node(entity, seen)
     host = seen.nodes[-1]
@@ -158,7 +177,7 @@ def _container(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _loaded(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if not is_wanted(entity, seen.context):
+    if not seen.wants(entity):
         return None
     target = entity._LoadComposableNodes__target_container
     if _is(target, "ComposableNodeContainer"):
@@ -173,12 +192,12 @@ def _loaded(entity: Any, seen: Visit) -> Iterable[Any] | None:
 def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit) -> None:
     for it in descriptions or ():
         condition = it.condition() if callable(getattr(it, "condition", None)) else None
-        if condition is None or condition.evaluate(seen.context):
+        if condition is None or seen.every or condition.evaluate(seen.context):
             seen.nodes.append(component(it, container, seen))
 
 
 def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if is_wanted(entity, seen.context):
+    if seen.wants(entity):
         seen.nodes.extend(process(entity, seen))
         _ended(entity, seen)
     return None
@@ -186,7 +205,7 @@ def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
     """The actions of a timer or an event handler wait for the end of the description."""
-    if not is_wanted(entity, seen.context):
+    if not seen.wants(entity):
         return None
     timer = _is(entity, "TimerAction")
     handler = entity if timer else entity.event_handler
@@ -227,7 +246,10 @@ def _flat(actions: Any) -> list[Any]:
 
 
 def _unknown(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if is_wanted(entity, seen.context):
+    if is_unknown(entity):
+        # It makes what it starts in code that is not here.
+        entity.perform(seen.context)
+    if seen.wants(entity):
         message = f"what the action {type(entity).__name__} starts is decided only at run time"
         seen.note(message)
     return None

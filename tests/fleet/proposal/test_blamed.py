@@ -10,8 +10,7 @@ import pytest
 
 from multibot_rewrite.fleet.proposal import given_by_launch, trying
 from multibot_rewrite.fleet.proposal.companions import Companions
-from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
-from multibot_rewrite.fleet.proposal.launch_text import UNKNOWN
+from multibot_rewrite.fleet.proposal.given_by_launch import UNKNOWN, VALUES
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
 

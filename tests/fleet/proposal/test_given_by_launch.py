@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from multibot_rewrite.fleet.proposal.given_by_launch import (
     Launched,
     files_given,
     given_by_launch,
+    not_read,
     readings,
     started_elsewhere,
 )
@@ -24,26 +26,35 @@ EKF = f"{NODE}name='ekf_filter_node', "
 SAID = ["ekf_filter_node: odometry/filtered:=/odom"]
 RATE = {"ekf_filter_node": {"frequency": 30.0}}
 NOTHING: dict[str, Any] = {}
+GIVEN = "parameters=[{'frequency': 30.0}]"
 ASKED = "LaunchConfiguration('rate')"
 DECLARED = "DeclareLaunchArgument('rate', default_value='30.0')"
 ROWS = [
-    (f"{EKF}{RULE})", NOTHING, SAID), (f"launch_ros.actions.{EKF}{RULE})", NOTHING, SAID),
+    (f"{EKF}{RULE})", NOTHING, SAID),
     (f"{EKF}parameters=[path, {{'frequency': 30.0, 'use_sim_time': True}}])", RATE, []),
     (f"{NODE}parameters=[{{'frequency': 30.0}}])", RATE, []),
     (f"{NODE}parameters=[own]); own = {{'frequency': 30.0}}", RATE, []),
     (f"{NODE}parameters=[{{'frequency': rate}}]); rate = {ASKED}; {DECLARED}", RATE, []),
     (f"{NODE}parameters=[{{'frequency': {ASKED}}}])", NOTHING, ["ekf_node: frequency"]),
-    (f"{NODE}parameters=[{{'frequency': rate()}}])", NOTHING, ["ekf_node: frequency"]),
+    (f"{NODE}parameters=[{{'frequency': Command('rate')}}])", NOTHING, ["ekf_node: frequency"]),
+    (f"{NODE}parameters=[{{'frequency': 15.0 * 2}}], condition=IfCondition('false'))", RATE, []),
+    (f"GroupAction([{NODE}{GIVEN})], condition=UnlessCondition('true'))", RATE, []),
+    (f"OpaqueFunction(function=lambda _: [{NODE}{GIVEN})])", RATE, []),
+    # What stands in the file alone: other values are those of a file that it reads.
+    (f"{NODE}parameters=[dict(eval(\"{{'freq'+'uency': 1.0, 'x'+'y': 2}}\"))])", NOTHING,
+     ["ekf_node: 2 values of files that it reads"]),
+
+
     # The fleet starts no node of this name.
     (f"{NODE}name='second', parameters=[{{'frequency': 30.0}}])", NOTHING, ["second: frequency: 30.0"]),
     (
-        f"{EKF}parameters=[{{'odom0_config': [True, False, -1.5]}}])",
-        {"ekf_filter_node": {"odom0_config": [True, False, -1.5]}},
+        f"{EKF}parameters=[{{'odom0_config': [True, False, True]}}])",
+        {"ekf_filter_node": {"odom0_config": [True, False, True]}},
         [],
     ),
     (f"{EKF}parameters=[path])", NOTHING, []),
-    (f"{EKF}parameters=[{{'use_sim_time': sim}}])", NOTHING, []),
-    (f"Node(package='own', executable='driver', {RULE})", NOTHING, []), (f"{EKF}", NOTHING, []),
+    (f"{EKF}parameters=[{{'use_sim_time': True}}])", NOTHING, []),
+    (f"Node(package='own', executable='driver', {RULE})", NOTHING, []), (f"{EKF})", NOTHING, []),
 ]  # fmt: skip
 
 
@@ -60,9 +71,9 @@ YAML_RATE = "param: [{{name: frequency, value: {}}}]"
 XML_ROWS = [
     (XML_EKF.format(XML_RULE + '<remap from="/tf" to="tf"/>'), NOTHING, SAID),
     (XML_EKF.format('<param from="a.yaml"/>' + XML_RATE.format("30.0")), RATE, []),
-    (XML_EKF.format(XML_RATE.format("$(var rate)")) + XML_DECLARED, RATE, []),
+    (XML_DECLARED + XML_EKF.format(XML_RATE.format("$(var rate)")), RATE, []),
     (f"<group>{XML_EKF.format(XML_RATE.format('30.0'))}</group>", RATE, []),
-    (XML_EKF.format(XML_RATE.format("$(eval '30')")), NOTHING, ["ekf_filter_node: frequency"]),
+    (XML_EKF.format(XML_RATE.format("$(eval '30.0')")), RATE, []),
     (XML_NODE.format("", XML_RATE.format("$(env RATE)")), NOTHING, ["ekf_node: frequency"]),
     (
         XML_EKF.format('<param name="odom0_config" value="[true, false, -1.5]"/>'),
@@ -78,18 +89,38 @@ XML_ROWS = [
 ]  # fmt: skip
 YAML_ROWS = [
     (YAML_NODE.format(YAML_RATE.format("30.0")), RATE, []),
-    (f"{YAML_NODE.format(YAML_RATE.format('$(var rate)'))}\n{YAML_DECLARED}", RATE, []),
+    (f"{YAML_DECLARED}\n{YAML_NODE.format(YAML_RATE.format('$(var rate)'))}", RATE, []),
     (YAML_NODE.format(YAML_RULE), NOTHING, ["ekf_node: odometry/filtered:=/odom"]),
     ("- group:\n  " + YAML_NODE.format(YAML_RATE.format("30.0")), RATE, []),
     ("- node: [", NOTHING, []), ("- node", NOTHING, []),
 ]  # fmt: skip
 
 
+IMPORTS = "; ".join(
+    f"from {it} import *"
+    for it in ("launch", "launch.actions", "launch.conditions", "launch.launch_description_sources",
+               "launch.substitutions", "launch_ros.actions", "launch_ros.descriptions",
+               "launch_ros.substitutions")
+)  # fmt: skip
+
+
+def program(text: str) -> str:
+    """A launch file in Python of statements and actions, all of which are in its second line."""
+    parts = text.split("; ")
+    before = [it for it in parts if re.match(r"\w+ = ", it)]
+    actions = ", ".join(
+        sorted((it for it in parts if it not in before), key=lambda it: it[:1] != "D")
+    )
+    given = "; ".join(["path = '/p.yaml'", *before, f"return LaunchDescription([{actions}])"])
+    return f"{IMPORTS}\ndef generate_launch_description(): {given}\n"
+
+
 def launched(folder: Path, end: str = "py", **files: str) -> Launched:
     for name, text in files.items():
-        (folder / f"{name}.launch.{end}").write_text(f"\n{text}\n")
+        written = program(text) if end == "py" else f"\n{text}\n"
+        (folder / f"{name}.launch.{end}").write_text(written)
     paths = [str(folder / f"{it}.launch.{end}") for it in files]
-    read = readings([*paths, "none.launch.xml"], "robot.urdf", ("robot.urdf", "other.urdf"))
+    read = readings(paths, "robot.urdf", ("robot.urdf", "other.urdf"))
     return given_by_launch(read, ["robot_localization"], "jazzy")
 
 
@@ -127,30 +158,30 @@ def test_values_that_differ_from_file_to_file_are_said(tmp_path: Path) -> None:
 
 def test_the_launch_file_of_another_description_counts_not(tmp_path: Path) -> None:
     mine, its = (f"{NODE}parameters=[{{'frequency': {it}}}])" for it in (30.0, 20.0))
-    found = launched(tmp_path, a=f"'robot.urdf', 'other.urdf'\n{mine}", b=f"'other.urdf'\n{its}")
+    both, other = "its = 'robot.urdf', 'other.urdf'; ", "its = 'other.urdf'; "
+    found = launched(tmp_path, a=f"{both}{mine}", b=f"{other}{its}")
     assert found == Launched(RATE, ())
 
 
-INCLUDED = """\
-DeclareLaunchArgument('rate', default_value='10.0')
-DeclareLaunchArgument('file', default_value='none.yaml')
-rate = {'frequency': LaunchConfiguration('rate')}
-Node(executable='ekf_node', parameters=[LaunchConfiguration('file'), rate])
-"""
-INCLUDES = """\
-here = get_package_share_directory('own')
-IncludeLaunchDescription(
-    PythonLaunchDescriptionSource(os.path.join(here, 'launch', 'ekf.launch.py')),
-    launch_arguments={'rate': '30.0', 'file': PathJoinSubstitution([here, 'config/ekf.yaml'])}.items())
-IncludeLaunchDescription(
-    PythonLaunchDescriptionSource([FindPackageShare('slam_toolbox'), '/launch/online_async_launch.py']),
-    launch_arguments=[('slam_params_file', [FindPackageShare('own'), '/config/slam.yaml'])])
-"""
-
-
+INCLUDED = (
+    "rate = {'frequency': LaunchConfiguration('rate')}; "
+    "DeclareLaunchArgument('rate', default_value='10.0'); "
+    "DeclareLaunchArgument('file', default_value='none.yaml'); "
+    f"{NODE}parameters=[LaunchConfiguration('file'), rate])"
+)
+INCLUDES = (
+    "own = FindPackageShare('own'); file = PathJoinSubstitution([own, 'config/ekf.yaml']); "
+    "IncludeLaunchDescription(PathJoinSubstitution([own, 'launch', 'ekf.launch.py']), "
+    "launch_arguments={'rate': '30.0', 'file': file}.items()); "
+    "IncludeLaunchDescription(PythonLaunchDescriptionSource([FindPackageShare('slam_toolbox'), "
+    "'/launch/online_async_launch.py']), "
+    "launch_arguments=[('slam_params_file', [own, '/config/slam.yaml'])])"
+)
 MAPS = {
-    "py": "IncludeLaunchDescription('bringup_launch.py', launch_arguments={'map': file}.items())\n"
-    "file = PathJoinSubstitution([FindPackageShare('own'), 'maps', 'hall.yaml'])",
+    "py": program(
+        "file = PathJoinSubstitution([FindPackageShare('own'), 'maps', 'hall.yaml']); "
+        "IncludeLaunchDescription('bringup_launch.py', launch_arguments={'map': file}.items())"
+    ),
     "xml": '<launch><include file="$(find-pkg-share nav2_bringup)/launch/bringup_launch.py">'
     '<arg name="map" value="$(find-pkg-share own)/maps/hall.yaml"/></include></launch>',
     "yaml": "launch:\n- include:\n    file: bringup_launch.py\n"
@@ -158,12 +189,18 @@ MAPS = {
 }
 
 
+def package(folder: Path, **files: str) -> None:
+    """Make a package of some files, each empty where there is no text."""
+    for path, text in {"package.xml": "<package><name>own</name></package>", **files}.items():
+        (folder / "own" / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / "own" / path).write_text(text)
+
+
 def test_the_map_of_an_included_file_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "own").mkdir()
-    (tmp_path / "own" / "package.xml").write_text("<package><name>own</name></package>")
+    package(tmp_path, **{"maps/hall.yaml": ""})
     for end, text in MAPS.items():
         (tmp_path / "own" / f"a.launch.{end}").write_text(text)
         read = readings([f"own/a.launch.{end}"], "robot.urdf", ())
@@ -176,15 +213,63 @@ def test_the_map_of_an_included_file_is_named(
 def test_arguments_of_included_files_are_followed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """What the file has by itself (10.0) does not count: the other one starts it."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "own" / "launch").mkdir(parents=True)
-    (tmp_path / "own" / "package.xml").write_text("<package><name>own</name></package>")
-    paths = ["own/launch/ekf.launch.py", "own/launch/all.launch.py"]
-    for path, text in zip(paths, (INCLUDED, INCLUDES), strict=True):
-        Path(path).write_text(text)
-    read = readings(paths, "robot.urdf", ())
+    given = "/**: {ros__parameters: {a: 1}}\n"
+    made = {f"config/{it}.yaml": given for it in ("ekf", "slam", "other")}
+    both = {"ekf": program(INCLUDED), "all": program(INCLUDES)}
+    package(tmp_path, **made, **{f"launch/{name}.launch.py": it for name, it in both.items()})
+    read = readings([f"own/launch/{it}.launch.py" for it in both], "robot.urdf", ())
     assert given_by_launch(read, ["robot_localization"], "jazzy") == Launched(RATE, ())
-    assert {"own/config/ekf.yaml", "own/config/slam.yaml"} <= files_given(read).keys()
+    given_files = files_given(read, [f"own/{it}" for it in made])
+    assert given_files == {
+        "own/config/ekf.yaml": {"", "robot_localization"},
+        "own/config/slam.yaml": {""},
+    }
+
+
+ONE = "; Node(package='a', executable='b')"
+BAD = {
+    "an argument": ("Node(package='a', executable=LaunchConfiguration('ip'))", "'ip' is not set"),
+    "it writes": (f"x = open('FOLDER/b', 'w'){ONE}", "give --trust"),
+    "it asks the network": (f"x = __import__('socket').socket(){ONE}", "give --trust"),
+    "it raises": (f"x = 1 / 0{ONE}", "ZeroDivisionError"),
+    "it includes itself": ("IncludeLaunchDescription('FOLDER/a.launch.py')", "without an end"),
+    "it ends": (f"x = exit(){ONE}", "it ends itself"),
+    "it waits": (f"x = __import__('time').sleep(99){ONE}", "took more than 2 s"),
+}
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_what_cannot_be_read_of_a_launch_file_is_a_line(
+    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the others have counts, and nothing is written."""
+    text, said = BAD[kind]
+    if kind == "it waits":
+        monkeypatch.setattr("multibot_rewrite.fleet.proposal.given_by_launch._SECONDS", 2.0)
+    for name, one in (
+        ("a", text.replace("FOLDER", str(tmp_path))),
+        ("c", f"{NODE}parameters=[{{'frequency': 30.0}}])"),
+    ):
+        (tmp_path / f"{name}.launch.py").write_text(program(one))
+    paths = [str(tmp_path / f"{it}.launch.py") for it in "ac"]
+    read = readings(paths, "robot.urdf", ())
+    ((file, _, why),) = not_read(read)
+    assert file == paths[0] and said in why
+    assert given_by_launch(read, ["robot_localization"], "jazzy").values == RATE
+    assert not (tmp_path / "b").exists()
+
+
+def test_a_program_of_a_launch_file_is_not_started(tmp_path: Path) -> None:
+    """Its output is empty, and what the file starts besides is read."""
+    made = tmp_path / "made"
+    touch = f"os.system('touch {made}'); subprocess.check_call(['touch', {str(made)!r}])"
+    lines = f"import os, subprocess; {touch}\n"
+    file = tmp_path / "a.launch.py"
+    file.write_text(lines + program("Node(package='acme', executable='wheels.py')"))
+    found = started_elsewhere(readings([str(file)], "robot.urdf", ()), [], "jazzy")
+    assert [it for _, _, it in found] == ["wheels.py (acme)"] and not made.exists()
 
 
 IMU = "imu_filter_madgwick"
@@ -195,12 +280,13 @@ STARTED = [
     (f"{OWN}; {OWN}", ["wheels.py (acme)"]),
     (FILTER.format("remappings=[('/imu/data', '/imu/out'), ('/tf', 'tf')]"),
      ["imu_filter (imu_filter_madgwick imu_filter_madgwick_node): /imu/data:=/imu/out"]),
-    ("ComposableNode(package='acme', plugin='acme::Wheels')", ["acme::Wheels (acme)"]),
-    ("LifecycleNode(package='acme', executable='base', name='b')", ["b (acme base)"]),
+    ("LoadComposableNodes(target_container='c', composable_node_descriptions=["
+     "ComposableNode(package='acme', plugin='acme::Wheels')])", ["acme::Wheels (acme)"]),
+    ("LifecycleNode(package='acme', executable='base', name='b', namespace='')", ["b (acme base)"]),
     ("Node(package='tf2_ros', executable='static_transform_publisher')",
      ["static_transform_publisher (tf2_ros)"]),
     # Its program is not plain; it may be anything.
-    ("Node(package='acme', executable=program())", []),
+    ("Node(package='acme', executable=Command('program'))", []),
     # What the fleet has by its stack, every fleet has, only looks, or is no node of a robot.
     (EKF + ")", []), (NODE + "name='second')", []),
     ("Node(package='robot_state_publisher', executable='robot_state_publisher')", []),
@@ -215,7 +301,7 @@ def test_the_nodes_that_launch_files_start_and_a_fleet_does_not(
     text: str, started: list[str], tmp_path: Path
 ) -> None:
     file = tmp_path / "a.launch.py"
-    file.write_text(f"\n{text}\n")
+    file.write_text(program(text))
     read = readings([str(file)], "robot.urdf", ("robot.urdf",))
     found = started_elsewhere(read, ["robot_localization"], "jazzy")
     assert found == tuple((str(file), 2, it) for it in started)

@@ -9,6 +9,7 @@ import signal
 from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.child import audit, landlock, seccomp
 from multibot_rewrite.description.sources.child.frames import (
     AUDIT,
@@ -21,22 +22,32 @@ from multibot_rewrite.description.sources.child.system import undumpable
 
 # Beyond what the process has when it starts.
 MOST_MEMORY = 2 * 2**30
+# Of a process that may write files: bytes of one of them, and files that are open.
+_LONGEST, _MOST_OPEN = 2**26, 256
 
 
-def put_up(wanted: Collection[str], seconds: float) -> list[str]:
-    """Put up those fences, for good; the names of those that this system has."""
+class Files(NamedTuple):
+    """Files and folders that a process may read below, and those that it may write below."""
+
+    readable: Collection[str]
+    writable: Collection[str]
+
+
+def put_up(wanted: Collection[str], seconds: float, files: Files | None = None) -> list[str]:
+    """Put up those fences, for good; the names of those that this system has. Without ``files`` none
+    can be opened."""
     memory = _memory()
     ways: Mapping[str, Callable[[], bool]] = {
-        LIMITS: lambda: limit(seconds, memory),
-        LANDLOCK: landlock.enclose,
-        SECCOMP: seccomp.enclose,
+        LIMITS: lambda: limit(seconds, memory, files is not None),
+        LANDLOCK: lambda: landlock.enclose(*(files or ())),
+        SECCOMP: lambda: seccomp.enclose(files is not None),
         AUDIT: audit.enclose,
     }
     return [name for name in FENCES if name in wanted and ways[name]()]
 
 
-def limit(seconds: float, memory: int) -> bool:
-    """Bounds of time and memory; no new file, process, or byte in a file."""
+def limit(seconds: float, memory: int, files: bool = False) -> bool:
+    """Bounds of time and memory; no new process, and without ``files`` no new file or byte in one."""
     undumpable()
     signal.setitimer(signal.ITIMER_REAL, seconds)
     whole = int(seconds) + 1
@@ -44,9 +55,9 @@ def limit(seconds: float, memory: int) -> bool:
         "RLIMIT_CPU": whole,
         "RLIMIT_AS": memory + MOST_MEMORY,
         "RLIMIT_CORE": 0,
-        "RLIMIT_FSIZE": 0,
+        "RLIMIT_FSIZE": _LONGEST if files else 0,
         "RLIMIT_NPROC": 0,
-        "RLIMIT_NOFILE": 0,
+        "RLIMIT_NOFILE": _MOST_OPEN if files else 0,
     }
     for name, most in bounds.items():
         kind = getattr(resource, name, None)

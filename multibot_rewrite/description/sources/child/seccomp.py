@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """seccomp: the kernel refuses this process every system call but a few.
 
-What is left computes, asks for memory, and reads and writes what is open. Sources: Linux,
+What is left computes, asks for memory, and reads and writes what is open. Where Landlock says which
+files may be opened, so do the calls that open files and folders. Sources: Linux,
 Documentation/userspace-api/seccomp_filter.rst, arch/x86/entry/syscalls/syscall_64.tbl,
 include/uapi/asm-generic/unistd.h.
 """
@@ -23,19 +24,33 @@ _SET_SECCOMP, _MODE_FILTER = 22, 2
 _LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _ANSWER = 0x20, 0x15, 0x35, 0x45, 0x06
 _KILL, _ALLOW, _REFUSE = 0x80000000, 0x7FFF0000, 0x00050000 | errno.EPERM
 # Offsets in the record of a call: its number, the architecture, the low half of the third argument.
-_NUMBER, _ARCHITECTURE, _THIRD = 0, 4, 32
+_NUMBER, _ARCHITECTURE, _SECOND, _THIRD = 0, 4, 24, 32
 _PROT_EXEC = 4
 # Numbers from here on are the other interface (x32) of the same processor.
 _X32 = 0x40000000
 
 
+# Flags of openat: to write, and to cut the file off, which older versions of Landlock let through.
+_WRITING, _CUTTING = os.O_WRONLY | os.O_RDWR, os.O_TRUNC
+# What may be asked of an open file by ioctl and fcntl: that no other program gets it, and a second
+# number for it. Who gets signals for it is asked in the same way.
+_ASKED = ((0x5451,), (0, 1, 2, 3, 1030))
+
+
 class Machine(NamedTuple):
-    """The audit number of an architecture; its calls that are allowed, and those that are if they
-    make no memory executable."""
+    """The audit number of an architecture; its calls that are allowed, those that are if they make no
+    memory executable, those for files, openat, ioctl and fcntl."""
 
     audit: int
     calls: tuple[int, ...]
     memory: tuple[int, ...]
+    files: tuple[int, ...]
+    opens: int
+    asks: tuple[int, int]
+
+
+def _listed(numbers: str) -> tuple[int, ...]:
+    return tuple(map(int, numbers.split()))
 
 
 _NUMBERS = {
@@ -45,11 +60,26 @@ _NUMBERS = {
     "x86_64": "0 1 3 8 11 12 13 14 15 24 25 28 39 60 96 131 186 202 219 228 231 318",
     "aarch64": "63 64 57 62 215 214 134 135 139 124 216 233 172 93 169 132 178 98 128 113 94 278",
 }
-# The number of the architecture; mmap and mprotect.
-_KINDS = {"x86_64": (0xC000003E, (9, 10)), "aarch64": (0xC00000B7, (222, 226))}
+_FILES = {
+    # stat fstat lstat pread64 pwrite64 readv writev access dup nanosleep uname fsync fdatasync
+    # ftruncate getdents getcwd chdir rename mkdir rmdir unlink readlink getrusage sysinfo times
+    # getuid getgid geteuid getegid getppid sched_getaffinity getdents64 clock_getres
+    # clock_nanosleep mkdirat newfstatat unlinkat renameat readlinkat faccessat renameat2 statx
+    # faccessat2
+    "x86_64": "4 5 6 17 18 19 20 21 32 35 63 74 75 77 78 79 80 82 83 84 87 89 98 99 100 102 104 107 108"
+    " 110 204 217 229 230 258 262 263 264 267 269 316 332 439",
+    # The same but for those that only older processors have.
+    "aarch64": "80 67 68 65 66 23 101 160 82 83 46 17 49 165 179 153 174 176 175 177 173 123 61 114 115"
+    " 34 79 35 38 78 48 276 291 439",
+}
+# The number of the architecture; mmap and mprotect; openat; ioctl and fcntl.
+_KINDS: Mapping[str, tuple[int, tuple[int, int], int, tuple[int, int]]] = {
+    "x86_64": (0xC000003E, (9, 10), 257, (16, 72)),
+    "aarch64": (0xC00000B7, (222, 226), 56, (29, 25)),
+}
 MACHINES: Mapping[str, Machine] = {
-    name: Machine(audit, tuple(map(int, _NUMBERS[name].split())), memory)
-    for name, (audit, memory) in _KINDS.items()
+    name: Machine(audit, _listed(_NUMBERS[name]), memory, _listed(_FILES[name]), opens, asks)
+    for name, (audit, memory, opens, asks) in _KINDS.items()
 }
 
 
@@ -57,19 +87,21 @@ class _Program(ctypes.Structure):
     _fields_ = (("length", ctypes.c_ushort), ("filter", ctypes.c_char_p))
 
 
-def enclose() -> bool:
-    """Refuse all other calls from now on; False where that is not possible."""
+def enclose(files: bool = False) -> bool:
+    """Refuse all other calls from now on, but for those of ``files`` where they are asked for; False
+    where that is not possible."""
     machine = MACHINES.get(os.uname().machine)
     if machine is None or struct.calcsize("P") != 8 or not no_new_privileges():
         return False
-    program = filter_program(machine)
+    program = filter_program(machine, files)
     record = _Program(len(program) // 8, program)
     return control(_SET_SECCOMP, _MODE_FILTER, ctypes.byref(record), 0, 0)
 
 
 @cache
-def filter_program(machine: Machine) -> bytes:
-    """The filter as the kernel reads it: eight bytes an instruction."""
+def filter_program(machine: Machine, files: bool = False) -> bytes:
+    """The filter as the kernel reads it: eight bytes an instruction. With ``files`` libraries can be
+    loaded as well: they may be those of Python's modules."""
     steps = [
         (_LOAD, 0, 0, _ARCHITECTURE),
         (_EQUAL, 1, 0, machine.audit),
@@ -78,9 +110,10 @@ def filter_program(machine: Machine) -> bytes:
         (_AT_LEAST, 0, 1, _X32),
         (_ANSWER, 0, 0, _KILL),
     ]
-    for number in machine.calls:
+    more = (*machine.files, *machine.memory) if files else ()
+    for number in (*machine.calls, *more):
         steps += [(_EQUAL, 0, 1, number), (_ANSWER, 0, 0, _ALLOW)]
-    for number in machine.memory:
+    for number in () if files else machine.memory:
         steps += [
             (_EQUAL, 0, 4, number),
             (_LOAD, 0, 0, _THIRD),
@@ -88,5 +121,18 @@ def filter_program(machine: Machine) -> bytes:
             (_ANSWER, 0, 0, _ALLOW),
             (_ANSWER, 0, 0, _REFUSE),
         ]
+    if files:
+        steps += [
+            (_EQUAL, 0, 5, machine.opens),
+            (_LOAD, 0, 0, _THIRD),
+            (_ANY_BIT, 1, 0, _WRITING),
+            (_ANY_BIT, 1, 0, _CUTTING),
+            (_ANSWER, 0, 0, _ALLOW),
+            (_ANSWER, 0, 0, _REFUSE),
+        ]
+        for number, words in zip(machine.asks, _ASKED, strict=True):
+            steps += [(_EQUAL, 0, len(words) + 3, number), (_LOAD, 0, 0, _SECOND)]
+            steps += [(_EQUAL, len(words) - at, 0, word) for at, word in enumerate(words)]
+            steps += [(_ANSWER, 0, 0, _REFUSE), (_ANSWER, 0, 0, _ALLOW)]
     steps.append((_ANSWER, 0, 0, _REFUSE))
     return b"".join(struct.pack("=HBBI", *step) for step in steps)

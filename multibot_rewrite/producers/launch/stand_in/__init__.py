@@ -86,6 +86,11 @@ def standing_in(**more: Mapping[str, Any]) -> Iterator[None]:
         sys.modules.update(before)
 
 
+def is_stood_in() -> bool:
+    """Does ``import launch`` find the stand-in?"""
+    return sys.modules.get("launch") is not None and not hasattr(sys.modules["launch"], "__file__")
+
+
 def _all(more: Mapping[str, Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
     found: dict[str, Mapping[str, Any]] = {**contents(), **more}
     return {name: found[package] for name, package in inside().items()} | found

@@ -16,6 +16,9 @@ from typing import Any
 from multibot_rewrite.producers.launch.stand_in.frontend import description_in
 from multibot_rewrite.producers.launch.stand_in.values import Kept, LaunchContext, Text, text_of
 
+# Launch files within each other; one that includes itself would have no end.
+_DEEPEST = 25
+
 
 class Action(Kept):
     """An action; its condition decides whether it is executed."""
@@ -203,6 +206,8 @@ class IncludeLaunchDescription(Action):
         self.launch_arguments = tuple(self.launch_arguments or ())
 
     def execute(self, context: LaunchContext) -> list[Any]:
+        if context.depth > _DEEPEST:
+            raise RecursionError
         source = self.launch_description_source
         description = source.get_launch_description(context)
         path = os.path.abspath(source.location)
@@ -244,7 +249,7 @@ def _declare(
     above: tuple[IncludeLaunchDescription, ...],
     found: dict[str, Declared],
 ) -> None:
-    for it in entities:
+    for it in entities if len(above) < _DEEPEST else ():
         if isinstance(it, ResetLaunchConfigurations):
             return
         if isinstance(it, DeclareLaunchArgument):

@@ -82,6 +82,11 @@ class LaunchContext:
         return {key: it for kept in (self._globals, *self._locals) for key, it in kept.items()}
 
     @property
+    def depth(self) -> int:
+        """How many launch files are within each other."""
+        return len(self._locals)
+
+    @property
     def locals(self) -> Any:
         return SimpleNamespace(**self.get_locals_as_dict())
 
@@ -161,6 +166,8 @@ def _configuration(it: Any, context: LaunchContext) -> str:
 
 def _variable(it: Any, context: LaunchContext) -> str:
     name = text_of(context, it.name)
+    if name not in context.environment:
+        os.environ.get(name)  # raises for one that is set and hidden
     return _found(context, context.environment, name, it.default_value, "environment variable")
 
 
