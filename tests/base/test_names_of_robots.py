@@ -7,6 +7,7 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import (
+    SEPARATORS,
     Affix,
     Naming,
     is_keyword,
@@ -51,7 +52,7 @@ def test_the_usual_policy_and_its_words() -> None:
     assert make_naming() == make_naming("postfix", "postfix", "postfix")
     assert make_naming("L4", "prefix").topics == "prefix"
     assert make_naming("L1", topics="postfix").topics == "postfix"
-    own = make_naming("L4", shared_frames=["/depot/"], shared_topics=["/a"])
+    own = make_naming("L4", shared_frames=["/depot/"], shared_topics=["/a/"])
     assert (own.shared_frames, own.shared_topics) == ({"depot"}, {"a"})
 
 
@@ -78,6 +79,10 @@ def test_a_frame_has_the_separator_of_a_link() -> None:
          "in layout frame-prefix nodes put robot1/ before frames: use affix: prefix"),
         ({"layout": "L5", "separators": {"frame": "_"}},
          "in layout frame-prefix nodes put robot1/ before frames: use frame=/"),
+        ({"layout": "L5", "separators": {"link": "_"}},
+         "in layout frame-prefix nodes put robot1/ before frames: use frame=/"),
+        ({"separators": {"jiont": "_"}}, "separator kind 'jiont' is not known, use one of"
+         f" {', '.join(SEPARATORS)}; did you mean 'joint'?"),
     ],
 )  # fmt: skip
 def test_a_policy_that_is_none_is_said(words: dict[str, object], said: str) -> None:
@@ -118,6 +123,13 @@ AFTER, BEFORE, L2, L1 = (
         (L2, "namespace", "a", False, "r/a"), (L2, "namespace", "", False, "r"),
         (L2, "namespace", "/", False, "/r"), (L2, "namespace", "${a}", False, "${a}"),
         (AFTER, "namespace", "/a", False, "/a"),
+        # The kinds of a description, and what is everybody's.
+        (AFTER, "frame", "odom", False, "odom/r"), (AFTER, "hardware", "s", False, "s_r"),
+        (AFTER, "model", "rover", False, "rover_r"), (AFTER, "link", "a b", False, "a b/r"),
+        (AFTER, "link", "", False, "/r"), (AFTER, "link", "world", False, "world"),
+        (AFTER, "topic", "clock", False, "clock"), (AFTER, "topic", "", False, ""),
+        (AFTER, "topic", "{n}/scan", False, "{n}/scan"), (L1, "topic", "/tf", False, "/r/tf"),
+        (AFTER, "topic", "$(env N)/scan", False, "$(env N)/scan"),
     ],
 )  # fmt: skip
 def test_a_name_for_a_robot(naming: Naming, kind: str, text: str, reached: bool, new: str) -> None:
@@ -163,7 +175,15 @@ def test_topics_of_a_world(topic: str, it_is: bool) -> None:
 
 @pytest.mark.parametrize(
     ("text", "it_is"),
-    [("__model__", True), ("____", True), ("___", False), ("__a", False), ("a__", False)],
+    [
+        ("__model__", True),
+        ("____", True),
+        ("___", False),
+        ("__a", False),
+        ("a__", False),
+        ("__model", False),
+        ("_model_", False),
+    ],
 )
 def test_words_that_sdf_reserves(text: str, it_is: bool) -> None:
     assert is_keyword(text) is it_is
@@ -176,7 +196,10 @@ def test_robots_whose_names_may_meet() -> None:
     assert overlap(make_naming("L2"), ["left", "left_b", "b"]) == [
         ("left_b", "b", "_"), ("left_b", "left", "_"),
     ]  # fmt: skip
-    assert overlap(make_naming("L4"), ["b", "leftb"]) == []
+    assert overlap(make_naming("L4"), ["b", "leftb", "left_B", "b"]) == []
+    assert overlap(make_naming("L4"), ["x_y_z", "z", "y_z"]) == [
+        ("x_y_z", "y_z", "_"), ("x_y_z", "z", "_"), ("y_z", "z", "_"),
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["box", "/box", "box/", "x"])

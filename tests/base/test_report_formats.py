@@ -179,9 +179,12 @@ def test_markdown(monkeypatch: pytest.MonkeyPatch) -> None:
         f"\n#### c.urdf\n\n{HEAD}|  | note | MB101 bad-name | is odd |\n"
     )
     assert rendered("markdown", [], REPORT) == "**multibot lint**: no findings in 2 files\n"
+    one_file = REPORT._replace(files=("a.urdf",))
+    assert rendered("markdown", [], one_file) == "**multibot lint**: no findings in 1 file\n"
     marked = NOTED._replace(message="a_b|c*<d>")
     assert r"| a\_b\|c\*\<d\> |" in rendered("markdown", [marked], REPORT)
     text = rendered("markdown", [NOTED] * 3, REPORT)
+    assert text.startswith("**multibot lint**: 3 notes in 2 files\n")
     monkeypatch.setattr(in_markdown, "ROOM", len(text))
     assert rendered("markdown", [NOTED] * 3, REPORT) == text
     monkeypatch.setattr(in_markdown, "ROOM", len(text) - 1)
@@ -276,6 +279,8 @@ def test_sarif_of_a_graph_and_of_files_elsewhere(folder: Path) -> None:
     # A file that is another one by now is not mended.
     gone = IN_FILE._replace(edits=(Edit(0, 5, b"x", None),))
     assert "fixes" not in json.loads(rendered("sarif", [gone], REPORT))["runs"][0]["results"][0]
+    lost = NOTED._replace(edits=(Edit(0, 0, b"x", None),))
+    assert "fixes" not in json.loads(rendered("sarif", [lost], REPORT))["runs"][0]["results"][0]
     whole = IN_FILE._replace(edits=(Edit(0, 4, b"x", None),), hint="", calls=("m:1: a[b]\\",))
     (result,) = json.loads(rendered("sarif", [whole], REPORT))["runs"][0]["results"]
     assert result["fixes"][0]["description"] == {"text": "is 100% bad"}

@@ -41,6 +41,8 @@ from multibot_rewrite.knowledge.parameters import built_in_nodes, load_known_nod
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.lint import catalogue
 
+INTERFACES = ("command_interfaces", "state_interfaces", "interfaces")
+
 
 def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jazzy") -> str:
     """What becomes of one line of a node's section; the last line is never an inserted one."""
@@ -76,6 +78,9 @@ def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jaz
         (L2, "<robot_namespace>/amcl_x", "/robot1/amcl_x"),
         (L2, "<area>/amcl_x", "<area>/amcl_x"),
         (L2, '"planner_server"', '"/robot1/planner_server"'),
+        # Gazebo is everybody's.
+        (L2, "gazebo", "gazebo"),
+        (L4, "/gazebo", "/gazebo"),
     ],
 )
 def test_a_section_is_put_under_the_nodes_full_name(
@@ -83,24 +88,6 @@ def test_a_section_is_put_under_the_nodes_full_name(
 ) -> None:
     text, _ = made(section(old, "x: 1"), policy)
     assert text.splitlines()[0] == f"{new}:"
-
-
-@pytest.mark.parametrize(
-    ("policy", "first", "second"),
-    [
-        (L2, "/robot1/local_costmap", "local_costmap"),
-        (L4, "/robot1/local_costmap", "local_costmap"),
-        (L4, "/front", "front_robot1"),
-    ],
-)
-def test_nested_sections_change_at_their_first_key_or_at_their_last(
-    policy: tuple[str, str], first: str, second: str
-) -> None:
-    """A costmap keeps its name: its code sets it (nav2_costmap_2d costmap_2d_ros.cpp)."""
-    key = "front" if "front" in first else "local_costmap"
-    source = f"{key}:\n  {key}:\n    ros__parameters:\n      robot_base_frame: map\n"
-    lines = made(source, policy)[0].splitlines()
-    assert lines[:2] == [f"{first}:", f"  {second}:"]
 
 
 def test_one_key_may_hold_several_sections() -> None:
@@ -138,32 +125,6 @@ def test_rcl_would_find_every_section() -> None:
 def test_a_controllers_section_has_the_one_key_that_the_spawner_looks_for() -> None:
     text, _ = made(section("diff_drive_controller", "publish_rate: 1.0"))
     assert "/robot1/diff_drive_controller" in yaml.safe_load(text)
-
-
-@pytest.mark.parametrize(
-    ("name", "code"),
-    [
-        ("robot7/amcl", "MB883"),
-        ("/robot7/local_costmap/local_costmap", "MB883"),
-        ("/robot7/**", "MB883"),
-        ("abb/driver", "MB883"),
-        ("bad-name", "MB312"),
-        ("1node", "MB312"),
-        ("robot*", "MB312"),
-        ("<area>", "MB105"),
-    ],
-)
-def test_a_section_with_a_doubtful_name_is_reported(name: str, code: str) -> None:
-    assert code in codes(made(section(name, "x: 1"))[1])
-
-
-def test_a_slash_above_a_node_is_the_root_namespace() -> None:
-    """As rcl_yaml_param_parser reads it: the node is /amcl; a slash alone is no node."""
-    text, findings = made("/:\n  amcl:\n    ros__parameters: {base_frame_id: base_link}\n", L2)
-    assert text.splitlines()[:2] == ["/robot1:", "  amcl:"]
-    assert "r1/base_link" in text
-    assert not {"MB883", "MB312"} & set(codes(findings))
-    assert "MB312" in codes(made("/:\n  ros__parameters: {a: 1}\n")[1])
 
 
 @pytest.mark.parametrize("key", ["robot1", "/robot1", "robot1/", "/"])
@@ -236,20 +197,6 @@ def test_a_node_for_all_robots_keeps_its_section() -> None:
     assert codes(findings_of(companion)).count("MB886") == 1
 
 
-@pytest.mark.parametrize("name", ["amcl", "/**/amcl"])
-def test_a_topic_that_the_nodes_rules_move_stays_in_a_wildcard_section_too(name: str) -> None:
-    """The rule ``scan:=scan/robot1`` of amcl finds no topic that was renamed in its file already."""
-    assert value(name, "scan_topic: scan", L4) == "scan_topic: scan"
-    assert value(name.replace("amcl", "ekf_filter_node"), "odom0: odom", L4) == "odom0: odom/robot1"
-
-
-def test_a_wildcard_behind_an_exact_section_wins() -> None:
-    exact, wild = section("amcl", "alpha1: 0.1"), section("/**", "alpha1: 0.2")
-    assert "MB867" in codes(made(exact + wild)[1])
-    assert "MB867" not in codes(made(wild + exact)[1])
-    assert "MB867" not in codes(made(exact + section("/**/other", "alpha1: 0.2"))[1])
-
-
 def test_a_repeated_section_is_rewritten_twice() -> None:
     text, findings = made(section("amcl", "scan_topic: /a") + section("amcl", "map_topic: /m"))
     assert text.count("/robot1/amcl:") == 2
@@ -309,6 +256,48 @@ def test_a_repeated_key_is_rewritten_twice() -> None:
         (L2, "camera", "camera_name: front", "camera_name: r1/front"),
         (L2, "motion_primitives_forward_controller", 'tf_prefix: ""', 'tf_prefix: "r1_"'),
         (L2, "move_group", "ros_control_namespace: /", "ros_control_namespace: /robot1"),
+        # Chained controllers keep their names in a namespace.
+        (L2, "joint_trajectory_controller", "command_joints: [pid/elbow, a/b/elbow]",
+         "command_joints: [pid/r1_elbow, a/b/r1_elbow]"),
+        (L4, "joint_trajectory_controller", "command_joints: [pid/elbow, a/b/elbow]",
+         "command_joints: [pid_robot1/elbow_r1, a_robot1/b_robot1/elbow_r1]"),
+        # The mask's topic is resolved by whoever reads it.
+        (L2, "costmap_filter_info_server", "mask_topic: keepout_mask",
+         "mask_topic: /robot1/keepout_mask"),
+        # The topics of a server in its robot's namespace are full names.
+        (L4, "controller_server", "odom_topic: wheel_odom", "odom_topic: /wheel_odom/robot1"),
+        (L4, "controller_server", "odom_topic: /wheel_odom", "odom_topic: /wheel_odom/robot1"),
+        (L4, "bt_navigator", "odom_topic: wheel_odom", "odom_topic: wheel_odom/robot1"),
+        # lifecycle_manager.cpp makes a Bond with the name, the node with its get_name().
+        (L4, "lifecycle_manager_navigation", "node_names: [controller_server, smoother_server]",
+         "node_names: [controller_server, smoother_server_robot1]"),
+        # In L4 the table's rules move the default names, and all that nodes make of them: also
+        # those of a section with a wildcard.
+        (L4, "amcl", "scan_topic: scan", "scan_topic: scan"),
+        (L4, "/**/amcl", "scan_topic: scan", "scan_topic: scan"),
+        (L4, "ekf_filter_node", "odom0: odom", "odom0: odom/robot1"),
+        (L4, "/**/ekf_filter_node", "odom0: odom", "odom0: odom/robot1"),
+        (L4, "smoother_server", "costmap_topic: global_costmap/costmap_raw",
+         "costmap_topic: global_costmap/costmap_raw"),
+        (L4, "slam_toolbox", "scan_topic: /scan", "scan_topic: /scan"),
+        # A name below another node follows that node.
+        (L4, "other", "map_topic: map_server/x", "map_topic: map_server_robot1/x"),
+        (L2, "other", "map_topic: map_server/x", "map_topic: map_server/x"),
+        (L2, "joy_teleop", "walk.message_value.header-frame_id.value: base_link",
+         "walk.message_value.header-frame_id.value: r1/base_link"),
+        # What rcl reads as no string is no name.
+        *((L2, "joint_trajectory_controller", *[f"joints: [{word}]"] * 2)
+          for word in ("y", "n", "Y", "N", "yes", "on", "1", "1e-9", "1.0", "~", "null")),
+        (L2, "usb_cam", "camera_info_url: package://p/<robot_namespace>/camera.yaml",
+         'camera_info_url: "package://p/robot1/camera.yaml"'),
+        (L2, "v4l2_camera", "camera_info_url: package://p/<robot_namespace>/camera.yaml",
+         'camera_info_url: "package://p/robot1/camera.yaml"'),
+        (L2, "usb_cam", "camera_info_url: package://base_link/camera.yaml",
+         "camera_info_url: package://base_link/camera.yaml"),
+        # test_controller_spawner_with_interfaces.yaml of ros2_control; a known one has [position].
+        *((L2, "own_controller", f"{key}: [elbow/position, other/position]",
+           f"{key}: [r1_elbow/position, other/position]") for key in INTERFACES),
+        *((L2, "own_controller", *[f"{key}: [position]"] * 2) for key in INTERFACES),
     ],
 )  # fmt: skip
 def test_a_name_is_renamed_by_its_kind(
@@ -360,20 +349,6 @@ def test_keys_that_are_joints_are_renamed_nested_and_dotted(
     assert not codes(findings)
 
 
-@pytest.mark.parametrize(
-    ("policy", "new"),
-    [
-        (L2, "[pid/r1_elbow, a/b/r1_elbow]"),
-        (L4, "[pid_robot1/elbow_r1, a_robot1/b_robot1/elbow_r1]"),
-    ],
-)
-def test_chained_controllers_keep_their_names_in_a_namespace(
-    policy: tuple[str, str], new: str
-) -> None:
-    line = "command_joints: [pid/elbow, a/b/elbow]"
-    assert value("joint_trajectory_controller", line, policy) == f"command_joints: {new}"
-
-
 def test_a_controller_is_identified_by_its_type() -> None:
     manager = section(
         "controller_manager", "wheels:", "  type: diff_drive_controller/DiffDriveController"
@@ -402,17 +377,6 @@ def test_a_controller_with_a_section_in_any_namespace_gets_no_second_one(above: 
     manager = section(f"{above}controller_manager", "wheels_x:", f"  {kind}")
     text, _ = made(manager + section(f"{above}wheels_x", "a: 1"))
     assert len(yaml.safe_load(text)) == 2
-
-
-def test_a_section_is_identified_by_its_parameters() -> None:
-    lines = ("left_wheel_names: [left_wheel]", "right_wheel_names: [right_wheel]")
-    assert "tf_frame_prefix_enable: false" in made(section("rover_base", *lines))[0]
-
-
-@pytest.mark.parametrize("word", ["y", "n", "Y", "N", "yes", "on", "1", "1e-9", "1.0", "~", "null"])
-def test_what_rcl_reads_as_no_string_is_no_name(word: str) -> None:
-    source = section("joint_trajectory_controller", f"joints: [{word}]")
-    assert made(source)[0].endswith(f"joints: [{word}]\n")
 
 
 @pytest.mark.parametrize("word", ["y", "no", "1", "1e3"])
@@ -478,11 +442,6 @@ def test_a_source_without_a_topic_is_reported(
     assert bool(found) is told
 
 
-def test_the_mask_topic_is_resolved_by_whoever_reads_it() -> None:
-    line = "mask_topic: keepout_mask"
-    assert value("costmap_filter_info_server", line) == "mask_topic: /robot1/keepout_mask"
-
-
 @pytest.mark.parametrize("distro", ["jazzy", "kilted", "lyrical"])
 def test_a_costmap_reads_the_mask_topic_in_the_namespace_of_its_server(distro: str) -> None:
     """Layout postfix: layer.cpp joins a relative name with the namespace above the costmap."""
@@ -490,67 +449,11 @@ def test_a_costmap_reads_the_mask_topic_in_the_namespace_of_its_server(distro: s
     assert "mask_topic: /keepout_mask/robot1" in made(source, L4, distro)[0]
 
 
-@pytest.mark.parametrize(
-    ("line", "new"),
-    [
-        ("odom_topic: wheel_odom", "odom_topic: /wheel_odom/robot1"),
-        ("odom_topic: /wheel_odom", "odom_topic: /wheel_odom/robot1"),
-    ],
-)
-def test_topics_of_a_server_in_its_robots_namespace_are_full_names(line: str, new: str) -> None:
-    assert new in made(section("controller_server", line), L4)[0]
-    assert (
-        "odom_topic: wheel_odom/robot1"
-        in made(section("bt_navigator", "odom_topic: wheel_odom"), L4)[0]
-    )
-
-
-def test_a_lifecycle_manager_asks_by_the_name_that_is_the_id_of_the_bond() -> None:
-    """lifecycle_manager.cpp makes a Bond with the name, the node with its get_name()."""
-    line = "node_names: [controller_server, smoother_server]"
-    text, _ = made(section("lifecycle_manager_navigation", line), L4)
-    assert "node_names: [controller_server, smoother_server_robot1]" in text
-
-
-def test_a_topic_that_a_rule_moves_is_not_moved_twice() -> None:
-    """In L4 the table's rules move the default names, and all that nodes make of them."""
-    assert value("amcl", "scan_topic: scan", L4) == "scan_topic: scan"
-    line = "costmap_topic: global_costmap/costmap_raw"
-    assert value("smoother_server", line, L4) == line
-    assert value("slam_toolbox", "scan_topic: /scan", L4) == "scan_topic: /scan"
-
-
-def test_a_name_below_another_node_follows_that_node() -> None:
-    assert value("other", "map_topic: map_server/x", L4) == "map_topic: map_server_robot1/x"
-    assert value("other", "map_topic: map_server/x", L2) == "map_topic: map_server/x"
-
-
 def test_a_shared_topic_is_written_from_the_root() -> None:
     context = setting(L2, shared_topics=["/map"])
     source = section("amcl", "map_topic: map")
     companion = rewrite_params(read_yaml(source.encode(), "p"), context)
     assert "map_topic: /map\n" in fill_template(companion.template, "robot1", "r1")
-
-
-def test_an_invalid_topic_stays_and_is_reported() -> None:
-    text, findings = made(section("amcl", "scan_topic: 1st/scan"))
-    assert "scan_topic: 1st/scan" in text
-    assert "MB312" in codes(findings)
-
-
-@pytest.mark.parametrize(
-    ("line", "code"),
-    [
-        ('scan_topic: "scan "', "MB312"),
-        ('odom_frame_id: "odom "', "MB865"),
-        ('base_frame_id: "base link"', "MB865"),
-    ],
-)
-def test_a_name_with_white_space_stays_and_is_reported(line: str, code: str) -> None:
-    """Only tf takes it, for a frame that is the same for all robots."""
-    text, findings = made(section("amcl", line))
-    assert line in text
-    assert code in codes(findings)
 
 
 # ---------------------------------------------------------------- lines that are missing
@@ -579,15 +482,15 @@ def test_what_is_set_elsewhere_is_not_inserted(source: str) -> None:
     assert "multibot:" not in made(source)[0]
 
 
+def test_bare_frames_need_no_defaults() -> None:
+    assert "multibot:" not in made(section("amcl", "alpha1: 0.2"), L1)[0]
+
+
 def test_what_another_file_sets_is_not_inserted() -> None:
     other = read_yaml(section("amcl", "base_frame_id: base_link").encode(), "o.yaml")
     text, _ = made(section("amcl", "alpha1: 0.2"), beside=[other])
     assert "odom_frame_id: r1/odom" in text
     assert "base_frame_id" not in text
-
-
-def test_bare_frames_need_no_defaults() -> None:
-    assert "multibot:" not in made(section("amcl", "alpha1: 0.2"), L1)[0]
 
 
 @pytest.mark.parametrize("policy", [L1, L2, L3, L4])
@@ -673,45 +576,93 @@ def test_a_robot_without_a_file_gets_the_same_sections() -> None:
     assert all_sections(make_context(DECLARED, make_naming("L2"), [], "jazzy"), known, ()) == ""
 
 
-@pytest.mark.parametrize(
-    ("pattern", "full", "matches"),
-    [
-        ("/**/amcl", "/amcl", True),
-        ("/**/amcl", "/a/b/amcl", True),
-        ("/**", "/a/b/amcl", True),
-        ("/*/amcl", "/a/amcl", True),
-        ("/*/amcl", "/amcl", False),
-        ("/*/amcl", "/a/b/amcl", False),
-        ("/a.b", "/axb", False),
-        ("/*.b", "/axb", False),
-        ("amcl", "/amcl", True),
-        ("/a/amcl/", "/a/amcl", True),
-        ("/amcl", "/a/amcl", False),
-    ],
-)
-def test_what_a_wildcard_stands_for(pattern: str, full: str, matches: bool) -> None:
-    """One star is one word, two are any number of them, none too (rcl_yaml_param_parser)."""
-    assert is_for(pattern, full) == matches
-
-
 # ---------------------------------------------------------------- what is told
 
-
-@pytest.mark.parametrize("key", ["command_interfaces", "state_interfaces", "interfaces"])
-def test_interfaces_of_an_unknown_controller_are_renamed(key: str) -> None:
-    """test_controller_spawner_with_interfaces.yaml of ros2_control; a known one has [position]."""
-    text, findings = made(section("own_controller", f"{key}: [elbow/position, other/position]"))
-    assert f"{key}: [r1_elbow/position, other/position]" in text
-    assert codes(findings) == ["MB901", "MB854"]
-    assert "'other'" in findings[1].message
-    assert f"{key}: [position]" in made(section("own_controller", f"{key}: [position]"))[0]
+NESTED = "{0}:\n  {0}:\n    ros__parameters:\n      robot_base_frame: map\n"
+FRAMES = ("base_frame_id: base_link", "odom_frame_id: odom")
+POSITION = "/**/setpoint_position"
 
 
 @pytest.mark.parametrize(
-    "value", ["wrist/position", "elbow/", "elbow_x/position", "/scan/elbow", "imu_sensor/data"]
-)
-def test_what_is_no_interface_of_the_robot_is_not_reported(value: str) -> None:
-    assert made(section("other", f"what: [{value}]"))[1] == ()
+    ("policy", "source", "found"),
+    [
+        (L2, section("amcl", *FRAMES, "scan_topic: scan"), []),
+        (L2, section("robot7/amcl", "x: 1"), ["MB883"]),
+        (L2, section("/robot7/local_costmap/local_costmap", "x: 1"), ["MB883"]),
+        (L2, section("/robot7/**", "x: 1"), ["MB883"]),
+        (L2, section("abb/driver", "x: 1"), ["MB883"]),
+        (L2, section("bad-name", "x: 1"), ["MB312"]),
+        (L2, section("1node", "x: 1"), ["MB312"]),
+        (L2, section("robot*", "x: 1"), ["MB312"]),
+        (L2, section("<area>", "x: 1"), ["MB105"]),
+        # A slash above a node is the root's namespace, alone it is no node.
+        (L2, "/:\n  amcl:\n    ros__parameters: {base_frame_id: base_link}\n", []),
+        (L2, "/:\n  ros__parameters: {a: 1}\n", ["MB312"]),
+        # A wildcard behind an exact section wins.
+        (L2, section("amcl", "alpha1: 0.1") + section("/**", "alpha1: 0.2"), ["MB867"]),
+        (L2, section("/**", "alpha1: 0.2") + section("amcl", "alpha1: 0.1"), []),
+        (L2, section("amcl", "alpha1: 0.1") + section("/**/other", "alpha1: 0.2"), []),
+        *((L2, section("own_controller", f"{key}: [elbow/position, other/position]"),
+           ["MB901", "MB854"]) for key in INTERFACES),
+        # What is no interface of the robot.
+        *((L2, section("other", f"what: [{word}]"), []) for word in
+          ("wrist/position", "elbow/", "elbow_x/position", "/scan/elbow", "imu_sensor/data")),
+        # Nothing can be inserted, or decided.
+        (L2, section("diff_drive_controller", "tf_frame_prefix_enable: $(var p)"),
+         ["MB105", "MF116"]),
+        (L2, "smoother_server:\n  ros__parameters: !!map\n    x: 1\n", []),
+        (L2, "smoother_server:\n  ros__parameters:\n    ? x\n    : 1\n", ["MF124"]),
+        # A prefix cannot be a postfix.
+        (L4, section("camera", "x: 1"), ["MB422"]),
+        (L4, section("camera", "camera_name: front"), ["MB422"]),
+        # mavros px4_config.yaml: it has a camera that is no realsense.
+        (L4, section(POSITION, "mav_frame: LOCAL_NED") + section("/**/camera", "camera_name: eye"),
+         ["MB422"]),
+        (L4, section(POSITION, "mav_frame: LOCAL_NED")
+         + section("/**/camera", "frame_id: base_link"), []),
+        (L4, section(POSITION, "rate: 1.0") + section("/**/camera", "frame_id: base_link"),
+         ["MB422"]),
+        # mavros setpoint_position.cpp: mav_frame is one of MAV_FRAME.
+        (L2, section(POSITION, "mav_frame: LOCAL_NED"), []),
+        # Calibrations below a camera: spinnaker_camera_driver's node for several.
+        (L2, section("driver", "cam_0: {camerainfo_url: 'file:///a.yaml'}"), ["MB412"]),
+        (L2, section("driver", "cam_1.camerainfo_url: 'file:///a.yaml'"), ["MB412"]),
+        (L2, section("driver", "cam_1.camerainfo_url: ''"), []),
+    ],
+)  # fmt: skip
+def test_all_that_is_said_of_a_file(policy: tuple[str, str], source: str, found: list[str]) -> None:
+    assert codes(made(source, policy)[1]) == found
+
+
+@pytest.mark.parametrize(
+    ("policy", "source", "kept", "code"),
+    [
+        # Only tf takes a name with white space, for a frame that is the same for all robots.
+        (L2, section("amcl", 'scan_topic: "scan "'), 'scan_topic: "scan "', "MB312"),
+        (L2, section("amcl", 'odom_frame_id: "odom "'), 'odom_frame_id: "odom "', "MB865"),
+        (L2, section("amcl", 'base_frame_id: "base link"'), 'base_frame_id: "base link"', "MB865"),
+        (L2, section("amcl", "scan_topic: 1st/scan"), "scan_topic: 1st/scan", "MB312"),
+        (L4, section("camera", "camera_name: front"), "camera_name: front", "MB422"),
+        (L2, section(POSITION, "mav_frame: LOCAL_NED"), "mav_frame: LOCAL_NED", ""),
+        # As rcl_yaml_param_parser reads it: the node is /amcl.
+        (L2, "/:\n  amcl:\n    ros__parameters: {base_frame_id: base_link}\n",
+         "/robot1:\n  amcl:", ""),
+        (L2, "/:\n  amcl:\n    ros__parameters: {base_frame_id: base_link}\n", "r1/base_link", ""),
+        # A costmap keeps its name: its code sets it (nav2_costmap_2d costmap_2d_ros.cpp).
+        (L2, NESTED.format("local_costmap"), "/robot1/local_costmap:\n  local_costmap:", ""),
+        (L4, NESTED.format("local_costmap"), "/robot1/local_costmap:\n  local_costmap:", ""),
+        (L4, NESTED.format("front"), "/front:\n  front_robot1:", ""),
+        # It is known by its parameters.
+        (L2, section("rover_base", "left_wheel_names: [left_wheel]",
+                     "right_wheel_names: [right_wheel]"), "tf_frame_prefix_enable: false", ""),
+    ],
+)  # fmt: skip
+def test_what_is_in_the_text_and_said_of_it(
+    policy: tuple[str, str], source: str, kept: str, code: str
+) -> None:
+    text, findings = made(source, policy)
+    assert kept in text
+    assert not code or code in codes(findings)
 
 
 @pytest.mark.parametrize(
@@ -734,6 +685,10 @@ def test_what_is_no_interface_of_the_robot_is_not_reported(value: str) -> None:
         ("amcl", "scan_topic:", "MB868", "rcl rejects"),
         ("amcl", "base_frame_id: |\n      base_link", "MB876", "on one line"),
         ("amcl", "base_frame_id: >-\n      base_link", "MB876", "on one line"),
+        *(
+            ("own_controller", f"{key}: [elbow/position, other/position]", "MB854", "'other'")
+            for key in INTERFACES
+        ),
     ],
 )
 def test_mistakes_in_names_are_reported(node: str, line: str, code: str, words: str) -> None:
@@ -764,31 +719,6 @@ def test_a_topic_with_a_wrong_target_by_a_rule_is_reported() -> None:
     assert [it.message for it in found if it.code == "MF120"] == [
         "scan_topic: remap rules turn scan into /<robot>/scan"
     ]
-
-
-@pytest.mark.parametrize(
-    ("source", "code"),
-    [
-        (section("diff_drive_controller", "tf_frame_prefix_enable: $(var p)"), "MF116"),
-        ("smoother_server:\n  ros__parameters: !!map\n    x: 1\n", ""),
-        ("smoother_server:\n  ros__parameters:\n    ? x\n    : 1\n", "MF124"),
-    ],
-)
-def test_what_cannot_be_inserted_or_decided_is_reported(source: str, code: str) -> None:
-    found = codes(made(source)[1])
-    assert code in found if code else not found
-
-
-def test_a_prefix_cannot_be_a_postfix() -> None:
-    assert "MB422" in codes(made(section("camera", "x: 1"), L4)[1])
-    text, findings = made(section("camera", "camera_name: front"), L4)
-    assert "camera_name: front" in text
-    assert "MB422" in codes(findings)
-
-
-def test_an_ordinary_file_has_no_findings() -> None:
-    source = section("amcl", "base_frame_id: base_link", "odom_frame_id: odom", "scan_topic: scan")
-    assert made(source)[1] == ()
 
 
 # ---------------------------------------------------------------- files that are refused
@@ -995,22 +925,6 @@ def test_a_calibration_is_said_to_be_of_all_robots(node: str, url: str, shared: 
     assert not [it for it in made(text, own=("robot1",))[1] if it.code == "MB412"]
 
 
-def test_the_file_of_a_calibration_stays_and_may_be_in_the_robots_folder() -> None:
-    url = "camera_info_url: package://p/<robot_namespace>/camera.yaml"
-    for node in ("usb_cam", "v4l2_camera"):
-        assert '"package://p/robot1/camera.yaml"' in made(section(node, url))[0]
-    plain = "camera_info_url: package://base_link/camera.yaml"
-    assert plain in made(section("usb_cam", plain))[0]
-
-
-def test_a_calibration_below_a_camera_is_found() -> None:
-    """spinnaker_camera_driver's node for several cameras."""
-    text = section(
-        "driver", "cam_0: {camerainfo_url: 'file:///a.yaml'}", "cam_1.camerainfo_url: ''"
-    )
-    assert [it.line for it in made(text)[1] if it.code == "MB412"] == [3]
-
-
 # ---------------------------------------------------------------- nodes that are not known
 
 
@@ -1070,34 +984,6 @@ def test_a_word_that_begins_the_names_is_told(word: str, told: bool) -> None:
     assert [it.line for it in findings_of(companion) if "begins" in it.message] == [3] * told
 
 
-def test_gazebo_is_everybodys() -> None:
-    assert made(section("gazebo", "publish_rate: 100.0"), L2)[0].startswith("gazebo:")
-    assert made(section("/gazebo", "publish_rate: 100.0"), L4)[0].startswith("/gazebo:")
-
-
-def test_the_frame_of_a_message_of_joy_teleop() -> None:
-    line = "walk.message_value.header-frame_id.value: base_link"
-    assert value("joy_teleop", line).endswith(": r1/base_link")
-
-
-def test_a_frame_of_mavlink_is_no_frame_of_the_robot() -> None:
-    """mavros setpoint_position.cpp: ``mav_frame`` is one of MAV_FRAME."""
-    text, findings = made(section("/**/setpoint_position", "mav_frame: LOCAL_NED"), L2)
-    assert "mav_frame: LOCAL_NED" in text and not list(findings)
-
-
-@pytest.mark.parametrize(
-    ("beside", "line", "told"),
-    [("mav_frame: LOCAL_NED", "frame_id: base_link", False),
-     ("mav_frame: LOCAL_NED", "camera_name: eye", True),
-     ("rate: 1.0", "frame_id: base_link", True)],
-)  # fmt: skip
-def test_the_camera_of_mavros_is_no_realsense(beside: str, line: str, told: bool) -> None:
-    """mavros px4_config.yaml: ``/**/camera`` beside ``/**/setpoint_position``."""
-    text = section("/**/setpoint_position", beside) + section("/**/camera", line)
-    assert ("MB422" in codes(made(text, L4)[1])) == told
-
-
 @pytest.mark.parametrize(
     ("pattern", "full", "matches"),
     [
@@ -1108,8 +994,20 @@ def test_the_camera_of_mavros_is_no_realsense(beside: str, line: str, told: bool
         ("/a/*/**", "/a", False),
         ("/**/a/*", "/a/a", True),
         ("/**" + "/**/a" * 30 + "/b", "/a" * 3_000, False),
+        ("/**/amcl", "/amcl", True),
+        ("/**/amcl", "/a/b/amcl", True),
+        ("/**", "/a/b/amcl", True),
+        ("/*/amcl", "/a/amcl", True),
+        ("/*/amcl", "/amcl", False),
+        ("/*/amcl", "/a/b/amcl", False),
+        ("/a.b", "/axb", False),
+        ("/*.b", "/axb", False),
+        ("amcl", "/amcl", True),
+        ("/a/amcl/", "/a/amcl", True),
+        ("/amcl", "/a/amcl", False),
     ],
 )
-def test_several_wildcards_stand_for_any_share(pattern: str, full: str, matches: bool) -> None:
-    """The last one once took as many ways as thirty numbers up to 3,000 have orders."""
+def test_what_a_wildcard_stands_for(pattern: str, full: str, matches: bool) -> None:
+    """One star is one word, two are any number of them, none too (rcl_yaml_param_parser). Thirty of
+    them once took as many ways as thirty numbers up to 3,000 have orders."""
     assert is_for(pattern, full) == matches

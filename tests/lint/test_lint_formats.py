@@ -12,11 +12,9 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
-from urllib.parse import unquote_to_bytes
 
 import jsonschema
 import pytest
-from junitparser import Failure, JUnitXml
 from lxml import etree
 from markdown_it import MarkdownIt
 from no_workers import lint_in_this_process
@@ -24,7 +22,6 @@ from no_workers import lint_in_this_process
 from multibot_rewrite.base.findings import formats
 from multibot_rewrite.base.findings.finding import ERROR, LEVELS, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.formats import FORMATS, Report, text
-from multibot_rewrite.base.findings.formats.markdown import ROOM
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.registry import RULES
@@ -201,15 +198,6 @@ def test_text_holds_on_to_its_lines(nasty: Linted) -> None:
     assert "b\\udcff\\udcfe.urdf:" in printed
 
 
-def test_text_in_colour_is_the_same_text(nasty: Linted) -> None:
-    coloured = rendered("text", *nasty, colour=True)
-    assert coloured.count("\033[31m") == sum(it.level == ERROR for it in nasty.findings)
-    for mark in ("\033[31m", "\033[33m", "\033[36m", "\033[0m"):
-        assert mark in coloured
-        coloured = coloured.replace(mark, "")
-    assert coloured == rendered("text", *nasty)
-
-
 # json
 
 NUMBER = {"type": "integer", "minimum": 0}
@@ -273,35 +261,11 @@ def test_json_is_the_documented_object(linted: Linted) -> None:
         assert (it["message"], it["hint"]) == (finding.message, finding.hint)
 
 
-def test_the_release_is_a_property_of_json_and_sarif() -> None:
-    about = Report("lint", [], {}, "humble")
-    assert json.loads(formats.rendered("json", [], about))["distro"] == "humble"
-    (run,) = json.loads(formats.rendered("sarif", [], about))["runs"]
-    assert run["properties"] == {"distro": "humble"}
-
-
-def test_json_tells_of_macros_and_edits(nasty: Linted) -> None:
-    at = next(at for at, it in enumerate(nasty.findings) if it.calls)
-    nasty.findings[at] = nasty.findings[at]._replace(edits=(Edit(3, 5, "é".encode(), None),))
-    reported = report("json", nasty)["findings"][at]
-    assert reported["edits"] == [{"start": 3, "end": 5, "text": "é"}]
-    assert reported["calls"] == [
-        {"file": "arm.urdf.xacro", "line": 5, "macro": "wheel"},
-        {"file": "arm.urdf.xacro", "line": 8, "macro": "axle"},
-    ]
-
-
 def test_a_call_is_read_from_its_end() -> None:
     calls = ("a:3: b.xacro:5: wheel",)
     finding = Finding("MB501", ERROR, "m", "", "a", 1, 1, calls)
     (call,) = report("json", Linted([finding], []))["findings"][0]["calls"]
     assert call == {"file": "a:3: b.xacro", "line": 5, "macro": "wheel"}
-
-
-def test_json_has_no_lone_surrogate(nasty: Linted) -> None:
-    files = {it["file"] for it in report("json", nasty)["findings"]}
-    assert "b\\udcff\\udcfe.urdf" in files
-    assert "new\nline|`.urdf" in files
 
 
 # SARIF
@@ -391,36 +355,6 @@ def test_sarif_has_every_rule_with_its_words(nasty: Linted) -> None:
             assert all(word in reported for word in words)
 
 
-@pytest.mark.more
-def test_sarif_results_say_what_and_where(nasty: Linted) -> None:
-    (run,) = report("sarif", nasty)["runs"]
-    assert run["columnKind"] == "unicodeCodePoints"
-    for it, finding in zip(run["results"], nasty.findings, strict=True):
-        assert run["tool"]["driver"]["rules"][it["ruleIndex"]]["id"] == it["ruleId"] == finding.code
-        assert it["level"] == finding.level
-        assert it["message"]["text"].startswith(finding.message)
-        ((place,),) = (spot.values() for spot in it["locations"])
-        assert unquote_to_bytes(place["artifactLocation"]["uri"]) == os.fsencode(finding.file)
-        region = place["region"]
-        assert (region["startLine"], region["startColumn"]) == (finding.line, finding.column)
-
-
-@pytest.mark.more
-def test_sarif_links_to_the_calls_of_macros(nasty: Linted) -> None:
-    (it,) = (it for it in report("sarif", nasty)["runs"][0]["results"] if "relatedLocations" in it)
-    assert it["message"]["text"].endswith(" via [wheel](1), [axle](2)")
-    places = [place["physicalLocation"] for place in it["relatedLocations"]]
-    assert [place["id"] for place in it["relatedLocations"]] == [1, 2]
-    assert [place["region"]["startLine"] for place in places] == [5, 8]
-
-
-@pytest.mark.more
-def test_sarif_lists_the_files_that_were_linted(nasty: Linted) -> None:
-    (run,) = report("sarif", nasty)["runs"]
-    uris = [it["location"]["uri"] for it in run["artifacts"]]
-    assert [os.fsdecode(unquote_to_bytes(uri)) for uri in uris] == nasty.files
-
-
 def replaced(lines: list[str], region: dict[str, int], text: str) -> str:
     """The text with the characters of a region replaced, as SARIF counts them."""
     offsets = [
@@ -445,22 +379,6 @@ def test_a_sarif_fix_mends_as_the_edit_does(here: Path) -> None:
     inserted = replacement["insertedContent"]["text"]
     fixed = replaced(lines, replacement["deletedRegion"], inserted)
     assert fixed.encode() == source[: edit.start] + edit.before + source[edit.end :]
-
-
-@pytest.mark.parametrize(
-    ("content", "edit"),
-    [
-        pytest.param(None, Edit(0, 0, b"x", None), id="gone"),
-        pytest.param(b"short", Edit(0, 6, b"x", None), id="shorter"),
-    ],
-)
-def test_a_sarif_fix_of_a_file_that_changed_is_left_out(
-    content: bytes | None, edit: Edit, here: Path
-) -> None:
-    if content:
-        Path("a.urdf").write_bytes(content)
-    finding = Finding("MB501", ERROR, "m", "", "a.urdf", 1, 1, edits=(edit,))
-    assert "fixes" not in report("sarif", Linted([finding], []))["runs"][0]["results"][0]
 
 
 # paths
@@ -515,14 +433,6 @@ def test_a_fingerprint_survives_a_moved_line_and_another_path_to_it(here: Path) 
     assert prints(before) == prints(after)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("change", [{"code": "MB502"}, {"file": "b"}, {"message": "n"}])
-def test_a_fingerprint_is_of_code_file_and_message(change: dict[str, str], here: Path) -> None:
-    finding = Finding("MB501", ERROR, "m", "", "a", 1, 1)
-    other = finding._replace(**change)  # type: ignore[arg-type]
-    assert prints(Linted([finding], [])) != prints(Linted([other], []))
-
-
 # GitHub
 
 UNESCAPES = (("%0D", "\r"), ("%0A", "\n"), ("%3A", ":"), ("%2C", ","), ("%25", "%"))
@@ -559,13 +469,6 @@ def test_github_reads_back_every_finding(linted: Linted) -> None:
         }
 
 
-def test_github_escapes_are_as_documented() -> None:
-    finding = Finding("MB501", ERROR, "50%: a,b", "", "a%,:.urdf", 1, 1)
-    assert rendered("github", [finding], []) == (
-        "::error file=a%25%2C%3A.urdf,line=1,col=1,title=MB501 several-roots::50%25: a,b\n"
-    )
-
-
 # GitLab
 
 GITLAB = list_of(
@@ -589,30 +492,6 @@ def test_gitlab_is_a_code_quality_report(linted: Linted) -> None:
 
 
 # JUnit
-
-
-def test_junit_has_a_suite_a_file_and_a_case_a_finding(linted: Linted) -> None:
-    suites = list(JUnitXml.fromstring(rendered("junit", *linted).encode()))
-    assert len(suites) == len(linted.files)
-    cases = [case for suite in suites for case in suite]
-    clean = len(set(linted.files) - {it.file for it in linted.findings})
-    assert len(cases) == len(linted.findings) + clean
-    failed = [case for case in cases if any(isinstance(it, Failure) for it in case.result)]
-    assert len(failed) == sum(it.level != NOTE for it in linted.findings)
-
-
-def test_no_two_junit_cases_have_one_name(linted: Linted) -> None:
-    twice = linted._replace(findings=[*linted.findings, *linted.findings])
-    suites = list(JUnitXml.fromstring(rendered("junit", *twice).encode()))
-    names = Counter((case.classname, case.name) for suite in suites for case in suite)
-    assert set(names.values()) <= {1}
-
-
-def test_junit_counts_are_those_of_its_cases(linted: Linted) -> None:
-    root = etree.fromstring(rendered("junit", *linted).encode())
-    for element in (root, *root.iter("testsuite")):
-        assert int(element.get("tests")) == len(list(element.iter("testcase")))
-        assert int(element.get("failures")) == len(list(element.iter("failure")))
 
 
 def test_junit_cases_hold_the_whole_text(nasty: Linted) -> None:
@@ -665,31 +544,6 @@ def test_markdown_has_a_heading_a_file_with_findings(nasty: Linted) -> None:
     heads = [tokens[at + 1].children for at, it in enumerate(tokens) if it.type == "heading_open"]
     shown = ["".join(it.content for it in head or ()) for head in heads]
     assert shown == [text.one_line(file) for file in nasty.files if file != "clean.urdf"]
-
-
-@pytest.mark.more
-def test_markdown_of_many_findings_fits_into_a_comment(thousand: Linted) -> None:
-    markdown = rendered("markdown", *thousand)
-    assert ROOM - 1000 < len(markdown) < ROOM + 100
-    shown = len(cells(markdown))
-    assert 0 < shown < 1000
-    assert f"\n{1000 - shown} more are not shown here.\n" in markdown
-    assert markdown.startswith("**urdf-lint**: 1000 errors in 1 file\n")
-
-
-@pytest.mark.parametrize(
-    ("levels", "files", "line"),
-    [
-        ("", 0, "no findings in 0 files"),
-        ("", 1, "no findings in 1 file"),
-        ("E", 1, "1 error in 1 file"),
-        ("NEEWN", 3, "2 errors, 1 warning, 2 notes in 3 files"),
-    ],
-)
-def test_markdown_begins_with_the_counts(levels: str, files: int, line: str) -> None:
-    names = {"E": ERROR, "W": WARNING, "N": NOTE}
-    found = [Finding("MB501", names[it], "m", "", "a", 1, 1) for it in levels]
-    assert rendered("markdown", found, ["a"] * files).startswith(f"**urdf-lint**: {line}\n")
 
 
 # Codes that no rule has

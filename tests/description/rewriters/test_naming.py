@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from itertools import product
-from typing import Any
 
 import pytest
 from hypothesis import assume, given
@@ -22,7 +20,6 @@ from multibot_rewrite.base.naming import (
     Layout,
     Naming,
     affix,
-    is_keyword,
     make_naming,
     overlap,
     removal,
@@ -115,120 +112,6 @@ def test_nothing_is_removed_that_was_not_put_there(kind: str, text: str) -> None
         assert spelled(naming, kind, text[: span[0]] + text[span[1] :]) == text
 
 
-@pytest.mark.parametrize(
-    ("kind", "text", "postfix", "prefix"),
-    [
-        ("link", "base", "base/r1", "r1/base"),
-        ("link", "/base", "/base/r1", "/r1/base"),
-        ("link", "a b", "a b/r1", "r1/a b"),
-        ("frame", "odom", "odom/r1", "r1/odom"),
-        ("joint", "lift", "lift_r1", "r1_lift"),
-        ("sensor", "imu", "imu_r1", "r1_imu"),
-        ("transmission", "t", "t_r1", "r1_t"),
-        ("actuator", "m", "m_r1", "r1_m"),
-        ("hardware", "sys", "sys_r1", "r1_sys"),
-        ("gpio", "io", "io_r1", "r1_io"),
-        ("model", "rover", "rover_r1", "r1_rover"),
-        ("node", "drive", "drive_r1", "r1_drive"),
-        ("stem", "cam", "cam_r1", "r1_cam"),
-        ("topic", "scan", "scan/r1", "r1/scan"),
-        ("topic", "/scan", "/scan/r1", "/r1/scan"),
-        ("topic", "a/scan", "a/scan/r1", "r1/a/scan"),
-        ("service", "/reset", "/reset/r1", "/r1/reset"),
-        ("link", "world", "world", "world"),
-        ("frame", "/map", "/map", "/map"),
-        ("joint", "world", "world_r1", "r1_world"),
-        ("topic", "/clock", "/clock", "/clock"),
-        ("topic", "clock", "clock", "clock"),
-        ("topic", "~/scan", "~/scan", "~/scan"),
-        ("topic", "scan/", "scan/", "scan/"),
-        ("topic", "/", "/", "/"),
-        ("topic", "", "", ""),
-        ("topic", "{ns}/scan", "{ns}/scan", "{ns}/scan"),
-        ("topic", "$(env NS)/scan", "$(env NS)/scan", "$(env NS)/scan"),
-        ("topic", "tf", "tf/r1", "r1/tf"),
-        ("subtopic", "image", "image", "image"),
-        ("subtopic", "/image", "/image/r1", "/r1/image"),
-        ("namespace", "/front", "/front", "/front"),
-        ("link", "", "/r1", "r1/"),
-    ],
-)
-def test_a_name_under_the_default_layout(kind: str, text: str, postfix: str, prefix: str) -> None:
-    assert spelled(make_naming(), kind, text) == postfix
-    assert spelled(make_naming(affix="prefix"), kind, text) == prefix
-
-
-@pytest.mark.parametrize(
-    ("layout", "link", "joint", "node", "topic", "tf", "namespace"),
-    [
-        ("L1", "base", "lift", "drive", "r1/scan", "/r1/tf", "/r1/front"),
-        ("L2", "base/r1", "lift_r1", "drive", "r1/scan", "/tf", "/r1/front"),
-        ("L3", "base/r1", "lift_r1", "drive", "r1/scan", "/r1/tf", "/r1/front"),
-        ("L4", "base/r1", "lift_r1", "drive_r1", "scan/r1", "/tf/r1", "/front"),
-    ],
-)
-@pytest.mark.parametrize("long", [False, True], ids=["short", "long"])
-def test_the_four_layouts(
-    layout: str, long: bool, link: str, joint: str, node: str, topic: str, tf: str, namespace: str
-) -> None:
-    word = next(item.name for item in LAYOUTS if item.short == layout) if long else layout
-    naming = make_naming(word)
-    assert naming.layout.short == layout
-    given_ = {"link": "base", "joint": "lift", "node": "drive", "topic": "scan"}
-    new = [spelled(naming, kind, text) for kind, text in given_.items()]
-    assert new == [link, joint, node, topic]
-    assert spelled(naming, "topic", "/tf") == tf
-    assert spelled(naming, "namespace", "/front") == namespace
-
-
-@pytest.mark.parametrize(
-    ("topics", "namespaced", "text", "expected"),
-    [
-        ("postfix", False, "scan", "scan/r1"),
-        ("postfix", True, "scan", "scan/r1"),
-        ("postfix", True, "/scan", "/scan/r1"),
-        ("prefix", False, "scan", "r1/scan"),
-        ("prefix", True, "/a/scan", "/r1/a/scan"),
-        ("namespace", True, "scan", "scan"),
-        ("namespace", False, "scan", "r1/scan"),
-        ("namespace", True, "/scan", "/r1/scan"),
-        ("namespace", False, "/scan", "/r1/scan"),
-        ("namespace", True, "~/scan", "~/scan"),
-        ("namespace", False, "scan/", "scan/"),
-        ("namespace", True, "/{n}/scan", "/{n}/scan"),
-    ],
-)
-def test_topic_strategies(topics: str, namespaced: bool, text: str, expected: str) -> None:
-    assert spelled(make_naming(topics=topics), "topic", text, namespaced) == expected
-
-
-@pytest.mark.parametrize("text", ["tf", "/tf", "tf_static", "/tf_static"])
-def test_one_tf_for_all_stays(text: str) -> None:
-    assert spelled(make_naming("L2"), "topic", text) == text
-    assert spelled(make_naming("L3"), "topic", text) != text
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("", "r1"),
-        ("/", "/r1"),
-        ("front", "r1/front"),
-        ("/front", "/r1/front"),
-        ("/a/b", "/r1/a/b"),
-        ("${ns}", "${ns}"),
-    ],
-)
-def test_the_robot_comes_first_in_a_namespace(text: str, expected: str) -> None:
-    assert spelled(make_naming("L1"), "namespace", text) == expected
-    assert spelled(make_naming("L1", "prefix"), "namespace", text) == expected
-
-
-@pytest.mark.parametrize(("namespaced", "expected"), [(True, "cam"), (False, "cam_r1")])
-def test_a_stem_stays_where_a_namespace_reaches_it(namespaced: bool, expected: str) -> None:
-    assert spelled(make_naming("L1"), "stem", "cam", namespaced) == expected
-
-
 def test_frames_named_at_run_time_leave_links_and_joints() -> None:
     naming = make_naming("frame-prefix")
     kinds = ("frame", "link", "joint", "sensor", "hardware", "model")
@@ -237,43 +120,6 @@ def test_frames_named_at_run_time_leave_links_and_joints() -> None:
     assert spelled(naming, "topic", "/scan") == "/r1/scan"
     assert spelled(naming, "topic", "/tf") == "/tf"
     assert spelled(naming, "frame", "map") == "map"
-
-
-@pytest.mark.parametrize(
-    ("options", "hint"),
-    [
-        ({"affix": "postfix"}, "use affix: prefix"),
-        ({"separators": {"frame": "_"}}, "use frame=/"),
-        ({"separators": {"link": "_"}}, "use frame=/"),
-    ],
-)
-def test_nodes_name_frames_in_one_way(options: dict[str, Any], hint: str) -> None:
-    with pytest.raises(UsageError, match=hint):
-        make_naming("frame-prefix", **options)
-
-
-def test_shared_names_are_a_choice() -> None:
-    naming = make_naming(shared_frames=["/odom"], shared_topics=["points/"])
-    frames = [spelled(naming, "frame", text) for text in ("odom", "world")]
-    topics = [spelled(naming, "topic", text) for text in ("/points", "/clock")]
-    assert frames + topics == ["odom", "world/r1", "/points", "/clock/r1"]
-
-
-@pytest.mark.parametrize(
-    ("given_", "link", "frame"),
-    [
-        ({"link": "_"}, "x_r1", "x_r1"),
-        ({"frame": "_"}, "x/r1", "x_r1"),
-        ({"link": "_", "frame": "."}, "x_r1", "x.r1"),
-        ({"link": "__"}, "x__r1", "x__r1"),
-        ({}, "x/r1", "x/r1"),
-    ],
-)
-def test_a_link_separator_carries_the_frames(
-    given_: Mapping[str, str], link: str, frame: str
-) -> None:
-    naming = make_naming(separators=given_)
-    assert [spelled(naming, kind, "x") for kind in ("link", "frame")] == [link, frame]
 
 
 @pytest.mark.parametrize("mark", ["", "//", " ", "x", "a_", ":", "::", "~", "\n", "<", "_//", "é"])
@@ -300,52 +146,6 @@ def test_a_separator_ros_does_not_allow_is_refused(kind: str, mark: str) -> None
         make_naming(separators={kind: mark})
 
 
-@pytest.mark.parametrize(
-    ("options", "parts"),
-    [
-        ({"layout": "L9"}, ["layout 'L9'", *(layout.name for layout in LAYOUTS)]),
-        ({"layout": "tf_per_robot"}, ["did you mean 'tf-per-robot'?"]),
-        ({"layout": "bothe"}, ["did you mean 'both'?"]),
-        ({"affix": "postfx"}, ["affix 'postfx'", "did you mean 'postfix'?"]),
-        ({"affix": "prefx"}, ["did you mean 'prefix'?"]),
-        ({"affix": "namespace"}, ["affix 'namespace'", "postfix, prefix"]),
-        ({"affix": ""}, ["affix ''"]),
-        ({"topics": "namespaces"}, ["topics 'namespaces'", "did you mean 'namespace'?"]),
-        ({"separators": {"jiont": "_"}}, ["separator kind 'jiont'", "did you mean 'joint'?"]),
-    ],
-)
-def test_an_unknown_word_proposes_the_nearest(
-    options: dict[str, object], parts: Iterable[str]
-) -> None:
-    with pytest.raises(UsageError) as caught:
-        make_naming(**options)  # type: ignore[arg-type]
-    for part in parts:
-        assert part in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("side", "robots", "pairs"),
-    [
-        ("postfix", ["left_b", "b"], [("left_b", "b", "_")]),
-        ("postfix", ["b", "a", "left_b"], [("left_b", "b", "_")]),
-        ("postfix", ["b_left", "b"], []),
-        ("postfix", ["leftb", "b"], []),
-        ("postfix", ["left_B", "b"], []),
-        ("postfix", ["robot1", "robot11", "robot2"], []),
-        ("postfix", ["b", "b"], []),
-        ("postfix", ["x_y_z", "z", "y_z"], [
-            ("x_y_z", "y_z", "_"), ("x_y_z", "z", "_"), ("y_z", "z", "_"),
-        ]),
-        ("prefix", ["b_left", "b"], [("b_left", "b", "_")]),
-        ("prefix", ["left_b", "b"], []),
-    ],
-)  # fmt: skip
-def test_robots_that_can_meet(
-    side: str, robots: list[str], pairs: list[tuple[str, str, str]]
-) -> None:
-    assert overlap(make_naming(affix=side), robots) == pairs
-
-
 @pytest.mark.slow
 @given(
     st.sampled_from((POSTFIX, PREFIX)),
@@ -367,12 +167,3 @@ def test_topics_that_meet_on_the_other_side_are_seen() -> None:
     assert affix(naming, "topic", "x").spell("x", "b_left") == "b_left_x"  # type: ignore[union-attr]
     assert affix(naming, "topic", "left_x").spell("left_x", "b") == "b_left_x"  # type: ignore[union-attr]
     assert ("b_left", "b", "_") in overlap(naming, ["b_left", "b"])
-
-
-@pytest.mark.parametrize(
-    ("name", "keyword"),
-    [("__model__", 1), ("____", 1), ("___", 0), ("__model", 0), ("model__", 0), ("_model_", 0)],
-)
-def test_words_that_sdf_reserves(name: str, keyword: int) -> None:
-    """sdformat Utils.cc, isReservedName."""
-    assert is_keyword(name) == bool(keyword)
