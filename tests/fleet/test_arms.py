@@ -12,12 +12,11 @@ from pathlib import Path
 
 import pytest
 import yaml
+from fleet_folder import planned_fleet
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.spelling.way_checks import running_nodes
 
 MOCK = "mock_components/GenericSystem"
@@ -111,7 +110,7 @@ def built(
     }
     for name, text in files.items():
         (folder / name).write_text(text)
-    made = make_outputs(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {})))
+    made = make_outputs(planned_fleet(folder / "fleet.yaml"))
     return {it.path: it.data.decode() for it in made.files}, list(made.findings)
 
 
@@ -316,7 +315,7 @@ def test_a_part_that_is_called_as_a_robot_is_no_name_of_it(finger: str, tmp_path
     fleet = "layout: both\naffix: prefix\ndescription: arm.urdf.xacro\nsrdf: arm.srdf.xacro\n"
     more = f"arguments: {{finger: '{finger}'}}\n{TWO}"
     (tmp_path / "fleet.yaml").write_text(fleet + more)
-    made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+    made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
     files = {it.path: it.data.decode() for it in made.files}
     names = {"left_finger": "right/left_finger", "{robot}_left_finger": "right_left_finger"}
     for path in ("right/arm.urdf", "right/arm.srdf"):
@@ -342,7 +341,7 @@ def test_a_listener_in_a_controllers_code_has_the_rules_of_its_process(tmp_path:
     # One spawner loads it, with what its own node needs.
     lines = [it for it in files["commands.md"].splitlines() if "spawner force_mode" in it]
     assert len(lines) == 1
-    table = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})).fleet.table
+    table = planned_fleet(tmp_path / "fleet.yaml").fleet.table
     (node,) = (it for _, it in running_nodes(table) if it.node == "force_mode_controller")
     assert set(node.process_rules) >= {("/tf", "tf"), ("/tf_static", "tf_static")}
 

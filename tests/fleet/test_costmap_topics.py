@@ -11,12 +11,11 @@ import os
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 from paths import ROOT
 
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 OUT = "/anywhere/out"
 EXAMPLE = ROOT / "examples" / "namespace_and_prefix"
@@ -48,7 +47,7 @@ def built(folder: Path, layout: str, distro: str, topic: str) -> list[str]:
     (folder / "params.yaml").write_text(PARAMS.replace("TOPIC", topic))
     fleet = folder / "fleet.yaml"
     fleet.write_text(FLEET.replace("LAYOUT", layout).replace("DISTRO", distro))
-    plan = plan_fleet(read_fleet(str(fleet), "", os.environ))
+    plan = planned_fleet(fleet, around=os.environ)
     made = make_outputs(plan, OUT)
     assert [str(it) for it in read_back(plan, made, OUT)] == []
     name = next(

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 import yaml
 from beside import findings_of
+from fleet_folder import planned_fleet
 from paths import CORPUS
 
 from multibot_rewrite.base.model import InputError
@@ -21,8 +22,7 @@ from multibot_rewrite.base.rosnames import check_full_name, check_topic_name
 from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import shell_line
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.bridge_outputs import fill_bridge, merge_bridges
@@ -222,7 +222,7 @@ def test_topics_of_a_model_of_sdf_follow_it_too(
     side = "postfix" if layout == "L4" else "prefix"
     robots = "robots:\n- {name: r1}\n- {name: r2, namespace: two, model: second}\n"
     Path("fleet.yaml").write_text(f"layout: {layout}\naffix: {side}\ndescription: x1.sdf\n{robots}")
-    plan = plan_fleet(read_fleet("fleet.yaml", "", {}))
+    plan = planned_fleet("fleet.yaml")
     made = plan.fleet
     carried, _ = generated_bridge(made.inventories, made.naming, made.models)
     found = [it.gz for it in carried if it.gz.startswith("/model/")]
@@ -332,7 +332,7 @@ def fleet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
             "  - {name: r1, description: rover.urdf, pose: {x: 1.0, y: -0.5, yaw: 1.57}}\n"
             "  - {name: r2, description: rover.urdf, namespace: two, model: second}\n"
         )
-        return plan_fleet(read_fleet("fleet.yaml", "", {}))
+        return planned_fleet("fleet.yaml")
 
     return make
 

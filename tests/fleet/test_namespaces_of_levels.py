@@ -6,12 +6,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 from nav2_graphs import ROVER, healthy, moved, with_end, without_node
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.json import from_yaml
@@ -35,7 +35,7 @@ def planned(folder: Path, layout: str) -> System:
     """The plan of the fleet, through its file."""
     file = folder / "fleet.yaml"
     file.write_text(FLEET.format(layout=layout, rover=ROVER))
-    plan = expected(plan_fleet(read_fleet(str(file), "", {})).fleet)
+    plan = expected(planned_fleet(file).fleet)
     return from_yaml(to_yaml(plan).encode(), "plan.yaml")
 
 
@@ -83,7 +83,7 @@ def test_a_robot_above_another_one_keeps_its_names(tmp_path: Path) -> None:
     file = tmp_path / "fleet.yaml"
     text = FLEET.format(layout="both", rover=ROVER)
     file.write_text(text.replace("name: guard", "name: guard, namespace: fleet_a"))
-    plan = expected(plan_fleet(read_fleet(str(file), "", {})).fleet)
+    plan = expected(planned_fleet(file).fleet)
     graph = with_end(healthy(plan), "/fleet_a/robot1/gripper", "/fleet_a/robot1/open")
     assert [(it.code, it.robot) for it in check(plan, graph)] == [("MG108", "fleet_a/robot1")]
 

@@ -11,14 +11,13 @@ from pathlib import Path
 
 import pytest
 import yaml
+from fleet_folder import planned_fleet
 from lxml import etree
 from named_ends import named_ends
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.producers.evidence.hardware import exported
@@ -90,7 +89,7 @@ def made(folder: Path, arm: str, controllers: str, layout: str, more: str = "") 
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\n{more}description: arm.urdf\n"
         "robots: [{name: left}, {name: right}]\ncompanions: {params: [controllers.yaml]}\n"
     )
-    return make_outputs(plan_fleet(read_fleet(str(fleet), "", {})))
+    return make_outputs(planned_fleet(fleet))
 
 
 def found(outputs: Outputs, *codes: str) -> list[tuple[str, str]]:
@@ -262,7 +261,7 @@ def nodes_with(folder: Path, arm: str, layout: str, more: str = "") -> Table:
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\n{more}description: arm.urdf\n"
         "robots: [{name: left}, {name: right}]\n"
     )
-    return plan_fleet(read_fleet(str(fleet), "", {})).fleet.table
+    return planned_fleet(fleet).fleet.table
 
 
 MANAGED = "stack: ros2_control\ncompanions: {params: [controllers.yaml]}\n"

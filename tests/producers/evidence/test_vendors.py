@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import pytest
 from controller_types import registered
+from fleet_folder import planned_fleet
 from vendor_sources import (
     VARIABLE,
     installed_sources,
@@ -20,8 +21,6 @@ from vendor_sources import (
 
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -124,7 +123,7 @@ def test_claimed_interfaces_are_exported(
         f"arguments: {{{arguments}}}\nrobots: [{{name: left}}, {{name: right}}]\n"
         "companions: {params: [controllers.yaml]}\nstack: ros2_control\n"
     )
-    outputs = make_outputs(plan_fleet(read_fleet(str(fleet), "", {})))
+    outputs = make_outputs(planned_fleet(fleet))
     found = [it for it in outputs.findings if it.code in ("MB229", "MF802")]
     lacking = {it.message.partition(" is ")[0].partition(" of ")[0] for it in found}
     # Which of them there are differs from branch to branch.
