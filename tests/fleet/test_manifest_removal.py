@@ -45,11 +45,6 @@ def stale(out: Path, capsys: pytest.CaptureFixture[str]) -> set[str]:
 
 
 @pytest.mark.slow
-def test_what_is_no_longer_made_is_left_over(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert stale(out, capsys) == {"robot2/rover.urdf", "robot2/params.yaml"}
-
-
-@pytest.mark.slow
 def test_what_is_gone_already_is_not_left_over(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
