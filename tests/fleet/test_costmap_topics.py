@@ -17,6 +17,8 @@ from paths import ROOT
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
 
+pytestmark = pytest.mark.slow
+
 OUT = "/anywhere/out"
 EXAMPLE = ROOT / "examples" / "namespace_and_prefix"
 FLEET = f"""\
@@ -59,7 +61,6 @@ def built(folder: Path, layout: str, distro: str, topic: str) -> list[str]:
     return [it.name for it in ends if it.role == "subscribes"]
 
 
-@pytest.mark.more
 @pytest.mark.sample(12)
 @pytest.mark.parametrize("topic", ["scan", "/scan"])
 @pytest.mark.parametrize("distro", ["humble", "jazzy", "kilted"])
@@ -72,7 +73,6 @@ def test_a_source_is_the_robots_scan_in_every_release(
     assert scan in built(tmp_path, layout, distro, topic)
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("distro", ["jazzy", "kilted"])
 def test_the_info_of_a_binary_filter_too(tmp_path: Path, distro: str) -> None:

@@ -21,12 +21,13 @@ from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.system.records import System
 
+pytestmark = pytest.mark.slow
+
 # Rules about names: one node under another topic, of another robot, or not there. In random files two
 # nodes of other types may have one topic, which is told, and is right.
 NAMES = ("MG101", "MG102", "MG310", "MG311", "MG320", "MG321", "MG301", "MG307", "MG108")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_a_graph_as_planned_has_no_finding(seed: int, tmp_path: Path) -> None:
     draw = random.Random(seed)
@@ -73,7 +74,6 @@ def bridged(folder: Path, layout: str, affix: str, row: str, read: str) -> tuple
     return expected(closed_plan(plan)), [f"/{it.lstrip('/')}" for it in scans]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("seed", range(3))
 def test_who_met_the_bridge_before_meets_it_after(layout: str, seed: int, tmp_path: Path) -> None:
@@ -124,7 +124,6 @@ def _controllers(draw: random.Random) -> Iterator[str]:
         yield f"    command_interfaces: [{both[0]}]\n    state_interfaces: [{both[1]}]\n"
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("seed", range(8))
 def test_the_lint_finds_what_a_plan_finds(seed: int, tmp_path: Path) -> None:

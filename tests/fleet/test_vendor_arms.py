@@ -32,6 +32,8 @@ from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.launch import missing as without_launch
 
+pytestmark = pytest.mark.slow
+
 UR = "Universal_Robots_ROS2_Driver"
 FR3 = "franka_ros2/franka_fr3_moveit_config"
 XARM = "xarm_ros2/xarm_moveit_config"
@@ -215,7 +217,6 @@ def _is_own(name: str, way: str) -> bool:
     return way == OWN or (way == FILLED and name != "gen3")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("way", [OWN, FILLED, BARE])
 @pytest.mark.parametrize("name", ARMS)
 def test_the_description_is_that_of_the_vendors_prefix(
@@ -235,7 +236,6 @@ def test_the_description_is_that_of_the_vendors_prefix(
     assert not [it for it in findings if it.level == "error"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("way", [OWN, FILLED, BARE])
 @pytest.mark.parametrize("name", ARMS)
 def test_moveits_files_and_parameters_fit_the_vendors_description(
@@ -269,7 +269,6 @@ def _joints(data: Any) -> set[str]:
     return set(words)
 
 
-@pytest.mark.slow
 def test_the_controllers_of_ur_are_those_that_its_launch_file_fills(
     build: Build, sources: Path
 ) -> None:
@@ -287,7 +286,6 @@ def test_the_controllers_of_ur_are_those_that_its_launch_file_fills(
         assert kept == {f"/left/{node}": values for node, values in vendor.items()}
 
 
-@pytest.mark.slow
 def test_both_srdfs_of_xarm_are_its_own_for_two_arms(build: Build, sources: Path) -> None:
     arm = ARMS["xarm6"]
     path = f"{XARM}/srdf/dual_xarm.srdf.xacro"
@@ -298,7 +296,6 @@ def test_both_srdfs_of_xarm_are_its_own_for_two_arms(build: Build, sources: Path
     assert _texts(made) == _texts(vendor)
 
 
-@pytest.mark.slow
 def test_both_descriptions_of_xarm_are_its_own_for_two_arms(build: Build, sources: Path) -> None:
     arm = ARMS["xarm6"]
     path = "xarm_ros2/xarm_description/urdf/dual_xarm_device.urdf.xacro"
@@ -329,7 +326,6 @@ print(json.dumps(made.to_moveit_configs().to_dict()))
 """
 
 
-@pytest.mark.slow
 def test_a_cell_of_xarms_is_the_vendors_own_for_two_arms(sources: Path, tmp_path: Path) -> None:
     """Its DualMoveItConfigsBuilder makes the parameters of its one move_group."""
     lacking = without_launch()
@@ -372,7 +368,6 @@ def _of_the_vendors_builder(sources: Path) -> Any:
     return json.loads(done.stdout.splitlines()[-1])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("page", ["ur", "franka", "xarm", "kinova"])
 def test_a_cell_of_a_pages_arms_is_one_robot_for_referees(
     page: str, sources: Path, tmp_path: Path
@@ -411,7 +406,6 @@ def _texts(elements: Any) -> list[str]:
     return sorted(re.sub(r">\s+<", "><", etree.tostring(it).decode()).strip() for it in parts)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("layout", "count"), [("both", 2), ("postfix", 3), ("tf-per-robot", 3)])
 @pytest.mark.parametrize("name", ARMS)
 def test_another_layout_and_three_robots_have_no_false_findings(
@@ -435,7 +429,6 @@ def test_another_layout_and_three_robots_have_no_false_findings(
         assert set(solvers) <= groups
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("page", ["ur", "franka", "xarm", "kinova"])
 def test_the_fleet_of_a_page_is_built(page: str, sources: Path, tmp_path: Path) -> None:
     text = text_of(page)

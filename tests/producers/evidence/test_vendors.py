@@ -23,6 +23,8 @@ from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 
+pytestmark = pytest.mark.slow
+
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 # What the vendors' launch files replace, for one robot without a prefix.
 FILLED = {"$(var tf_prefix)": "", "<namespace>/": "", "<static_covariance_orientation>": "[0.0]"}
@@ -102,7 +104,6 @@ ROBOTS = {
 sources = pytest.fixture(scope="module")(installed_sources)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_claimed_interfaces_are_exported(
@@ -133,7 +134,6 @@ def test_claimed_interfaces_are_exported(
     assert [it for it in outputs.findings if it.level == "error"] == []
 
 
-@pytest.mark.slow
 def test_every_registered_controller_is_known(sources: Path) -> None:
     found = {it for folder in packages_below(sources).values() for it in registered(folder)}
     assert found
