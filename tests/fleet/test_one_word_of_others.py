@@ -13,11 +13,11 @@ from fleet_folder import planned_fleet
 from graph_cases import as_planned
 from random_parameters import LAYOUTS, RELEASE, STACKS, planned, random_file
 
+from multibot_rewrite import compare
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.system.records import System
 
@@ -34,7 +34,7 @@ def test_a_graph_as_planned_has_no_finding(seed: int, tmp_path: Path) -> None:
     text, stack = random_file(draw), draw.choice(STACKS)
     made, _ = planned(tmp_path, text, LAYOUTS[seed % 4], draw.choice(("prefix", "postfix")), stack)
     plan = expected(made.fleet)
-    found = [it for it in check(plan, as_planned(plan)) if it.code in NAMES]
+    found = [it for it in compare(plan, as_planned(plan)) if it.code in NAMES]
     assert found == [], (stack, text)
 
 

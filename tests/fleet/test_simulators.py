@@ -11,14 +11,13 @@ from fleet_folder import planned_fleet
 from nav2_graphs import environment
 from plans import optional, own
 
-from multibot_rewrite import InputError
+from multibot_rewrite import InputError, compare
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import RUNS, Node, System
 
 # A drive that is a ROS node, and a sensor whose topic a bridge has to carry.
@@ -150,7 +149,7 @@ def test_no_bridge_is_missing_for_a_real_robot(tmp_path: Path) -> None:
     seen = System(tuple(Node(it, it) for it in state), (), (), environment())
 
     def codes(more: str) -> set[str]:
-        return {it.code for it in check(expectation(tmp_path, more), seen)}
+        return {it.code for it in compare(expectation(tmp_path, more), seen)}
 
     simulated, real = codes("simulator: gazebo\n"), codes("simulator: none\n")
     assert simulated - real == {"MG101", "MG126"} and real <= simulated

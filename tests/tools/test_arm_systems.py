@@ -21,13 +21,13 @@ from lxml import etree
 from nav2_graphs import environment
 from paths import FIXTURES
 
+from multibot_rewrite import compare
 from multibot_rewrite.base.rosnames import bind, resolve_bound
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.of_runs import parsed
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System
@@ -172,7 +172,7 @@ def _tree(description: bytes, publisher: Run) -> Iterator[Edge]:
 
 
 def told(plan: FleetPlan, seen: System, release: str = "") -> list[str]:
-    found = (it for it in check(expected(plan.fleet), seen) if (release, *it.names) not in WAITS)
+    found = (it for it in compare(expected(plan.fleet), seen) if (release, *it.names) not in WAITS)
     return [f"{it.code} {it.node} {it.message}" for it in found]
 
 

@@ -14,7 +14,6 @@ from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, names_its_package
 from multibot_rewrite.fleet.proposal.companions import srdf_of
-from multibot_rewrite.fleet.proposal.given_by_launch import readings, started_elsewhere
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.searching import Found, search, text_of
 
@@ -130,48 +129,11 @@ def test_an_rviz_config_of_the_robots_packages_goes_first(tmp_path: Path) -> Non
     assert taken(tmp_path)["companions"]["rviz"] == "car_bringup/car.rviz"
 
 
-STARTED = """
-Node(package='imu_tools', executable='imu_node', name='imu', remappings=[('/imu', '/imu/raw')])
-Node(package='own', executable='twist.py')
-Node(package='own', executable='twist.py')
-Node(package='robot_localization', executable='ekf_node')
-Node(package='robot_state_publisher', executable='robot_state_publisher')
-Node(package='rviz2', executable='rviz2')
-ComposableNode(package='pcl', plugin='pcl::Filter')
-Node(package='own', executable=unknown)
-"""
-
-
-def test_nodes_that_only_launch_files_start_are_named(tmp_path: Path) -> None:
-    file = tmp_path / "a.launch.py"
-    file.write_text(STARTED)
-    read = readings([str(file)], "car.urdf", ("car.urdf",))
-    found = started_elsewhere(read, ["robot_localization"], "jazzy")
-    assert [text for _, _, text in found] == [
-        "imu (imu_tools imu_node): /imu:=/imu/raw", "twist.py (own)", "pcl::Filter (pcl)",
-    ]  # fmt: skip
-    assert {path for path, _, _ in found} == {str(file)} and found[0][1] == 2
-
-
 def test_the_fleet_file_names_them(tmp_path: Path) -> None:
     (tmp_path / "car.urdf").write_text(robot("car", "wheel"))
     (tmp_path / "up.launch.py").write_text("Node(package='own', executable='twist.py')\n")
     taken(tmp_path)
     assert "#   up.launch.py:1: twist.py (own)\n" in (tmp_path / "fleet.yaml").read_text()
-
-
-@pytest.mark.parametrize(
-    ("text", "kind"),
-    [
-        ("# rows\n---\n- topic_name: a\n", "bridge"), ("[{topic_name: a}]\n", ""),
-        ("nodes:\n  - topic_name: a\n", ""), ("- ros_topic_name: a\n", "bridge"), ("", ""),
-    ],
-)  # fmt: skip
-def test_a_bridge_is_a_list(text: str, kind: str, tmp_path: Path) -> None:
-    """A file of knowledge with the same word is no bridge that is wrong."""
-    (tmp_path / "a.yaml").write_text(text)
-    (tmp_path / "car.urdf").write_text(robot("car", "wheel"))
-    assert len(search([str(tmp_path)]).bridge) == (1 if kind else 0)
 
 
 def test_hidden_files_are_none_of_the_robot(tmp_path: Path) -> None:
