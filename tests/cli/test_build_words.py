@@ -32,12 +32,6 @@ def changes(**given: Any) -> OutputChanges:
     return OutputChanges(*((),) * len(OutputChanges._fields))._replace(**given)
 
 
-def test_a_fleet_has_a_robot(tmp_path: Path) -> None:
-    usual = {"undo": False, "select": [], "ignore": [], "format": "text", "fleet": "no.yaml"}
-    given = options(output=str(tmp_path / "out"), count=0, **usual)
-    assert said(build.run, given).startswith("--count 0: a fleet has at least one robot")
-
-
 def test_a_build_goes_into_a_folder_and_not_over_its_input(tmp_path: Path) -> None:
     file = tmp_path / "a.yaml"
     file.write_text("")

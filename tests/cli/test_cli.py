@@ -207,16 +207,6 @@ def _slots(data: bytes) -> Counter[tuple[str, str]]:
     return found
 
 
-def test_a_folder_holds_a_file_of_each_robot_and_no_list_of_changes(folder: Path) -> None:
-    (folder / "out").mkdir()
-    assert run(folder, "rover.urdf", "r1", "r2", "-o", "out").code == 0
-    assert (folder / "out" / "r1" / "rover.urdf").is_file()
-    listed = run(folder, "rover.urdf", "r1", "--form", "changes", "-o", "out")
-    assert (listed.code, listed.err) == (
-        2, "urdf-postfix: out: cannot be written: it is a folder, name a file in it\n",
-    )  # fmt: skip
-
-
 def test_changes_stand_where_they_say(folder: Path, rover: bytes) -> None:
     run(folder, "rover.urdf", "robot1", "--form", "changes", "-o", "changes.json")
     table = json.loads((folder / "changes.json").read_bytes())
@@ -347,10 +337,6 @@ def test_color_on_a_terminal(folder: Path, env: dict[str, str], colored: bool) -
     assert result.code == 0
     assert "MB405" in result.err
     assert ("\033[" in result.err) == colored
-
-
-def test_no_color_in_a_pipe(folder: Path) -> None:
-    assert "\033[" not in run(folder, "siblings.urdf", "robot1").err
 
 
 def test_progress_bar_on_a_terminal_only(folder: Path) -> None:

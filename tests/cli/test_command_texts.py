@@ -16,7 +16,6 @@ from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
 from multibot_rewrite.base.model import InputError, ProofError, Unusable, UsageError
 from multibot_rewrite.cli import (
     adopt,
-    build,
     inspect,
     learn,
     live,
@@ -295,29 +294,6 @@ def test_nodl_is_written_to_a_file_or_below_a_folder(
         assert str(caught.value) == f"a NoDL file is for one node, here are 2; {hint}"
 
 
-@pytest.mark.parametrize(
-    ("output", "form", "it_is"),
-    [(None, None, False), (None, "nodl", True), ("a.nodl.yaml", None, True), ("a.yaml", None, False),
-     ("a.nodl.json", "nodl", True), ("a.nodl.yml", None, True), ("a.yaml", "nodes", False)],
-)  # fmt: skip
-def test_nodl_is_asked_for_by_form_or_name(output: Any, form: Any, it_is: bool) -> None:
-    assert learn.is_nodl(options(output=output, form=form)) is it_is
-
-
-def test_what_is_for_nodes_needs_their_form() -> None:
-    none: dict[str, Any] = dict.fromkeys(("output", "form", "node", "namespace", "stack", "distro"))
-    assert not learn.is_asked(options(**none))
-    for form in ("nodes", "nodl"):
-        assert learn.is_asked(options(**{**none, "form": form, "node": ["/a"]}))
-    for it in ("node", "namespace", "stack", "distro"):
-        with pytest.raises(UsageError) as caught:
-            learn.is_asked(options(**{**none, it: "x"}))
-        assert str(caught.value) == f"--{it} is for a description of nodes: add --form nodes"
-    with pytest.raises(UsageError) as caught:
-        learn.is_nodl(options(output="a.nodl.yaml", form="json"))
-    assert str(caught.value) == "a.nodl.yaml is the name of a NoDL file; leave out --form json"
-
-
 # ---------------------------------------------------------------- a file beside a description
 
 
@@ -493,18 +469,6 @@ def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) ->
         "l: it hands prefix on; proved", "m: it hands prefix and ns on; proved",
         "f:3: left as it is: it is odd",
     ]  # fmt: skip
-
-
-def test_what_a_check_of_a_build_lists(capsys: pytest.CaptureFixture[str]) -> None:
-    given = options(quiet=False, program="multibot", output="out", fleet="fleet.yaml")
-    nothing: Any = options(write={}, remove=())
-    assert build._stale(given, nothing) == 0
-    assert capsys.readouterr().err == "multibot: out is up to date\n"
-    changed: Any = options(write={"a": b""}, remove=("b",))
-    assert build._stale(given, changed) == 1
-    said = capsys.readouterr()
-    assert said.out == "a: stale\nb: left over\n"
-    assert said.err == "multibot: 2 files of out differ from what fleet.yaml makes\n"
 
 
 # ---------------------------------------------------------------- help and mistakes

@@ -14,7 +14,6 @@ from paths import ROBOTS, ROOT
 
 import multibot_rewrite
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.library import rewrite
@@ -24,11 +23,6 @@ from multibot_rewrite.description.rewriters.vocabulary import TYPES, load_vocabu
 from multibot_rewrite.lint import catalogue
 
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
-PAGE = ROOT / "docs" / "stacks.md"
-UNCLAIMED = ROOT / "fixtures" / "unclaimed.tsv"
-PATIENCE = 60
-# Percent of the occurrences over the corpus.
-LEAST_PLUGINS, LEAST_HARDWARE = 98, 95
 
 
 class Result(NamedTuple):
@@ -95,20 +89,10 @@ def write(path: Path, text: str) -> None:
 # ---------------------------------------------------------------- the command itself
 
 
-def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
-    result = multibot("--help")
-    assert result.code == 0
-    assert [name for name in COMMANDS if name not in result.out] == []
-    for name in COMMANDS:
-        assert f"usage: multibot {name} " in multibot(name, "--help").out
-
-
 @pytest.mark.parametrize(
     ("words", "said"),
     [
         ((), "multibot: no COMMAND given, use one of adopt, build"),
-        (("dance",), "multibot: unknown command 'dance'; see multibot --help"),
-        (("chek",), "multibot: unknown command 'chek'; did you mean 'check'?"),
         (("--quiet", "check"), "write the command first, for example: multibot adopt --quiet"),
         (("--undo",), "write the command first, for example: multibot build --undo"),
         (
@@ -116,7 +100,6 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
             "write the command first, for example: multibot inspect --form=json",
         ),
         (("--nothing",), "write the command first, for example: multibot check"),
-        (("inspect", "a", "--vocabulry", "x"), "--vocabulry; did you mean '--vocabulary'?"),
         (("coverage", "a"), "there is no command 'coverage'; use urdf-lint PATH..."),
         (("rewrite", "a"), "there is no command 'rewrite'; use urdf-postfix INPUT ROBOT..."),
         (("inspect", "x", "--suggest", "a"), "--suggest goes with --vocabulary only"),
@@ -154,36 +137,6 @@ def test_the_version(multibot: Multibot) -> None:
 
 
 @pytest.mark.slow
-def test_a_closed_pipe_is_no_fault(folder: Path) -> None:
-    with subprocess.Popen(
-        [*COMMAND, "inspect"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    ) as process:
-        assert process.stdout is not None and process.stderr is not None
-        process.stdout.close()
-        err = process.stderr.read().decode()
-    assert (process.returncode, err) == (141, "")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("redirection", "code", "said"),
-    [
-        (">&-", 2, "multibot: standard output is closed; name a file with -o\n"),
-        (
-            ">/dev/full",
-            2,
-            "multibot: standard output: cannot be written: No space left on device\n",
-        ),
-        ("2>&-", 0, ""),
-    ],
-)
-def test_missing_streams(folder: Path, redirection: str, code: int, said: str) -> None:
-    line = ["sh", "-c", f'"$@" {redirection}', "sh", *COMMAND, "inspect", "gazebo"]
-    done = subprocess.run(line, capture_output=True, text=True, check=False, timeout=PATIENCE)
-    assert (done.returncode, done.stderr) == (code, said)
-
-
-@pytest.mark.slow
 def test_urdf_postfix_does_not_pay_for_it() -> None:
     code = "import sys, multibot_rewrite.cli.urdf_postfix; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -209,14 +162,6 @@ def test_the_vocabulary_of_the_project_counts(multibot: Multibot, two: Path) -> 
 
 
 # ---------------------------------------------------------------- what it looks like
-
-
-def test_a_table_fits_a_narrow_terminal_and_loses_nothing() -> None:
-    path = "robot/gazebo/plugin[libfoo.so]/" + "x" * 100
-    grid = Grid(("count", "path"), [("1", path)])
-    assert render(["a line", grid], width=40) == f"a line\ncount  1\npath   {path}\n"
-    plain = render(["a line", grid])
-    assert plain == f"a line\ncount  path\n    1  {path}\n"
 
 
 def test_brackets_and_colons_are_shown_as_they_are() -> None:
@@ -376,10 +321,3 @@ def test_a_suggestion_leaves_out_what_a_given_file_knows(multibot: Multibot, two
 def test_the_fixture_robots_need_no_suggestion(multibot: Multibot) -> None:
     for path in sorted(ROBOTS.glob("*.urdf")):
         assert "[" not in multibot("inspect", "--suggest", str(path)).out
-
-
-def test_a_bad_vocabulary_stops_it(multibot: Multibot, two: Path) -> None:
-    write(two / "bad.vocab", "[plugin acme]\nx uses wheel\n")
-    result = multibot("inspect", "libacme.so", "--vocabulary", "bad.vocab")
-    assert (result.code, result.out) == (2, "")
-    assert result.err.startswith("multibot: bad.vocab:2: unknown kind 'wheel'")

@@ -12,6 +12,8 @@ from graph_cases import as_planned
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.system.json import from_yaml, to_json
 
+pytestmark = pytest.mark.slow
+
 CLOSED = FILES["ekf.yaml"]
 OPEN = CLOSED.replace("imu0: imu/data", "imu0: imu_0/data")
 SAID = (
@@ -45,7 +47,6 @@ def open_(tmp_path: Path) -> Folder:
     return Folder(tmp_path, OPEN)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("form", ["plan", "table"])
 def test_a_table_is_made_with_what_is_open(
     form: str, open_: Folder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -61,7 +62,6 @@ def test_a_table_is_made_with_what_is_open(
 
 
 @pytest.mark.sample(3)
-@pytest.mark.slow
 @pytest.mark.parametrize("of", ["plan", "json", "fleet"])
 def test_a_graph_as_planned_of_a_plan_that_does_not_close(
     of: str, open_: Folder, capsys: pytest.CaptureFixture[str]
@@ -76,7 +76,6 @@ def test_a_graph_as_planned_of_a_plan_that_does_not_close(
     assert "0 findings: as planned (" in capsys.readouterr().err
 
 
-@pytest.mark.more
 def test_a_graph_that_is_not_as_planned_either(
     open_: Folder, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -87,7 +86,6 @@ def test_a_graph_that_is_not_as_planned_either(
     assert "not as planned, and the plan has faults" in capsys.readouterr().err
 
 
-@pytest.mark.slow
 def test_a_build_writes_the_same_plan_with_paths_from_the_fleet_file(
     open_: Folder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -98,7 +96,6 @@ def test_a_build_writes_the_same_plan_with_paths_from_the_fleet_file(
     assert gap.hint.endswith("write /imu/data in its parameters; see bridge.yaml:1")
 
 
-@pytest.mark.slow
 def test_what_was_open_before_is_counted_where_it_is_asked_for(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -116,7 +113,6 @@ def test_what_was_open_before_is_counted_where_it_is_asked_for(
     assert "1 note: as planned, with notes on the plan (" in err
 
 
-@pytest.mark.slow
 def test_a_plan_without_open_ends_says_nothing_of_them(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -153,7 +149,6 @@ robots: [{name: robot1}, {name: robot2}]
 """
 
 
-@pytest.mark.more
 def test_each_command_says_the_same_of_a_parameter_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -181,7 +176,6 @@ def test_each_command_says_the_same_of_a_parameter_file(
     assert codes == [("3", "MB110"), ("4", "MB312"), ("5", "MB853")]
 
 
-@pytest.mark.more
 def test_a_robot_in_gazebo_without_a_sensor_has_its_clock(tmp_path: Path) -> None:
     """All nodes of the launch file wait for /clock, which gz-sim has on a gz topic alone."""
     for name, text in (("rover.urdf", ROVER), ("fleet.yaml", FLEET)):

@@ -26,7 +26,7 @@ from multibot_rewrite.cli.declared.fleet import PLAN_FORMS
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.report import check_report
-from multibot_rewrite.cli.usage import policy, robots, separators
+from multibot_rewrite.cli.usage import check_xacro, policy, robots, separators, xacro_args
 from multibot_rewrite.cli.values import MAX_DOMAIN
 from multibot_rewrite.lint.catalogue import rules
 from multibot_rewrite.spelling.table_formats import FORMS
@@ -121,6 +121,15 @@ def test_robots_are_words_or_a_list(name: str, words: Sequence[str]) -> None:
     assert robots(given(name, ROVER, *words)) == ["a", "b", "c"]
 
 
+def test_robots_are_a_number_beside_arguments_of_a_xacro() -> None:
+    options = given("urdf-postfix", ARM, "name:=a:=b", "-n", "3", "empty:=")
+    assert robots(options) == ["robot1", "robot2", "robot3"]
+    assert xacro_args(options) == {"name": "a:=b", "empty": ""}
+    check_xacro(options, [ROVER, ARM])
+    with pytest.raises(UsageError, match=r"NAME:=VALUE is for xacro, a\.urdf is no xacro"):
+        check_xacro(options, ["a.urdf"])
+
+
 @pytest.mark.parametrize("name", DESCRIPTION)
 def test_the_naming_options_mean_the_same_everywhere(name: str) -> None:
     words = ["--layout", "L2", "--affix", "prefix", "--separator", "link=_,joint=/"]
@@ -141,6 +150,7 @@ def test_a_separator_alone_is_for_the_names_of_the_description() -> None:
     assert found["joint"] == "/"
     assert {found[it] for it in ("link", "frame", "sensor", "model", "transmission")} == {"_"}
     assert not {"topic", "service", "node", "namespace"} & found.keys()
+    assert "groups" not in policy(given("plan", ROVER, "--separator", "_"))
 
 
 def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
@@ -219,6 +229,8 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
             "--count 2 and robot1: give a number of robots, or their",
         ),
         (f"urdf-postfix {ROVER} -n 0", "--count 0: a fleet has at least one robot"),
+        (f"urdf-postfix {ROVER} -n 10001", "--count 10001: a fleet has at least one robot"),
+        (f"multibot build {FLEET} -n 0", "--count 0: a fleet has at least one robot"),
         (f"multibot plan {FLEET} -n 0", "--count 0: a fleet has at least one robot"),
         ("urdf-postfix a --separator link=_ frame=_", "write --separator link=_,frame=_"),
         ("urdf-postfix a b --separator link", "write KIND=SEP, for example link=_"),

@@ -15,6 +15,8 @@ from plans import robot_named
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.spelling.plan_file import read_plan
 
+pytestmark = pytest.mark.slow
+
 XACROS = FIXTURES / "xacros"
 ARM, BASE = str(XACROS / "arm.urdf.xacro"), str(XACROS / "base.urdf.xacro")
 PREFIX = "tf_prefix:={robot}_"
@@ -35,7 +37,6 @@ def links(path: Path) -> list[str]:
     return [str(it.get("name")) for it in etree.parse(path).getroot().findall("link")]
 
 
-@pytest.mark.more
 def test_a_file_for_each_robot_and_a_summary(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -50,7 +51,6 @@ def test_a_file_for_each_robot_and_a_summary(
     assert ", 6 names by tf_prefix, 1 inserted; proved" in said
 
 
-@pytest.mark.more
 def test_changes_of_every_robot_are_its_own(tmp_path: Path) -> None:
     changes = tmp_path / "changes.json"
     words = [ARM, "left", "right", PREFIX, "--form", "changes"]
@@ -61,7 +61,6 @@ def test_changes_of_every_robot_are_its_own(tmp_path: Path) -> None:
         assert renamed == {("camera_link", f"camera_link/{robot}")}
 
 
-@pytest.mark.slow
 def test_a_diff_is_against_the_robots_own_expansion(capfd: pytest.CaptureFixture[str]) -> None:
     assert urdf_postfix.main([ARM, "left", "right", PREFIX, "--diff"]) == 0
     out = capfd.readouterr().out
@@ -71,7 +70,6 @@ def test_a_diff_is_against_the_robots_own_expansion(capfd: pytest.CaptureFixture
     assert "-      <parent link" not in out
 
 
-@pytest.mark.slow
 def test_findings_of_every_robot_are_reported(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -86,7 +84,6 @@ def test_findings_of_every_robot_are_reported(
     assert urdf_postfix.main([*words, "--layout", "both", "--fail-on", "warning"]) == 1
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("options", [[], ["--affix", "prefix", "--separator", "_"]])
 def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
@@ -99,7 +96,6 @@ def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
     assert urdf_postfix.main([back, "left", "-o", plain, *options, "--force"]) == 0
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("run", "words", "said"),
     [
@@ -138,7 +134,6 @@ def test_wrong_use_is_one_line(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.more
 def test_lint_fills_in_its_first_robot(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "r.urdf.xacro"
     path.write_text(MISSED.replace(">base_link<", ">nowhere<").replace('_link"/>', '__link"/>'))
@@ -149,7 +144,6 @@ def test_lint_fills_in_its_first_robot(tmp_path: Path, capfd: pytest.CaptureFixt
     assert urdf_lint.main([ARM, PREFIX, "--robots", "left,right", "--select", "MB43,MB106"]) == 0
 
 
-@pytest.mark.more
 def test_a_plan_has_the_names_of_the_argument(tmp_path: Path) -> None:
     plan = tmp_path / "plan.yaml"
     words = ["plan", ARM, "left", "right", PREFIX, "--stack", "robot_state_publisher"]
@@ -160,7 +154,6 @@ def test_a_plan_has_the_names_of_the_argument(tmp_path: Path) -> None:
         assert [*robot_named(robots, name).frames] == own
 
 
-@pytest.mark.more
 def test_a_table_has_the_namespace_once(capfd: pytest.CaptureFixture[str]) -> None:
     words = [
         "plan",

@@ -18,78 +18,11 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.cli import check, learn, live, output, pictures, snapshot, usage, walk, why
 from multibot_rewrite.cli.report import counted_findings
-from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.system.records import Parameter, System
 
 
 def options(**given: Any) -> argparse.Namespace:
     return argparse.Namespace(**given)
-
-
-# ---------------------------------------------------------------- words
-
-
-WORDS = ["robot1", "name:=a:=b", "robot2", "empty:="]
-
-
-def test_words_are_robots_or_arguments_of_a_xacro() -> None:
-    given = options(words=WORDS, robots=["robot3"], separator=[])
-    assert usage.plain_words(given) == ["robot1", "robot2"]
-    assert usage.robots(given) == ["robot1", "robot2", "robot3"]
-    assert usage.xacro_args(given) == {"name": "a:=b", "empty": ""}
-    usage.check_xacro(given, ["a.urdf", "b.xacro"])
-    assert (
-        said(usage.check_xacro, given, ["a.urdf"]) == "NAME:=VALUE is for xacro, a.urdf is no xacro"
-    )
-    usage.check_xacro(options(words=["robot1"]), ["a.urdf"])
-
-
-def test_a_separator_among_the_robots_is_said() -> None:
-    given = options(words=["robot1", "frame=-"], robots=[], separator=["link=_"])
-    assert said(usage.robots, given) == (
-        "'frame=-' is not a robot's name; write --separator link=_,frame=-"
-    )
-    assert usage.robots(options(words=["a=b"], robots=[], separator=[])) == ["a=b"]
-
-
-def test_a_number_stands_for_names_with_numbers() -> None:
-    given = {"words": ["x:=1"], "robots": [], "separator": []}
-    assert usage.robots(options(**given, count=3)) == ["robot1", "robot2", "robot3"]
-    assert usage.robots(options(**given, count=None)) == []
-    named = options(**{**given, "robots": ["left"]}, count=3)
-    assert (
-        said(usage.robots, named) == "--count 3 and left: give a number of robots, or their names"
-    )
-    for count in (0, 10_001):
-        told = said(usage.robots, options(**given, count=count))
-        assert told.startswith(f"--count {count}: a fleet has at least one robot")
-
-
-def test_separators_of_a_kind_count_more_than_one_for_all() -> None:
-    assert usage.separators(options(separator=["frame=/", "link=_"])) == {"frame": "/", "link": "_"}
-    every = usage.separators(options(separator=["-", "link=_"]))
-    assert every["link"] == "_" and every["joint"] == every["frame"] == "-" and "topic" not in every
-    assert said(usage.separators, options(separator=["_", "link"])) == (
-        "--separator link: write KIND=SEP, for example link=_, or SEP alone: _"
-    )
-
-
-def test_a_policy_has_what_is_given() -> None:
-    none: dict[str, object] = {"layout": None, "affix": None, "topics": None, "shared": []}
-    assert usage.policy(options(**none, separator=[])) == {}
-    given = {**none, "layout": "both", "shared": ["/t/of", "map", "/clock"]}
-    assert usage.policy(options(**given, separator=["link=_"])) == {
-        "layout": "both", "separators": {"link": "_"}, "shared_frames": ["map"],
-        "shared_topics": ["/t/of", "/clock"],
-    }  # fmt: skip
-    assert "groups" not in usage.policy(options(**none, separator=["_"]))
-    assert usage.policy(options(**none, separator=["group=-"]))["groups"] == "rename"
-    more = {"urdf": None, "words": ["a:=b"], "vocabulary": ["v"], "trust": True, "distro": None}
-    assert usage.rewriting(options(**none, separator=[], **more)) == {
-        "urdf": None, "xacro_args": {"a": "b"}, "vocabulary": ["v"], "trust": True, "distro": "",
-    }  # fmt: skip
-    more["distro"] = "jazzy"
-    assert usage.rewriting(options(**none, separator=[], **more))["distro"] == "jazzy"
 
 
 def test_given_options_are_named_as_they_are_written() -> None:
@@ -183,11 +116,6 @@ def test_a_domain_that_rcl_would_not_take_is_said(monkeypatch: pytest.MonkeyPatc
     assert live.environ(5)["ROS_DOMAIN_ID"] == "5"
 
 
-def test_exit_codes_of_a_look() -> None:
-    """docs/check.md: 0 as planned, 1 not as planned, 3 inconclusive."""
-    assert live.CODES == {Verdict.PLANNED: 0, Verdict.WRONG: 1, Verdict.INCONCLUSIVE: 3}
-
-
 def test_parameters_of_a_plan_are_asked_by_node() -> None:
     asked = [("/a", "x"), ("/b", "z"), ("/a", "y")]
     plan = System(parameters=tuple(Parameter(node, name, "1") for node, name in asked))
@@ -249,8 +177,9 @@ def test_only_notes_are_called_notes(levels: tuple[str, ...], text: str) -> None
 
 @pytest.mark.parametrize(
     ("target", "form", "nodl"),
-    [(None, "nodes", False), ("a.yaml", "nodes", False), (None, "nodl", True), ("out", "nodl", True),
-     ("a.nodl.yaml", None, True), ("a.nodl.json", "nodl", True)],
+    [(None, None, False), ("a.yaml", None, False), (None, "nodes", False), ("a.yaml", "nodes", False),
+     (None, "nodl", True), ("out", "nodl", True), ("a.nodl.yaml", None, True),
+     ("a.nodl.yml", None, True), ("a.nodl.json", "nodl", True)],
 )  # fmt: skip
 def test_the_name_or_the_form_says_that_it_is_nodl(
     target: str | None, form: str | None, nodl: bool

@@ -12,13 +12,14 @@ from pathlib import Path
 
 import pytest
 import yaml
+from fleet_folder import planned_fleet
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.spelling.way_checks import running_nodes
+
+pytestmark = pytest.mark.slow
 
 MOCK = "mock_components/GenericSystem"
 FRANKA = "franka_hardware/FrankaHardwareInterface"
@@ -111,7 +112,7 @@ def built(
     }
     for name, text in files.items():
         (folder / name).write_text(text)
-    made = make_outputs(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {})))
+    made = make_outputs(planned_fleet(folder / "fleet.yaml"))
     return {it.path: it.data.decode() for it in made.files}, list(made.findings)
 
 
@@ -125,7 +126,6 @@ def errors(findings: list[Finding]) -> list[str]:
     return [f"{it.code} {it.message}" for it in findings if it.level == "error"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both"])
 def test_renamed_groups_have_one_name_everywhere(layout: str, tmp_path: Path) -> None:
     files, findings = built(tmp_path, f"groups: rename\n{TWO}", layout)
@@ -141,7 +141,6 @@ def test_renamed_groups_have_one_name_everywhere(layout: str, tmp_path: Path) ->
     assert not [it for it in findings if it.code == "MB863"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both"])
 def test_each_robot_has_a_window_with_its_motion_planning(layout: str, tmp_path: Path) -> None:
     files, findings = built(tmp_path, layout=layout)
@@ -152,7 +151,6 @@ def test_each_robot_has_a_window_with_its_motion_planning(layout: str, tmp_path:
     assert not [it for it in findings if it.code == "MF202"]
 
 
-@pytest.mark.slow
 def test_without_namespaces_a_window_has_the_rules_of_its_robot(tmp_path: Path) -> None:
     more = TWO.replace("[{name: left}", "[{name: left, stack: [moveit, rviz_moveit]}")
     files, findings = built(tmp_path, more, "postfix")
@@ -167,14 +165,12 @@ def test_without_namespaces_a_window_has_the_rules_of_its_robot(tmp_path: Path) 
     assert "MotionPlanning" in next(it.message for it in findings if it.code == "MF202")
 
 
-@pytest.mark.slow
 def test_a_list_of_sensors_names_the_keys_of_its_file(tmp_path: Path) -> None:
     for layout in ("both", "postfix"):
         made = yaml.safe_load(built(tmp_path, layout=layout)[0]["left/sensors_3d.yaml"])
         assert made["sensors"] == [it for it in made if it != "sensors"]
 
 
-@pytest.mark.more
 def test_files_follow_groups_that_an_argument_names(tmp_path: Path) -> None:
     words = {"own": "$(arg prefix)", "group": "${p}manipulator"}
     files, findings = built(tmp_path, OWN + TWO, "frames-per-robot", **words)
@@ -184,7 +180,6 @@ def test_files_follow_groups_that_an_argument_names(tmp_path: Path) -> None:
     assert errors(findings) == []
 
 
-@pytest.mark.slow
 def test_an_srdf_whose_prefix_is_spelled_otherwise_follows_its_urdf(tmp_path: Path) -> None:
     """Franka's URDF makes left_base of arm_prefix, its SRDF leftbase."""
     own = "${'$(arg prefix)'.replace('_', '')}"
@@ -195,7 +190,6 @@ def test_an_srdf_whose_prefix_is_spelled_otherwise_follows_its_urdf(tmp_path: Pa
     assert errors(findings) == []
 
 
-@pytest.mark.more
 def test_an_srdf_of_another_robot_is_one_error(tmp_path: Path) -> None:
     _, findings = built(tmp_path, own="other_")
     assert errors(findings) == [
@@ -205,7 +199,6 @@ def test_an_srdf_of_another_robot_is_one_error(tmp_path: Path) -> None:
     assert not [it for it in findings if it.code in ("MB803", "MB804", "MB807")]
 
 
-@pytest.mark.more
 def test_a_moveit_file_of_another_robot_is_one_error(tmp_path: Path) -> None:
     solver = SOLVERS.replace("manipulator", "{}")[:-1] + "\n"
     text = "".join(solver.replace("{}", it, 1) for it in ("a", "b", "c", "manipulator"))
@@ -222,7 +215,6 @@ def test_a_moveit_file_of_another_robot_is_one_error(tmp_path: Path) -> None:
 IPS = "robots: [{name: left, arguments: {ip: A}}, {name: right, arguments: {ip: B}}]\n"
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("plugin", "addresses", "said"),
@@ -258,7 +250,6 @@ def test_one_device_of_two_robots(
     assert {it.level for it in found if "reverse_port" in it.message} <= {NOTE}
 
 
-@pytest.mark.more
 def test_simulated_robots_have_no_devices(tmp_path: Path) -> None:
     more = IPS.replace("A}", "10.0.0.1}").replace("B}", "10.0.0.1}")
     more = more.replace("name: right", "name: right, simulator: gazebo")
@@ -266,7 +257,6 @@ def test_simulated_robots_have_no_devices(tmp_path: Path) -> None:
     assert not [it for it in findings if it.code == "MB412"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("own", ["", OWN])
 def test_two_arms_on_a_world_of_their_own_stand_where_their_poses_are(
     own: str, tmp_path: Path
@@ -285,7 +275,6 @@ def test_two_arms_on_a_world_of_their_own_stand_where_their_poses_are(
     assert "cmd_vel" not in files["commands.md"]
 
 
-@pytest.mark.more
 def test_a_simulated_arm_stays_on_the_world(tmp_path: Path) -> None:
     """sdformat fixes a robot to a link called world (parser_urdf.cc), to no other."""
     robots = "[{name: left}, {name: right, simulator: gazebo, pose: {y: 1}}]"
@@ -298,7 +287,6 @@ def test_a_simulated_arm_stays_on_the_world(tmp_path: Path) -> None:
         assert "world" in [it.get("name") for it in root.iter("link")]
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("finger", ["left_finger", "{robot}_left_finger"])
 def test_a_part_that_is_called_as_a_robot_is_no_name_of_it(finger: str, tmp_path: Path) -> None:
@@ -316,7 +304,7 @@ def test_a_part_that_is_called_as_a_robot_is_no_name_of_it(finger: str, tmp_path
     fleet = "layout: both\naffix: prefix\ndescription: arm.urdf.xacro\nsrdf: arm.srdf.xacro\n"
     more = f"arguments: {{finger: '{finger}'}}\n{TWO}"
     (tmp_path / "fleet.yaml").write_text(fleet + more)
-    made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+    made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
     files = {it.path: it.data.decode() for it in made.files}
     names = {"left_finger": "right/left_finger", "{robot}_left_finger": "right_left_finger"}
     for path in ("right/arm.urdf", "right/arm.srdf"):
@@ -333,7 +321,6 @@ force_mode_controller:
 """
 
 
-@pytest.mark.slow
 def test_a_listener_in_a_controllers_code_has_the_rules_of_its_process(tmp_path: Path) -> None:
     """ur_controllers force_mode_controller.cpp makes a tf2_ros::TransformListener of a buffer alone."""
     (tmp_path / "controllers.yaml").write_text(CONTROLLERS)
@@ -342,7 +329,7 @@ def test_a_listener_in_a_controllers_code_has_the_rules_of_its_process(tmp_path:
     # One spawner loads it, with what its own node needs.
     lines = [it for it in files["commands.md"].splitlines() if "spawner force_mode" in it]
     assert len(lines) == 1
-    table = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})).fleet.table
+    table = planned_fleet(tmp_path / "fleet.yaml").fleet.table
     (node,) = (it for _, it in running_nodes(table) if it.node == "force_mode_controller")
     assert set(node.process_rules) >= {("/tf", "tf"), ("/tf_static", "tf_static")}
 
@@ -364,7 +351,6 @@ io_controller:
 """
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("own", ["", OWN])
 def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
@@ -384,7 +370,6 @@ def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
     assert "elbow" not in str([it.message for it in findings])
 
 
-@pytest.mark.more
 def test_move_group_is_started_with_what_the_files_say(tmp_path: Path) -> None:
     """As moveit_configs.py (to_dict) of moveit_configs_utils."""
     files, _ = built(tmp_path, f"groups: rename\n{TWO}")
@@ -405,7 +390,6 @@ def test_move_group_is_started_with_what_the_files_say(tmp_path: Path) -> None:
     assert files["fleet.launch.py"].count("file(f'{name}/moveit_parameters.yaml')") >= 2
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("name", "text", "path"),

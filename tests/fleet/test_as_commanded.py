@@ -15,13 +15,13 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 from paths import ROBOTS, ROOT
 
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.as_printed import not_as_commanded
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 TOLD = (
     *("static_transform_publisher", "spawner", "create", "spawn_entity.py", "relay", "rviz2"),
@@ -45,7 +45,7 @@ def example(name: str) -> tuple[FleetPlan, Outputs]:
 
 
 def outputs(path: Path) -> tuple[FleetPlan, Outputs]:
-    plan = plan_fleet(read_fleet(str(path), "", os.environ), trust=True)
+    plan = planned_fleet(path, around=os.environ, trust=True)
     return plan, make_outputs(plan, "/any/out")
 
 

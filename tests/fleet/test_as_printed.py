@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 from built_launch import CONTROLLERS, FLEETS
+from fleet_folder import planned_fleet
 from paths import ROBOTS, ROOT
 from printed_mutants import mutants
 
@@ -22,8 +23,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.as_printed import Difference, not_as_printed
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_file
 from multibot_rewrite.fleet.launch.launch_python import to_python
 from multibot_rewrite.fleet.launch.starts import CLASSIC, GZ, FleetStarts, RobotStarts
@@ -177,7 +177,7 @@ def test_a_file_that_is_no_python_is_a_difference(tmp_path: Path) -> None:
 
 @cache
 def planned(text: str) -> tuple[FleetPlan, Outputs]:
-    plan = plan_fleet(read_fleet(text, "", os.environ))
+    plan = planned_fleet(text, around=os.environ)
     return plan, make_outputs(plan, "/any/out")
 
 

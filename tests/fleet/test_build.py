@@ -31,9 +31,11 @@ from multibot_rewrite.cli import folders
 from multibot_rewrite.cli.files import write_new
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.release_said import MANIFEST
-from multibot_rewrite.fleet.manifest import NOTE, read_manifest
+from multibot_rewrite.fleet.manifest import NOTE
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.json import from_yaml
+
+pytestmark = pytest.mark.slow
 
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "build"]
 Files = dict[str, bytes]
@@ -96,7 +98,6 @@ def renamed(folder: Path, old: str = "robot2", new: str = "robot3") -> None:
 # ---------------------------------------------------------------- what is written
 
 
-@pytest.mark.slow
 def test_the_smallest_fleet_gives_everything(out: Path) -> None:
     common = {"plan.yaml", ".system.schema.json", "remappings.yaml", "commands.md", MANIFEST}
     common |= {"fleet.launch.py", "bridge.yaml", "foxglove.json"}
@@ -108,7 +109,6 @@ def test_the_smallest_fleet_gives_everything(out: Path) -> None:
     }
 
 
-@pytest.mark.more
 def test_a_policy_of_sros2_is_written_where_it_is_asked_for(tmp_path: Path) -> None:
     """An enclave for each robot, in which the other robot's command topic is nowhere."""
     fleet_folder(tmp_path)
@@ -123,7 +123,6 @@ def test_a_policy_of_sros2_is_written_where_it_is_asked_for(tmp_path: Path) -> N
     assert "robot1" not in text["/robot2"]
 
 
-@pytest.mark.slow
 def test_the_manifest_names_what_was_read_and_written(out: Path) -> None:
     data = json.loads((out / MANIFEST).read_text())
     assert set(data["outputs"]) == set(held(out)) - {MANIFEST}
@@ -131,7 +130,6 @@ def test_the_manifest_names_what_was_read_and_written(out: Path) -> None:
     assert set(data["inputs"]) == {f"../{it}" for it in inputs}
 
 
-@pytest.mark.more
 def test_included_files_and_nodes_are_inputs(tmp_path: Path) -> None:
     (tmp_path / "site.yaml").write_text("layout: L2\naffix: prefix\n")
     text = "include: site.yaml\nrobots:\n  - {name: a, description: rover.urdf}\n"
@@ -140,7 +138,6 @@ def test_included_files_and_nodes_are_inputs(tmp_path: Path) -> None:
     assert "../site.yaml" in json.loads((tmp_path / "out" / MANIFEST).read_text())["inputs"]
 
 
-@pytest.mark.slow
 def test_a_second_build_changes_nothing(out: Path) -> None:
     before = {path: path.stat() for path in out.rglob("*")}
     assert build(out.parent) == 0
@@ -150,7 +147,6 @@ def test_a_second_build_changes_nothing(out: Path) -> None:
     }
 
 
-@pytest.mark.slow
 def test_a_change_writes_only_what_follows_from_it(out: Path) -> None:
     before = {path: path.stat().st_ino for path in out.rglob("*") if path.is_file()}
     params = out.parent / "params.yaml"
@@ -161,7 +157,6 @@ def test_a_change_writes_only_what_follows_from_it(out: Path) -> None:
     assert changed == {"robot1/params.yaml", "robot2/params.yaml", MANIFEST}
 
 
-@pytest.mark.slow
 def test_what_is_no_longer_made_goes_with_its_folder(out: Path) -> None:
     renamed(out.parent)
     assert build(out.parent) == 0
@@ -169,7 +164,6 @@ def test_what_is_no_longer_made_goes_with_its_folder(out: Path) -> None:
     assert (out / "robot3" / "params.yaml").exists()
 
 
-@pytest.mark.slow
 def test_what_others_put_there_stays(out: Path) -> None:
     (out / "robot2" / "notes.txt").write_text("mine")
     (out / "maps" / "empty").mkdir(parents=True)
@@ -186,7 +180,6 @@ def test_what_others_put_there_stays(out: Path) -> None:
     assert (out / "robot1").stat().st_mode & 0o777 == 0o750
 
 
-@pytest.mark.slow
 def test_a_file_keeps_its_mode(out: Path) -> None:
     (out / "commands.md").chmod(0o640)
     renamed(out.parent)
@@ -195,7 +188,6 @@ def test_a_file_keeps_its_mode(out: Path) -> None:
 
 
 @pytest.mark.sample(2)
-@pytest.mark.slow
 @pytest.mark.parametrize("more", ["", "x"])
 def test_what_was_edited_is_not_overwritten(
     more: str, out: Path, capsys: pytest.CaptureFixture[str]
@@ -211,7 +203,6 @@ def test_what_was_edited_is_not_overwritten(
     assert "by hand" not in path.read_text()
 
 
-@pytest.mark.slow
 def test_what_no_build_made_is_not_overwritten(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -224,7 +215,6 @@ def test_what_no_build_made_is_not_overwritten(
     assert build(tmp_path, "--force") == 0
 
 
-@pytest.mark.slow
 def test_what_was_edited_and_is_no_longer_made_is_not_removed(out: Path) -> None:
     path = out / "robot2" / "params.yaml"
     path.write_text("mine")
@@ -236,7 +226,6 @@ def test_what_was_edited_and_is_no_longer_made_is_not_removed(out: Path) -> None
 # ---------------------------------------------------------------- --check
 
 
-@pytest.mark.slow
 def test_check_says_what_is_stale_and_writes_nothing(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -252,14 +241,12 @@ def test_check_says_what_is_stale_and_writes_nothing(
     assert held(out) == before
 
 
-@pytest.mark.more
 def test_check_of_nothing_writes_nothing(tmp_path: Path) -> None:
     fleet_folder(tmp_path)
     assert build(tmp_path, "--check") == 1
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.slow
 def test_check_finds_a_file_that_was_deleted(out: Path) -> None:
     (out / "robot1" / "rover.urdf").unlink()
     assert build(out.parent, "--check") == 1
@@ -280,7 +267,6 @@ def child(arguments: Sequence[str], cwd: Path, **env: str) -> subprocess.Complet
 
 
 @pytest.mark.sample(2)
-@pytest.mark.slow
 @pytest.mark.parametrize("text", [SMALL, mixed()], ids=["small", "mixed"])
 def test_the_output_is_the_same_from_everywhere_and_in_any_order(text: str, tmp_path: Path) -> None:
     home, elsewhere = tmp_path / "a", tmp_path / "b" / "c"
@@ -297,7 +283,6 @@ def test_the_output_is_the_same_from_everywhere_and_in_any_order(text: str, tmp_
     assert not any(str(tmp_path).encode() in it for it in first.values())
 
 
-@pytest.mark.more
 def test_findings_are_sorted_and_said_once(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -313,7 +298,6 @@ def test_findings_are_sorted_and_said_once(
     assert "multibotTagSlot" not in "".join(lines)
 
 
-@pytest.mark.slow
 def test_errors_stop_the_job_and_strict_makes_errors(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -326,7 +310,6 @@ def test_errors_stop_the_job_and_strict_makes_errors(
 # ---------------------------------------------------------------- links and folders in the way
 
 
-@pytest.mark.slow
 def test_a_link_in_the_output_is_not_followed(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -342,7 +325,6 @@ def test_a_link_in_the_output_is_not_followed(
     assert held(outside) == before
 
 
-@pytest.mark.slow
 def test_an_output_folder_that_is_a_link_is_where_it_leads(tmp_path: Path) -> None:
     fleet_folder(tmp_path)
     (tmp_path / "real").mkdir()
@@ -352,7 +334,6 @@ def test_an_output_folder_that_is_a_link_is_where_it_leads(tmp_path: Path) -> No
     assert (tmp_path / "real" / "plan.yaml").exists()
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("path", "folder", "words"),
@@ -375,7 +356,6 @@ def test_what_prevents_a_pose_or_namespace_is_reported(
     assert sorted(tmp_path.rglob("*")) == before
 
 
-@pytest.mark.slow
 def test_missing_folders_above_are_made_and_go_again_with_a_failure(tmp_path: Path) -> None:
     path = fleet_folder(tmp_path)
     deep = tmp_path / "x" / "y" / "out"
@@ -388,30 +368,10 @@ def test_missing_folders_above_are_made_and_go_again_with_a_failure(tmp_path: Pa
     assert not (tmp_path / "z").exists()
 
 
-# ---------------------------------------------------------------- a manifest that is none
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "",
-        "{}",
-        "[1]",
-        '{"format": "multibot build 0", "outputs": {}}',
-        '{"format": "multibot build 1", "outputs": {"../x": "0"}}',
-        '{"format": "multibot build 1", "outputs": {"/etc/x": "0"}}',
-    ],
-)
-def test_what_is_no_manifest_is_refused(text: str) -> None:
-    with pytest.raises(InputError, match="m: not a manifest of multibot build; delete it"):
-        read_manifest(text.encode(), "m")
-
-
 # ---------------------------------------------------------------- all or nothing
 
 
 @pytest.mark.sample(3)
-@pytest.mark.slow
 @pytest.mark.parametrize("room", [0, 1000, 20_000])
 def test_no_room_leaves_the_old_files(room: int, out: Path) -> None:
     before = held(out)
@@ -426,7 +386,6 @@ def test_no_room_leaves_the_old_files(room: int, out: Path) -> None:
     assert leftovers(out.parent) == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["out", "."])
 def test_a_full_disk_leaves_the_old_files(name: str, out: Path) -> None:
     """On a file system of 300 kB, where that can be had; the folder may be the file system."""
@@ -461,7 +420,6 @@ def one_by_one(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     yield
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("one_by_one")
 def test_without_a_swap_the_result_is_the_same(out: Path) -> None:
     renamed(out.parent)
@@ -476,7 +434,6 @@ def test_without_a_swap_the_result_is_the_same(out: Path) -> None:
     assert held(out) == found
 
 
-@pytest.mark.slow
 def test_a_build_inside_of_the_folder_does_not_take_it_away(
     out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -488,7 +445,6 @@ def test_a_build_inside_of_the_folder_does_not_take_it_away(
 
 
 @pytest.mark.sample(3)
-@pytest.mark.slow
 @pytest.mark.usefixtures("one_by_one")
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
 @pytest.mark.parametrize("there", [None, b"of a build that was killed"])
@@ -517,7 +473,6 @@ def test_a_failure_without_a_swap_leaves_no_note(
 
 
 @pytest.mark.sample(3)
-@pytest.mark.slow
 @pytest.mark.parametrize("force", [[], ["--force"]])
 @pytest.mark.parametrize("link", [os.symlink, os.link, shutil.move])
 def test_a_build_writes_over_nothing_that_it_reads(
@@ -546,7 +501,6 @@ def test_a_build_writes_over_nothing_that_it_reads(
     assert given.read_bytes() == before
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("one_by_one")
 def test_half_replaced_files_are_completed_by_the_next_build(
     out: Path, monkeypatch: pytest.MonkeyPatch
@@ -608,7 +562,6 @@ def until_killed(out: Path, number: int, runs: int, seed: int) -> int:
 
 
 # What kills at once is tried around each step below.
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "number", [signal.SIGTERM, pytest.param(signal.SIGKILL, marks=pytest.mark.deep)]
 )
@@ -626,7 +579,6 @@ STEPS = ("_link_all", "_write_all", "_exchange", "_bring_late")
 
 
 @pytest.mark.sample(8)
-@pytest.mark.slow
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("before", [True, False])
 def test_a_kill_around_each_step_leaves_old_or_new(step: str, before: bool, out: Path) -> None:
@@ -659,7 +611,6 @@ def test_a_kill_around_each_step_leaves_old_or_new(step: str, before: bool, out:
 DONE = {("_exchange", False), ("_bring_late", True), ("_bring_late", False)}
 
 
-@pytest.mark.slow
 def test_a_failure_at_each_step_leaves_the_old_files(
     out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -673,7 +624,6 @@ def test_a_failure_at_each_step_leaves_the_old_files(
         assert leftovers(out.parent) == []
 
 
-@pytest.mark.slow
 def test_what_comes_while_a_build_writes_is_kept(
     out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -690,7 +640,6 @@ def test_what_comes_while_a_build_writes_is_kept(
     assert (out / "late" / "bag.mcap").read_text() == "data"
 
 
-@pytest.mark.slow
 def test_two_builds_at_once_leave_one_whole_output(tmp_path: Path) -> None:
     """Two fleets into one folder, again and again: what is there is one of the two."""
     wanted, fleets = [], []
@@ -728,7 +677,6 @@ def test_a_folder_that_cannot_be_written_is_reported(
             path.chmod(0o755)
 
 
-@pytest.mark.slow
 def test_a_read_only_folder_is_reported(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """On a file system that was mounted read-only, which stops root, too."""
     renamed(out.parent)
@@ -747,7 +695,6 @@ def test_a_read_only_folder_is_reported(out: Path, capsys: pytest.CaptureFixture
         subprocess.run(["umount", str(out)], check=True)
 
 
-@pytest.mark.slow
 def test_a_mount_point_is_built_into_file_by_file(out: Path) -> None:
     mount = ["mount", "--bind", str(out), str(out)]
     if os.geteuid() or subprocess.run(mount, capture_output=True, check=False).returncode:
@@ -767,7 +714,6 @@ WORD = st.text(st.characters(codec="utf-8", exclude_categories=("Cs",)), min_siz
 ODD = st.one_of(WORD, st.sampled_from(["yes", "y", "~", "null", "1e3", "0x1", "a: b", "- a", "#"]))
 
 
-@pytest.mark.slow
 @given(ODD, ODD, st.lists(ODD, max_size=3))
 def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str]) -> None:
     robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", tag=other)
@@ -780,7 +726,6 @@ def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str])
     assert isinstance(yaml.safe_load(text), dict)
 
 
-@pytest.mark.slow
 def test_parameters_of_a_node_of_your_own(tmp_path: Path) -> None:
     fleet_folder(tmp_path, f"nodes: facts.yaml\n{SMALL}")
     facts = "nodes:\n  mast:\n    package: acme\n    params:\n      eye: {kind: frame}\n"
@@ -796,7 +741,6 @@ def test_parameters_of_a_node_of_your_own(tmp_path: Path) -> None:
 # ---------------------------------------------------------------- undo
 
 
-@pytest.mark.more
 def test_undo_removes_what_a_build_wrote_and_nothing_else(out: Path) -> None:
     own = out / "robot1" / "notes.txt"
     own.write_text("mine")
@@ -808,7 +752,6 @@ def test_undo_removes_what_a_build_wrote_and_nothing_else(out: Path) -> None:
     assert not out.exists()
 
 
-@pytest.mark.more
 def test_undo_leaves_a_file_that_was_edited(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = (out / "plan.yaml").read_bytes()
     (out / "plan.yaml").write_bytes(before + b"# mine\n")
@@ -826,7 +769,6 @@ def test_there_is_nothing_to_undo(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "so there is nothing to undo" in capsys.readouterr().err
 
 
-@pytest.mark.more
 def test_the_fleet_file_and_the_folder_have_defaults(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

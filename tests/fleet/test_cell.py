@@ -12,14 +12,13 @@ from typing import Any
 
 import pytest
 import yaml
+from fleet_folder import planned_fleet
 from lxml import etree
 from plans import ends_of, own
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.spelling.plan_file import read_plan
 
 URDF = """\
@@ -97,7 +96,7 @@ def built(folder: Path, **changed: str) -> tuple[dict[str, bytes], list[Finding]
         **{it.replace("_", "."): text for it, text in changed.items()},
     }.items():
         (folder / name).write_text(text)
-    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    plan = planned_fleet(folder / "fleet.yaml")
     made = make_outputs(plan)
     return {it.path: it.data for it in made.files}, list(made.findings)
 

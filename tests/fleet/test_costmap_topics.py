@@ -11,12 +11,13 @@ import os
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 from paths import ROOT
 
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
+pytestmark = pytest.mark.slow
 
 OUT = "/anywhere/out"
 EXAMPLE = ROOT / "examples" / "namespace_and_prefix"
@@ -48,7 +49,7 @@ def built(folder: Path, layout: str, distro: str, topic: str) -> list[str]:
     (folder / "params.yaml").write_text(PARAMS.replace("TOPIC", topic))
     fleet = folder / "fleet.yaml"
     fleet.write_text(FLEET.replace("LAYOUT", layout).replace("DISTRO", distro))
-    plan = plan_fleet(read_fleet(str(fleet), "", os.environ))
+    plan = planned_fleet(fleet, around=os.environ)
     made = make_outputs(plan, OUT)
     assert [str(it) for it in read_back(plan, made, OUT)] == []
     name = next(
@@ -60,7 +61,6 @@ def built(folder: Path, layout: str, distro: str, topic: str) -> list[str]:
     return [it.name for it in ends if it.role == "subscribes"]
 
 
-@pytest.mark.more
 @pytest.mark.sample(12)
 @pytest.mark.parametrize("topic", ["scan", "/scan"])
 @pytest.mark.parametrize("distro", ["humble", "jazzy", "kilted"])
@@ -73,7 +73,6 @@ def test_a_source_is_the_robots_scan_in_every_release(
     assert scan in built(tmp_path, layout, distro, topic)
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("distro", ["jazzy", "kilted"])
 def test_the_info_of_a_binary_filter_too(tmp_path: Path, distro: str) -> None:

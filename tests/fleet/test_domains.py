@@ -11,6 +11,7 @@ from typing import NamedTuple
 import pytest
 import yaml
 from drawn_fleets import KINDS
+from fleet_folder import planned_fleet
 from nav2_graphs import ROVER
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -20,7 +21,6 @@ from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
 from multibot_rewrite.system.domains import by_domain, domain_of
 from multibot_rewrite.system.json import to_json
@@ -55,7 +55,7 @@ SIMULATED = """\
 def written(folder: Path, layout: str = "both") -> Outputs:
     file = folder / "fleet.yaml"
     file.write_text(FLEET.format(layout=layout))
-    return make_outputs(plan_fleet(read_fleet(str(file), "", {})))
+    return make_outputs(planned_fleet(file))
 
 
 @pytest.fixture(scope="module")
@@ -282,13 +282,13 @@ def test_what_no_plan_fulfils(layout: str, old: str, new: str, said: str, tmp_pa
         given = given.replace("shared_nodes: map_server\n", "").replace(", /robot1/scan", "")
     file.write_text(given)
     with pytest.raises(UsageError, match=said):
-        make_outputs(plan_fleet(read_fleet(str(file), "", {})))
+        make_outputs(planned_fleet(file))
 
 
 def faults(folder: Path, fleet: str) -> list[Finding]:
     (folder / "robot.urdf").write_text(SIMULATED)
     (folder / "fleet.yaml").write_text(f"description: robot.urdf\ndistro: jazzy\n{fleet}{SMALL}")
-    made = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    made = planned_fleet(folder / "fleet.yaml")
     return [it for it in closed_plan(made).gaps if it.code == "MF849"]
 
 
@@ -314,7 +314,7 @@ def test_what_a_launch_file_loads_or_brings_up_is_reached_from_one_domain(tmp_pa
     ):
         domains = "domains: {{robot1: {}, robot2: {}}}\n".format(*numbers)
         (tmp_path / "fleet.yaml").write_text(f"{head}stack: {stack}\n{domains}{SMALL}")
-        made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+        made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
         found = [it for it in made.findings if it.code == "MF849"]
         assert [it.line for it in found] == [5] * told, stack
 
@@ -357,7 +357,7 @@ def test_one_name_in_two_domains_is_no_clash(tmp_path: Path) -> None:
     told = {}
     for word, more in (("one", ""), ("two", "domains: {robot1: 11, robot2: 12}\n")):
         (tmp_path / f"{word}.yaml").write_text(base + more)
-        made = plan_fleet(read_fleet(str(tmp_path / f"{word}.yaml"), "", {})).fleet
+        made = planned_fleet(tmp_path / f"{word}.yaml").fleet
         told[word] = {it.code for it in made.table.problems}
         assert expected(made).robots
     assert "MR101" in told["one"]

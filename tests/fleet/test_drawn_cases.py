@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 from drawn_builds import judge, run
 from drawn_fleets import KINDS, NAV_PARAMS, RVIZ, SRDF, Data, DrawnFleet
+from fleet_folder import planned_fleet
 from paths import ROBOTS
 
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.spelling.plan_file import read_plan
 
 GZ, CART, XACRO, ARM = "gz rover", "plain cart", "xacro rover", "arm"
@@ -123,10 +122,10 @@ def test_findings_name_robots_by_their_names(drawn: DrawnFleet, tmp_path: Path) 
 
 def test_the_words_of_a_robot_are_those_of_no_other(tmp_path: Path) -> None:
     judge(SWAPPED, tmp_path)
-    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    plan = planned_fleet(tmp_path / "fleet.yaml")
     assert plan.words == {"r1": "r1", "r2": "r2"}
     judge(NAMESPACES, tmp_path / "more")
-    plan = plan_fleet(read_fleet(str(tmp_path / "more" / "fleet.yaml"), "", {}))
+    plan = planned_fleet(tmp_path / "more" / "fleet.yaml")
     assert plan.words == {"r1": "r1", "r2": "r2", "alpha": "r1", "beta": "r2"}
 
 

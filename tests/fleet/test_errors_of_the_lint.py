@@ -10,14 +10,13 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 from support.rule_examples import DESCRIPTION, whole
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import URDF, Rule
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.described import may_stop
 from multibot_rewrite.lint.registry import RULES
@@ -47,7 +46,7 @@ def said(file: Path, simulator: str = "gazebo", layout: str = "frames-per-robot"
     ]
     data = {"layout": layout, "distro": "jazzy", "robots": robots}
     data = {**data, "simulator": simulator} if simulator else data
-    found = plan_fleet(read_fleet(data, "", os.environ))
+    found = planned_fleet(data, around=os.environ)
     return [*dict.fromkeys((*found.of_rewrites, *found.fleet.table.problems))]
 
 

@@ -11,16 +11,14 @@ from typing import Any
 
 import pytest
 import yaml
-from fleet_folder import SMALL, fleet_folder, mixed
+from fleet_folder import SMALL, fleet_folder, mixed, planned_fleet
 from lxml import etree
 from named_ends import named_ends
 from paths import ROBOTS
 from plans import own
 
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected, planned
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.system.json import from_yaml
@@ -29,7 +27,7 @@ LAYOUTS = [("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfi
 
 
 def made(folder: Path, text: str, **files: str) -> dict[str, str]:
-    plan = plan_fleet(read_fleet(str(fleet_folder(folder, text, **files)), "", {}))
+    plan = planned_fleet(fleet_folder(folder, text, **files))
     return {it.path: it.data.decode() for it in make_outputs(plan).files}
 
 
@@ -52,7 +50,7 @@ def test_a_section_in_the_namespace_of_its_robot_is_for_that_robot(tmp_path: Pat
         base__urdf="<robot name='r'><link name='base_link'/></robot>",
         own__yaml=text,
     )
-    plan = expected(plan_fleet(read_fleet(str(folder), "", {})).fleet)
+    plan = expected(planned_fleet(folder).fleet)
     assert {"/r1/controller_manager", "/r1/base"} <= {*own(plan, plan.robots[0].name)}
     assert [it for it in own(plan, plan.robots[0].name) if it.startswith("/r1/r1")] == []
 
@@ -238,7 +236,7 @@ def test_two_stacks_whose_names_meet_are_reported(tmp_path: Path) -> None:
         "robots:\n  - {name: a, description: rover.urdf, stack: nav2}\n"
         "  - {name: b, description: rover.urdf, stack: moveit}\n"
     )
-    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text)), "", {}))
+    plan = planned_fleet(fleet_folder(tmp_path, text))
     assert {it.robot for it in plan.fleet.table.runs} >= {"a", "b"}
     assert not [it for it in plan.fleet.table.problems if it.code == "MG320"]
 
@@ -252,9 +250,7 @@ def test_affixes_that_make_one_name_of_two_are_refused(tmp_path: Path) -> None:
         "  - {name: one, postfix: b, description: one.urdf}\n"
         "  - {name: two, postfix: left_b, description: two.urdf}\n"
     )
-    plan = plan_fleet(
-        read_fleet(str(fleet_folder(tmp_path, text, one__urdf=one, two__urdf=two)), "", {})
-    )
+    plan = planned_fleet(fleet_folder(tmp_path, text, one__urdf=one, two__urdf=two))
     (told,) = plan.fleet.table.problems
     assert (told.code, told.level) == ("MG402", "error")
     assert "one and two would both have the frame 'arm_left_b'" in told.message
@@ -290,7 +286,7 @@ def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
     text = SMALL.replace("stack: nav2\n", "stack: no_robot_state_publisher\n").replace(
         "  params: [params.yaml]\n", ""
     )
-    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text)), "", {}))
+    plan = planned_fleet(fleet_folder(tmp_path, text))
     found = with_start_pose_nodes(plan)
     assert [it.name for it in found.table.runs] == ["start_pose"]
     sent = found.edges["robot1", "start_pose"][0]
@@ -299,7 +295,7 @@ def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
 
 
 def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:
-    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, mixed())), "", {}))
+    plan = planned_fleet(fleet_folder(tmp_path, mixed()))
     parts = list(split_per_robot(plan))
     assert [it.robots for it in parts] == [(it,) for it in plan.robots]
     own = [name for it in parts for name in named_ends(it.fleet.table)]
@@ -318,7 +314,7 @@ def test_the_parameters_that_are_planned_of_nodes(tmp_path: Path) -> None:
     )
     files = {"rover__urdf": (ROBOTS / "rover_gz.urdf").read_text()}
     folder = fleet_folder(tmp_path, text, **files)
-    plan = planned(plan_fleet(read_fleet(str(folder), "", {})).fleet)
+    plan = planned(planned_fleet(folder).fleet)
     found = {(it.node, it.name): it.value for it in plan.parameters}
     fronts = {node: it for (node, name), it in found.items() if name == "frame_prefix"}
     assert fronts == {"/r1/robot_state_publisher": '"r1/"', "/r2/robot_state_publisher": '"p2/"'}

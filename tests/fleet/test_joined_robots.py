@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from fleet_folder import planned_fleet
 from lxml import etree
 
 from multibot_rewrite import load_fleet
@@ -24,7 +25,6 @@ from multibot_rewrite.fleet.file.fleet_file import (
     input_files,
     read_fleet,
 )
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 ARM = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -95,7 +95,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def outputs(path: str = "fleet.yaml") -> dict[str, bytes]:
-    return {it.path: it.data for it in make_outputs(plan_fleet(read_fleet(path, "", {}))).files}
+    return {it.path: it.data for it in make_outputs(planned_fleet(path)).files}
 
 
 def names(data: bytes, tag: str) -> list[str | None]:
@@ -288,7 +288,7 @@ def test_one_window_shows_both_parts(folder: Path) -> None:
     (folder / "dual.rviz").write_text(RVIZ)
     text = FLEET.replace("stack:", "companions: {rviz: dual.rviz}\nstack:")
     (folder / "fleet.yaml").write_text(text)
-    plan = plan_fleet(read_fleet("fleet.yaml", "", {}))
+    plan = planned_fleet("fleet.yaml")
     made = make_outputs(plan)
     (window,) = [it.data.decode() for it in made.files if it.path.endswith("dual.rviz")]
     for name in ("left_base", "right_base", "left_tool", "right_tool", "table"):

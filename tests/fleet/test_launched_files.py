@@ -6,12 +6,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.launch import launched_robot
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
@@ -60,7 +59,7 @@ def built(
     (folder / "robot.urdf").write_text(DESCRIPTION)
     (folder / "bringup.launch.py").write_text("")
     (folder / "fleet.yaml").write_text(FLEET.format(params=params))
-    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    plan = planned_fleet(folder / "fleet.yaml")
     texts = {it.path: it.data.decode() for it in make_outputs(plan).files}
     return texts, [it for it in plan.fleet.table.problems if it.code == "MF824"]
 
@@ -143,7 +142,7 @@ def test_robots_that_launch_files_of_their_own_have_them(
     (tmp_path / "robot2.yaml").write_text(FILLED.replace("drive", "steer"))
     fleet = FLEET.format(params="").replace("launch.py", "launch.py params:={robot}.yaml")
     (tmp_path / "fleet.yaml").write_text(fleet)
-    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    plan = planned_fleet(tmp_path / "fleet.yaml")
     paths = {it.path for it in make_outputs(plan).files}
     assert {"robot1/robot1.yaml", "robot2/robot2.yaml"} <= paths
     assert not {"robot2/robot1.yaml", "robot1/robot2.yaml"} & paths
@@ -178,7 +177,7 @@ def test_names_that_the_launch_itself_gives_are_told(
     (tmp_path / "robot.urdf").write_text(DESCRIPTION)
     (tmp_path / "bringup.launch.py").write_text("")
     (tmp_path / "fleet.yaml").write_text(FLEET.format(params=params))
-    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    plan = planned_fleet(tmp_path / "fleet.yaml")
     said = [it for it in plan.fleet.table.problems if it.code == "MF824"]
     assert [it.message.partition(" ekf_filter_node ")[2].partition(":")[0] for it in said] == (
         [told] if told else []

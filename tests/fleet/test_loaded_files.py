@@ -10,6 +10,8 @@ from paths import ROBOTS
 
 from multibot_rewrite.cli.multibot import main
 
+pytestmark = pytest.mark.slow
+
 CONTROLLERS = """\
 controller_manager:
   ros__parameters:
@@ -37,7 +39,6 @@ def package(folder: Path, path: str) -> Path:
     return folder
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "path",
@@ -59,7 +60,6 @@ def test_each_robot_loads_its_own(path: str, tmp_path: Path) -> None:
     assert (folder / "config" / "c.yaml").read_text() == CONTROLLERS
 
 
-@pytest.mark.more
 def test_its_controllers_are_planned_and_started(tmp_path: Path) -> None:
     folder, out = package(tmp_path / "src", "config/c.yaml"), tmp_path / "out"
     assert main(["build", str(folder / "fleet.yaml"), "-o", str(out), "-q"]) == 0
@@ -67,7 +67,6 @@ def test_its_controllers_are_planned_and_started(tmp_path: Path) -> None:
     assert "'wheels'" in (out / "fleet.launch.py").read_text()
 
 
-@pytest.mark.more
 def test_one_that_is_not_there_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = package(tmp_path / "src", "package://nowhere/config/c.yaml")
     assert main(["build", str(folder / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
@@ -76,7 +75,6 @@ def test_one_that_is_not_there_is_told(tmp_path: Path, capsys: pytest.CaptureFix
     assert "'package://nowhere/config/c.yaml', which is not there" in said
 
 
-@pytest.mark.more
 def test_a_real_robot_loads_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = package(tmp_path / "src", "package://nowhere/config/c.yaml")
     (folder / "fleet.yaml").write_text(f"simulator: none\n{FLEET}{ROBOTS_TWO}")

@@ -12,6 +12,8 @@ from fleet_folder import SMALL, fleet_folder
 
 from multibot_rewrite.cli.multibot import main
 
+pytestmark = pytest.mark.slow
+
 
 def build(folder: Path, *more: str) -> int:
     return main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out"), *more])
@@ -44,12 +46,6 @@ def stale(out: Path, capsys: pytest.CaptureFixture[str]) -> set[str]:
 # What an earlier build made and this one does not.
 
 
-@pytest.mark.slow
-def test_what_is_no_longer_made_is_left_over(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert stale(out, capsys) == {"robot2/rover.urdf", "robot2/params.yaml"}
-
-
-@pytest.mark.slow
 def test_what_is_gone_already_is_not_left_over(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -59,7 +55,6 @@ def test_what_is_gone_already_is_not_left_over(
     assert not (out / "robot2").exists()
 
 
-@pytest.mark.slow
 def test_a_folder_that_is_gone_already_is_not_left_over(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -71,7 +66,6 @@ def test_a_folder_that_is_gone_already_is_not_left_over(
     assert build(out.parent, "--check") == 0
 
 
-@pytest.mark.slow
 def test_a_folder_in_the_place_of_a_file_is_not_removed(out: Path) -> None:
     """It is not what the build made."""
     path = out / "robot2" / "params.yaml"
@@ -98,7 +92,6 @@ def foreign(folder: Path, value: str, capsys: pytest.CaptureFixture[str]) -> lis
     return [(file, int(line)) for file, line in lines]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "value",
     [
@@ -113,7 +106,6 @@ def test_the_model_of_another_robot_is_found_inside_a_name(
     assert foreign(tmp_path, value, capsys) == [("params.yaml", 4)]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "value",
     ["/model/rover/scan", "/world/robot2_hall/model/rover/scan", "/x/models/robot2/scan", "model"],

@@ -6,13 +6,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 from nav2_graphs import ROVER, healthy, moved, with_end, without_node
 
+from multibot_rewrite import compare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.records import System
@@ -35,7 +35,7 @@ def planned(folder: Path, layout: str) -> System:
     """The plan of the fleet, through its file."""
     file = folder / "fleet.yaml"
     file.write_text(FLEET.format(layout=layout, rover=ROVER))
-    plan = expected(plan_fleet(read_fleet(str(file), "", {})).fleet)
+    plan = expected(planned_fleet(file).fleet)
     return from_yaml(to_yaml(plan).encode(), "plan.yaml")
 
 
@@ -45,7 +45,7 @@ def test_a_fleet_as_planned_has_no_findings(tmp_path: Path, layout: str) -> None
     plan = planned(tmp_path, layout)
     names = [robot.name for robot in plan.robots]
     assert names == ["fleet_a/robot1", "fleet_b/robot1", "guard"]
-    assert check(plan, healthy(plan)) == []
+    assert compare(plan, healthy(plan)) == []
     scans = {it.name for it in plan.ends if it.code_name in {"/scan", "scan"}}
     assert scans == {"/fleet_a/robot1/scan", "/fleet_b/robot1/scan", "/guard/scan"}
 
@@ -68,12 +68,12 @@ def test_faults_name_the_robot(tmp_path: Path) -> None:
     graph = moved(graph, "/fleet_b/robot1/scan", "/fleet_a/robot1/scan", "fleet_b/robot1/amcl")
     graph = without_node(graph, "/guard/bt_navigator")
     graph = with_end(graph, "/fleet_b/robot1/gripper", "/fleet_b/robot1/open")
-    found = {(it.code, it.robot, it.node) for it in check(plan, graph)}
+    found = {(it.code, it.robot, it.node) for it in compare(plan, graph)}
     assert ("MG308", "fleet_a/robot1", "/fleet_a/robot1/collision_monitor") in found
     assert ("MG321", "fleet_b/robot1", "/fleet_b/robot1/amcl") in found
     assert ("MG101", "guard", "/guard/bt_navigator") in found
     assert ("MG108", "fleet_b/robot1", "/fleet_b/robot1/gripper") in found
-    hints = " ".join(it.hint for it in check(plan, graph))
+    hints = " ".join(it.hint for it in compare(plan, graph))
     assert "robot1/fleet_" not in hints
 
 
@@ -83,9 +83,9 @@ def test_a_robot_above_another_one_keeps_its_names(tmp_path: Path) -> None:
     file = tmp_path / "fleet.yaml"
     text = FLEET.format(layout="both", rover=ROVER)
     file.write_text(text.replace("name: guard", "name: guard, namespace: fleet_a"))
-    plan = expected(plan_fleet(read_fleet(str(file), "", {})).fleet)
+    plan = expected(planned_fleet(file).fleet)
     graph = with_end(healthy(plan), "/fleet_a/robot1/gripper", "/fleet_a/robot1/open")
-    assert [(it.code, it.robot) for it in check(plan, graph)] == [("MG108", "fleet_a/robot1")]
+    assert [(it.code, it.robot) for it in compare(plan, graph)] == [("MG108", "fleet_a/robot1")]
 
 
 def test_the_layout_without_namespaces_refuses_them(tmp_path: Path) -> None:

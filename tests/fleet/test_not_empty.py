@@ -13,12 +13,12 @@ from graph_cases import as_planned
 from paths import FIXTURES
 from plans import own
 
+from multibot_rewrite import compare
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, expected, facts_of, make_fleet
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
 from multibot_rewrite.system.json import from_json, from_yaml, to_json
 
@@ -259,7 +259,7 @@ def test_no_public_description_makes_an_empty_plan(corpus: dict[str, Path]) -> N
         made += 1
         assert [it.name for it in plan.robots] == ["robot1", "robot2"]
         assert all(any(PUBLISHER in node for node in own(plan, it.name)) for it in plan.robots)
-        found = {it.code for it in check(plan, graph) if it.level == "error"}
+        found = {it.code for it in compare(plan, graph) if it.level == "error"}
         assert found, path
         frames = plan.robots[0].frames
         # A joint below a link that is nowhere makes a frame without the robot's name.

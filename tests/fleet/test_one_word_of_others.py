@@ -9,32 +9,32 @@ from pathlib import Path
 
 import pytest
 import yaml
+from fleet_folder import planned_fleet
 from graph_cases import as_planned
 from random_parameters import LAYOUTS, RELEASE, STACKS, planned, random_file
 
+from multibot_rewrite import compare
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.system.records import System
+
+pytestmark = pytest.mark.slow
 
 # Rules about names: one node under another topic, of another robot, or not there. In random files two
 # nodes of other types may have one topic, which is told, and is right.
 NAMES = ("MG101", "MG102", "MG310", "MG311", "MG320", "MG321", "MG301", "MG307", "MG108")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_a_graph_as_planned_has_no_finding(seed: int, tmp_path: Path) -> None:
     draw = random.Random(seed)
     text, stack = random_file(draw), draw.choice(STACKS)
     made, _ = planned(tmp_path, text, LAYOUTS[seed % 4], draw.choice(("prefix", "postfix")), stack)
     plan = expected(made.fleet)
-    found = [it for it in check(plan, as_planned(plan)) if it.code in NAMES]
+    found = [it for it in compare(plan, as_planned(plan)) if it.code in NAMES]
     assert found == [], (stack, text)
 
 
@@ -67,14 +67,13 @@ def bridged(folder: Path, layout: str, affix: str, row: str, read: str) -> tuple
     (folder / "b.yaml").write_text(yaml.safe_dump([words | types]))
     text = FLEET.format(layout=layout, affix=affix, release=RELEASE, more=", bridge: b.yaml")
     (folder / "fleet.yaml").write_text(text)
-    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    plan = planned_fleet(folder / "fleet.yaml")
     files = [it for it in make_outputs(plan).files if it.path.endswith("bridge.yaml")]
     rows = [row for it in files for row in yaml.safe_load(it.data) or []]
     scans = (it["ros_topic_name"] for it in rows if it["ros_type_name"] == SCAN)
     return expected(closed_plan(plan)), [f"/{it.lstrip('/')}" for it in scans]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("seed", range(3))
 def test_who_met_the_bridge_before_meets_it_after(layout: str, seed: int, tmp_path: Path) -> None:
@@ -125,7 +124,6 @@ def _controllers(draw: random.Random) -> Iterator[str]:
         yield f"    command_interfaces: [{both[0]}]\n    state_interfaces: [{both[1]}]\n"
 
 
-@pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("seed", range(8))
 def test_the_lint_finds_what_a_plan_finds(seed: int, tmp_path: Path) -> None:
@@ -135,7 +133,7 @@ def test_the_lint_finds_what_a_plan_finds(seed: int, tmp_path: Path) -> None:
     (tmp_path / "p.yaml").write_text(controllers)
     more = {"layout": LAYOUTS[seed % 4], "affix": "prefix", "release": RELEASE, "more": ""}
     (tmp_path / "fleet.yaml").write_text(FLEET.format(**more))
-    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    plan = planned_fleet(tmp_path / "fleet.yaml")
     open_ = [it for it in closed_plan(plan).gaps if it.code == "MB229"]
     said = {(Path(it.file).name, it.line, it.message.partition(" ")[0]) for it in open_}
     settings = Settings(select=("MB229",), distro=RELEASE)

@@ -6,11 +6,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 DOG = """\
 <robot name="dog">
@@ -49,7 +48,7 @@ def test_frames_of_a_filter_that_is_started_elsewhere(layout: str, tmp_path: Pat
     (tmp_path / "dog.urdf").write_text(DOG)
     (tmp_path / "ekf.yaml").write_text(FILTER)
     (tmp_path / "fleet.yaml").write_text(FLEET.replace("LAYOUT", layout))
-    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    plan = planned_fleet(tmp_path / "fleet.yaml")
     made = make_outputs(plan, str(tmp_path / "out"))
     (first, *_) = made.planned.robots
     assert any("base_footprint" in it for it in first.frames)
@@ -62,7 +61,7 @@ def test_a_plugin_that_says_where_the_robot_is_has_a_name(tmp_path: Path) -> Non
     (tmp_path / "fleet.yaml").write_text(
         "layout: tf-per-robot\nrobots: [{name: robot1, description: sub.sdf, pose: {x: 1}}]\n"
     )
-    found = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))).findings
+    found = make_outputs(planned_fleet(tmp_path / "fleet.yaml", "jazzy")).findings
     (said,) = [it.message for it in found if it.code == "MF701"]
     assert "because its description already says where it is" in said
 
@@ -89,7 +88,7 @@ def test_a_sensor_that_names_no_frame_is_told(
     (tmp_path / "dog.urdf").write_text(SEEN.format(said))
     head = f"layout: tf-per-robot\nsimulator: {simulator}\n"
     (tmp_path / "fleet.yaml").write_text(f"{head}robots: [{{name: r1, description: dog.urdf}}]\n")
-    found = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))).findings
+    found = make_outputs(planned_fleet(tmp_path / "fleet.yaml", "jazzy")).findings
     lines = [it for it in found if it.code == "MG412"]
     assert silent == (not lines)
     for it in lines:
@@ -110,7 +109,7 @@ def test_all_that_read_a_frame_that_nothing_sends_are_told(tmp_path: Path) -> No
     (tmp_path / "ekf.yaml").write_text(COSTMAP)
     text = FLEET.replace("LAYOUT", "tf-per-robot").replace("companions", "stack: nav2\ncompanions")
     (tmp_path / "fleet.yaml").write_text(text)
-    found = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))).findings
+    found = make_outputs(planned_fleet(tmp_path / "fleet.yaml")).findings
     (said,) = [it for it in found if it.code == "MG413" and "frame base_link," in it.message]
     for node in ("/local_costmap/local_costmap", "/behavior_server"):
         assert node in said.message
@@ -118,7 +117,7 @@ def test_all_that_read_a_frame_that_nothing_sends_are_told(tmp_path: Path) -> No
         (tmp_path / "ekf.yaml").write_text(COSTMAP.partition("\n")[2])
         head = text.replace("stack: nav2", f"stack: navigation\nsimulator: {simulator}")
         (tmp_path / "fleet.yaml").write_text(head)
-        plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+        plan = planned_fleet(tmp_path / "fleet.yaml")
         lines = [it for it in make_outputs(plan).findings if it.code == "MG413"]
         assert {it.level for it in lines if "frame odom," in it.message} == codes
 
@@ -132,5 +131,5 @@ def test_a_frame_of_a_node_that_hears_no_transforms_is_not_missed(tmp_path: Path
         "layout: tf-per-robot\nsimulator: gazebo\ndescription: dog.urdf\n"
         "companions: {params: imu.yaml}\nrobots: [{name: r1}]\n"
     )
-    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))
+    plan = planned_fleet(tmp_path / "fleet.yaml", "jazzy")
     assert [it for it in make_outputs(plan).findings if it.code == "MG413"] == []

@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fleet_folder import planned_fleet
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.reports.xacro_arguments import find_arguments
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 ROVER = """\
 <robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -48,7 +48,7 @@ def xacro(folder: Path, argument: str, inside: str, plugin: str = OF_GZ) -> str:
 def planned(description: str, **keys: Any) -> FleetPlan:
     data = {"layout": "both", "affix": "prefix", "simulator": "gazebo", "stack": "gz_ros2_control"}
     data |= {"description": description, "robots": [{"name": "robot1"}, {"name": "robot2"}]}
-    return plan_fleet(read_fleet({**data, **keys}, "jazzy", {}))
+    return planned_fleet({**data, **keys}, "jazzy")
 
 
 def said(plan: FleetPlan) -> list[Finding]:

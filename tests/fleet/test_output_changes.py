@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.fleet.manifest import OutputChanges, hash_of, output_changes
+from multibot_rewrite import InputError
+from multibot_rewrite.fleet.manifest import OutputChanges, hash_of, output_changes, read_manifest
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
 NEW, OLD, MINE = hash_of(b"new"), hash_of(b"old"), hash_of(b"mine")
@@ -34,3 +35,19 @@ def test_what_a_build_changes(
 ) -> None:
     made = [OutputFile("a", b"new", ())]
     assert output_changes(made, known, there) == OutputChanges(*found)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "{}",
+        "[1]",
+        '{"format": "multibot build 0", "outputs": {}}',
+        '{"format": "multibot build 1", "outputs": {"../x": "0"}}',
+        '{"format": "multibot build 1", "outputs": {"/etc/x": "0"}}',
+    ],
+)
+def test_what_is_no_manifest_is_refused(text: str) -> None:
+    with pytest.raises(InputError, match="m: not a manifest of multibot build; delete it"):
+        read_manifest(text.encode(), "m")

@@ -12,14 +12,13 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 from lxml import etree
 
 from multibot_rewrite import rewrite, rewrite_all, strip
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 ARDUPILOT = '<plugin name="a" filename="ArduPilotPlugin"><fdm_port_in>9002</fdm_port_in></plugin>'
 MAVLINK = '<plugin name="m" filename="libgazebo_mavlink_interface.so">{}</plugin>'
@@ -36,7 +35,7 @@ def _built(
     (folder / "fleet.yaml").write_text(
         f"layout: both\ndistro: {distro}\nsimulator: gazebo\nrobots:\n{robots}"
     )
-    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    plan = planned_fleet(folder / "fleet.yaml")
     made = make_outputs(plan, str(folder / "out"))
     texts = {it.path: it.text for it in made.files}
     said = [*made.findings, *plan.fleet.table.problems]
@@ -158,7 +157,7 @@ def test_two_mavros_of_one_system_are_joined_by_topics_of_their_own(tmp_path: Pa
     robots = "".join(f"  - {{name: uav{it}, description: d.urdf}}\n" for it in (1, 2))
     text = f"layout: both\ndistro: jazzy\nrobots:\n{robots}companions: {{params: p.yaml}}\n"
     (tmp_path / "fleet.yaml").write_text(text)
-    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    plan = planned_fleet(tmp_path / "fleet.yaml")
     files = {it.path: it.text for it in make_outputs(plan, "out").files}
     for end in ("source", "sink"):
         rule = f"[/uas1/mavlink_{end}, uas1/mavlink_{end}]"

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from built_faults import FLEET, OUT, Edit, edited, fleet, in_file, in_launch, node, without
+from fleet_folder import planned_fleet
 from paths import ROOT
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
@@ -21,8 +22,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks import read_back as back
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 EXAMPLE = ROOT / "examples" / "namespace_and_prefix" / "nav2.yaml"
 EXAMPLES = sorted((ROOT / "examples").glob("*/fleet.yaml"))
@@ -30,7 +30,7 @@ EXAMPLES = sorted((ROOT / "examples").glob("*/fleet.yaml"))
 
 @pytest.fixture(scope="module")
 def built() -> tuple[FleetPlan, Outputs]:
-    plan = plan_fleet(read_fleet(str(EXAMPLE), "", os.environ), trust=True)
+    plan = planned_fleet(EXAMPLE, around=os.environ, trust=True)
     return plan, make_outputs(plan, OUT)
 
 
@@ -44,7 +44,7 @@ def test_nothing_is_wrong_with_a_whole_fleet(built: tuple[FleetPlan, Outputs]) -
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda it: it.parent.name)
 def test_nothing_is_wrong_with_the_examples_in_any_release(example: Path, release: str) -> None:
-    plan = plan_fleet(read_fleet(str(example), release, os.environ), trust=True)
+    plan = planned_fleet(example, release, around=os.environ, trust=True)
     assert read_back(plan, make_outputs(plan, OUT), OUT) == []
 
 
@@ -53,7 +53,7 @@ def test_a_rule_that_a_rehearsal_would_miss_is_an_error() -> None:
     """Humble's controller manager asks for ~/robot_description (ros2_control 2,
     controller_manager.cpp), robot_state_publisher sends robot_description."""
     example = str(ROOT / "examples" / "two_arms_moveit" / "fleet.yaml")
-    plan = plan_fleet(read_fleet(example, "humble", os.environ), trust=True)
+    plan = planned_fleet(example, "humble", around=os.environ, trust=True)
     spoiled = edited(make_outputs(plan, OUT), in_launch(without("~/robot_description")))
     found = {
         it.node: it.code for it in read_back(plan, spoiled, OUT) if it.node and it.level == ERROR
@@ -234,7 +234,7 @@ CONTROLLERS: Mapping[str, tuple[Edit, str, str]] = {
 def test_a_controller_runs_as_it_is_declared(name: str) -> None:
     edit, code, lost = CONTROLLERS[name]
     example = str(ROOT / "examples" / "two_arms_moveit" / "fleet.yaml")
-    plan = plan_fleet(read_fleet(example, "", os.environ), trust=True)
+    plan = planned_fleet(example, around=os.environ, trust=True)
     found = read_back(plan, edited(make_outputs(plan, OUT), edit), OUT)
     assert (code, lost) in {(it.code, it.node) for it in found if it.level == ERROR}
 
@@ -315,7 +315,7 @@ def test_a_warning_of_one_is_true_of_its_sort(
         "layout: tf-per-robot\ndistro: jazzy\ndescription: rover.urdf\nstack: [nav2]\n"
         f"robots: [{rows}]\n"
     )
-    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", os.environ))
+    plan = planned_fleet(tmp_path / "fleet.yaml", around=os.environ)
     made = make_outputs(plan, OUT)
     counts: list[int] = []
     read = back._read

@@ -15,12 +15,11 @@ from graph_cases import as_planned, sent
 from paths import ROBOTS
 from plans import own
 
-from multibot_rewrite import UsageError, load_fleet
+from multibot_rewrite import UsageError, compare, load_fleet
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.scripts import LoadedFleet
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, End, System
 
@@ -78,11 +77,11 @@ def test_a_relay_reads_the_robots_tf_and_writes_tf(
 def test_a_relayed_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path, layout: str) -> None:
     plan = expected(fleet(tmp_path, layout).plan.fleet)
     graph = relayed(plan)
-    assert [it for it in check(plan, graph) if it.level != NOTE] == []
+    assert [it for it in compare(plan, graph) if it.level != NOTE] == []
     state = next(it for it in own(plan, plan.robots[0].name) if "robot_state" in it)
     leak = End(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
     spoiled = sent(graph._replace(ends=(*graph.ends, leak)))
-    assert {"MG405"} <= {it.code for it in check(plan, spoiled)}
+    assert {"MG405"} <= {it.code for it in compare(plan, spoiled)}
 
 
 @pytest.mark.more
@@ -142,13 +141,13 @@ def bridged(plan: System) -> System:
 def test_a_bridged_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path) -> None:
     plan = expected(fleet(tmp_path, "tf-per-robot").plan.fleet)
     graph = bridged(plan)
-    assert [it for it in check(plan, graph) if it.level != NOTE] == []
+    assert [it for it in compare(plan, graph) if it.level != NOTE] == []
     # Without the remap rule a robot's frames are on /tf, with bare names.
     state = next(it for it in own(plan, plan.robots[0].name) if "robot_state" in it)
     leak = End(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
     bare = Edge("base_link", "odom", "/tf", False, ())
     spoiled = graph._replace(ends=(*graph.ends, leak), edges=(*graph.edges, bare))
-    (said,) = (it for it in check(plan, sent(spoiled)) if it.code == "MG405")
+    (said,) = (it for it in compare(plan, sent(spoiled)) if it.code == "MG405")
     assert (said.node, said.names[0]) == (state, "/tf")
 
 

@@ -6,11 +6,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fleet_folder import fleet_folder
+from fleet_folder import fleet_folder, planned_fleet
 
 from multibot_rewrite.base.findings.finding import RewriteRefused
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 FLEET = "layout: both\naffix: prefix\ndescription: rover.urdf\nrobots: [{}]\n"
 ROBOT = '<robot name="rover"><link name="{}"/><link name="b"/><link name="c"/>{}</robot>\n'
@@ -21,9 +20,7 @@ NAMESPACE = DRIVE.format("<ros><namespace>{}</namespace></ros>")
 def planned(folder: Path, robot: str, link: str, namespace: str) -> FleetPlan:
     """The plan of a fleet of one robot, whose description has a link and a namespace."""
     text = ROBOT.format(link, NAMESPACE.format(namespace))
-    return plan_fleet(
-        read_fleet(str(fleet_folder(folder, FLEET.format(robot), rover__urdf=text)), "", {})
-    )
+    return planned_fleet(fleet_folder(folder, FLEET.format(robot), rover__urdf=text))
 
 
 BOTH = "{name: r7, namespace: site7, prefix: s1}"

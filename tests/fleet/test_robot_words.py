@@ -7,13 +7,12 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from fleet_folder import SMALL, fleet_folder, mixed
+from fleet_folder import SMALL, fleet_folder, mixed, planned_fleet
 from paths import CORPUS
 
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     OutputFile,
     expanded_name,
@@ -25,7 +24,7 @@ from multibot_rewrite.rules.settings import Settings
 
 
 def planned(folder: Path, text: str = SMALL, **files: str) -> FleetPlan:
-    return plan_fleet(read_fleet(str(fleet_folder(folder, text, **files)), "", {}))
+    return planned_fleet(fleet_folder(folder, text, **files))
 
 
 def params(value: str) -> str:

@@ -6,11 +6,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fleet_folder import SMALL, fleet_folder
+from fleet_folder import SMALL, fleet_folder, planned_fleet
 
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 PARENTS = """\
 layout: L2
@@ -21,7 +20,7 @@ robots: [{name: r1}, {name: r2}]
 
 
 def planned(folder: Path, text: str = SMALL, **files: str) -> FleetPlan:
-    return plan_fleet(read_fleet(str(fleet_folder(folder, text, **files)), "", {}))
+    return planned_fleet(fleet_folder(folder, text, **files))
 
 
 @pytest.mark.more

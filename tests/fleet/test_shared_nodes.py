@@ -6,13 +6,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 from nav2_graphs import ROVER
 from plans import own
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.system.records import System
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -30,7 +29,7 @@ robots: [{{name: robot1}}, {{name: robot2}}]
 def planned(folder: Path, layout: str, shared: str = "map_server") -> System:
     file = folder / "fleet.yaml"
     file.write_text(FLEET.format(layout=layout, rover=ROVER, shared=shared))
-    made = plan_fleet(read_fleet(str(file), "", {})).fleet
+    made = planned_fleet(file).fleet
     assert [it for it in made.table.problems if it.level == "error"] == []
     return expected(made)
 
@@ -76,7 +75,7 @@ def test_a_client_of_a_shared_node_calls_the_one_there_is(tmp_path: Path) -> Non
         file = tmp_path / "fleet.yaml"
         text = FLEET.format(layout=layout, rover=ROVER, shared="atlas")
         file.write_text(text.replace("stack: nav2", "stack: acme\nnodes: nodes.yaml"))
-        plan = expected(plan_fleet(read_fleet(str(file), "", {})).fleet)
+        plan = expected(planned_fleet(file).fleet)
         names = {it.name for it in plan.ends if "load" in it.name}
         assert names == {"/atlas/load"}, layout
 

@@ -7,18 +7,17 @@ from pathlib import Path
 
 import pytest
 import yaml
+from fleet_folder import planned_fleet
 from nav2_graphs import environment
 from plans import optional, own
 
-from multibot_rewrite import InputError
+from multibot_rewrite import InputError, compare
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.rules.check import check
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.system.records import RUNS, Node, System
 
 # A drive that is a ROS node, and a sensor whose topic a bridge has to carry.
@@ -51,7 +50,7 @@ def plan_of(folder: Path, more: str = "", launched: str = AMCL, fleet: str = FLE
     (folder / "robot.urdf").write_text(DESCRIPTION)
     (folder / "system_model.yaml").write_text(f"structure:\n  nodes:\n{launched}")
     (folder / "fleet.yaml").write_text(fleet + more)
-    return plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    return planned_fleet(folder / "fleet.yaml")
 
 
 def expectation(folder: Path, more: str = "", launched: str = AMCL) -> System:
@@ -150,7 +149,7 @@ def test_no_bridge_is_missing_for_a_real_robot(tmp_path: Path) -> None:
     seen = System(tuple(Node(it, it) for it in state), (), (), environment())
 
     def codes(more: str) -> set[str]:
-        return {it.code for it in check(expectation(tmp_path, more), seen)}
+        return {it.code for it in compare(expectation(tmp_path, more), seen)}
 
     simulated, real = codes("simulator: gazebo\n"), codes("simulator: none\n")
     assert simulated - real == {"MG101", "MG126"} and real <= simulated
@@ -250,6 +249,6 @@ def test_a_drive_that_nobody_has_read_is_told(
     (tmp_path / "own.urdf").write_text(OWN.format(parts))
     fleet = f"layout: both\naffix: prefix\ndistro: humble\n{more}description: own.urdf\n"
     (tmp_path / "f.yaml").write_text(f"{fleet}robots: [{{name: robot1}}, {{name: robot2}}]\n")
-    gaps = closed_plan(plan_fleet(read_fleet(str(tmp_path / "f.yaml"), "", {}))).gaps
+    gaps = closed_plan(planned_fleet(tmp_path / "f.yaml")).gaps
     found = [it.message for it in gaps if it.code == "MF844"]
     assert [said in it for it in found] == ([True] if said else [])

@@ -14,12 +14,12 @@ from tempfile import TemporaryDirectory
 
 import pytest
 from built_faults import BUILT, FLEET, LAUNCH, OUT, Edit, edited, fleet, in_file
+from fleet_folder import planned_fleet
 
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.checks.two_of_each import two_of_each
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.system.records import PUBLISHES, Topic
 
 pytestmark = pytest.mark.more
@@ -34,7 +34,7 @@ def five(*names: str) -> tuple[FleetPlan, Outputs]:
     with TemporaryDirectory() as folder:
         file = Path(folder) / "fleet.yaml"
         file.write_text(re.sub("(?m)^robots:.*$", f"robots: [{rows}]", FLEET))
-        plan = plan_fleet(read_fleet(str(file), "", os.environ), trust=True)
+        plan = planned_fleet(file, around=os.environ, trust=True)
         return plan, make_outputs(plan, OUT)
 
 

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import pytest
 import yaml
+from fleet_folder import planned_fleet
 from lxml import etree
 from vendor_arm_pages import text_of
 from vendor_sources import (
@@ -29,9 +30,9 @@ from vendor_sources import (
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.launch import missing as without_launch
+
+pytestmark = pytest.mark.slow
 
 UR = "Universal_Robots_ROS2_Driver"
 FR3 = "franka_ros2/franka_fr3_moveit_config"
@@ -180,7 +181,7 @@ def build(sources: Path, tmp_path: Path) -> Build:
             "robots": [{"name": it} for it in ROBOTS[:count]],
         }
         (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(fleet))
-        made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+        made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
         return {it.path: it.data for it in made.files}, list(made.findings)
 
     return built
@@ -216,7 +217,6 @@ def _is_own(name: str, way: str) -> bool:
     return way == OWN or (way == FILLED and name != "gen3")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("way", [OWN, FILLED, BARE])
 @pytest.mark.parametrize("name", ARMS)
 def test_the_description_is_that_of_the_vendors_prefix(
@@ -236,7 +236,6 @@ def test_the_description_is_that_of_the_vendors_prefix(
     assert not [it for it in findings if it.level == "error"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("way", [OWN, FILLED, BARE])
 @pytest.mark.parametrize("name", ARMS)
 def test_moveits_files_and_parameters_fit_the_vendors_description(
@@ -270,7 +269,6 @@ def _joints(data: Any) -> set[str]:
     return set(words)
 
 
-@pytest.mark.slow
 def test_the_controllers_of_ur_are_those_that_its_launch_file_fills(
     build: Build, sources: Path
 ) -> None:
@@ -288,7 +286,6 @@ def test_the_controllers_of_ur_are_those_that_its_launch_file_fills(
         assert kept == {f"/left/{node}": values for node, values in vendor.items()}
 
 
-@pytest.mark.slow
 def test_both_srdfs_of_xarm_are_its_own_for_two_arms(build: Build, sources: Path) -> None:
     arm = ARMS["xarm6"]
     path = f"{XARM}/srdf/dual_xarm.srdf.xacro"
@@ -299,7 +296,6 @@ def test_both_srdfs_of_xarm_are_its_own_for_two_arms(build: Build, sources: Path
     assert _texts(made) == _texts(vendor)
 
 
-@pytest.mark.slow
 def test_both_descriptions_of_xarm_are_its_own_for_two_arms(build: Build, sources: Path) -> None:
     arm = ARMS["xarm6"]
     path = "xarm_ros2/xarm_description/urdf/dual_xarm_device.urdf.xacro"
@@ -330,7 +326,6 @@ print(json.dumps(made.to_moveit_configs().to_dict()))
 """
 
 
-@pytest.mark.slow
 def test_a_cell_of_xarms_is_the_vendors_own_for_two_arms(sources: Path, tmp_path: Path) -> None:
     """Its DualMoveItConfigsBuilder makes the parameters of its one move_group."""
     lacking = without_launch()
@@ -343,7 +338,7 @@ def test_a_cell_of_xarms_is_the_vendors_own_for_two_arms(sources: Path, tmp_path
         del robot["pose"]
     fleet["robots"][1]["arguments"] |= {"attach_xyz": "0 1 0"}
     (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(fleet))
-    made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+    made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
     assert {it.code for it in made.findings} <= {"MB873"}
     (file,) = (it.data for it in made.files if it.path == "cell/moveit_parameters.yaml")
     ours = yaml.safe_load(file)["/**"]["ros__parameters"]
@@ -373,7 +368,6 @@ def _of_the_vendors_builder(sources: Path) -> Any:
     return json.loads(done.stdout.splitlines()[-1])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("page", ["ur", "franka", "xarm", "kinova"])
 def test_a_cell_of_a_pages_arms_is_one_robot_for_referees(
     page: str, sources: Path, tmp_path: Path
@@ -382,7 +376,7 @@ def test_a_cell_of_a_pages_arms_is_one_robot_for_referees(
     fleet = yaml.safe_load(_fleet_of(page).replace("src/", f"{sources}/"))
     fleet |= {"cell": {}, "layout": "frames-per-robot"}
     (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(fleet))
-    made = make_outputs(plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {})))
+    made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
     assert not [it for it in made.findings if it.level == "error"]
     files = {it.path: it.data for it in made.files}
     cell = pinocchio.buildModelFromXML(files["cell/cell.urdf"].decode())
@@ -412,7 +406,6 @@ def _texts(elements: Any) -> list[str]:
     return sorted(re.sub(r">\s+<", "><", etree.tostring(it).decode()).strip() for it in parts)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("layout", "count"), [("both", 2), ("postfix", 3), ("tf-per-robot", 3)])
 @pytest.mark.parametrize("name", ARMS)
 def test_another_layout_and_three_robots_have_no_false_findings(
@@ -436,14 +429,13 @@ def test_another_layout_and_three_robots_have_no_false_findings(
         assert set(solvers) <= groups
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("page", ["ur", "franka", "xarm", "kinova"])
 def test_the_fleet_of_a_page_is_built(page: str, sources: Path, tmp_path: Path) -> None:
     text = text_of(page)
     fleet = _fleet_of(page)
     path = tmp_path / "fleet.yaml"
     path.write_text(re.sub(r"\bsrc/", f"{sources}/", fleet))
-    made = make_outputs(plan_fleet(read_fleet(str(path), "", {})))
+    made = make_outputs(planned_fleet(path))
     # What is left is on the page; MF203 says that each arm has its own RViz.
     assert {it.code for it in made.findings} - {"MF203", FILLING} <= set(
         re.findall(r"M[BF]\d{3}", text)

@@ -6,12 +6,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 from named_ends import named_ends
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 
@@ -54,7 +54,7 @@ def plan(folder: Path, description: str, more: str = "", params: str = "") -> Fl
     own = "companions: {params: p.yaml}\n" if params else ""
     head = f"description: {name}\nlayout: tf-per-robot\naffix: prefix\n{own}"
     fleet.write_text(f"{head}{more}robots: [{{name: robot1}}, {{name: robot2}}]\n")
-    return plan_fleet(read_fleet(str(fleet), "jazzy", {}))
+    return planned_fleet(fleet, "jazzy")
 
 
 def said(made: FleetPlan, code: str) -> list[Finding]:
@@ -95,7 +95,7 @@ def test_frames_that_a_node_puts_its_own_prefix_before_stay(tmp_path: Path) -> N
     (tmp_path / "fleet.yaml").write_text(
         (tmp_path / "fleet.yaml").read_text().replace("tf-per-robot", "frames-per-robot")
     )
-    made = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "jazzy", {}))
+    made = planned_fleet(tmp_path / "fleet.yaml", "jazzy")
     (text,) = (it.data for it in make_outputs(made).files if it.path == "robot1/p.yaml")
     assert b"{frame_id: odom, x_frame: robot1/odom}" in text
 
@@ -160,7 +160,7 @@ def test_rules_of_a_plugin_reach_its_controllers(
     (tmp_path / "system_model.yaml").write_text(OWN_MANAGER)
     more = "launch: system_model.yaml\n" if started else ""
     plan(tmp_path, DRIVE, f"distro: {release}\nstack: gz_ros2_control\n{more}", LOADED)
-    made = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    made = planned_fleet(tmp_path / "fleet.yaml")
     names = {
         it.endpoint.name: it.name for it in named_ends(made.fleet.table) if it.robot == "robot1"
     }
@@ -222,7 +222,7 @@ def test_a_launch_file_that_gives_the_state_publisher_a_prefix(
     plan(tmp_path, SENSOR, "launch: system_model.yaml\n")
     file = tmp_path / "fleet.yaml"
     file.write_text(file.read_text().replace("layout: tf-per-robot", f"layout: {layout}"))
-    found = said(plan_fleet(read_fleet(str(file), "jazzy", {})), "MF841")
+    found = said(planned_fleet(file, "jazzy"), "MF841")
     assert [(Path(it.file).name, it.line) for it in found] == (
         [("system_model.yaml", 3)] if told else []
     )

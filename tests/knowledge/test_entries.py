@@ -11,7 +11,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge import declared
 from multibot_rewrite.knowledge.by_release import in_release
-from multibot_rewrite.knowledge.declared import Declared, declared_by, is_known, stands_for
+from multibot_rewrite.knowledge.declared import Declared, declared_by, is_known
 from multibot_rewrite.knowledge.node_library import (
     NodeLibrary,
     Stack,
@@ -433,26 +433,6 @@ def test_what_is_declared_by_packages() -> None:
     assert declared_by("nav2_acml") == ()
 
 
-@pytest.mark.parametrize(
-    ("path", "name", "words"),
-    [
-        ("<id>_config", "odom0_config", {"<id>": "odom0"}),
-        ("<a>.x.<b>", "p.x.q", {"<a>": "p", "<b>": "q"}),
-        ("a.b", "a.b", {}),
-        ("<id>_config", "odom0", {}),
-    ],
-)
-def test_words_in_brackets_stand_for_others(path: str, name: str, words: dict[str, str]) -> None:
-    assert stands_for(path, name) == words
-
-
-def test_a_check_has_its_arguments() -> None:
-    row = Declared("a.<x>", "double", "gt_eq<>(0.0) one_of<>([a, b])", "", "yaml", "")
-    assert row.has_name("a.b") and not row.has_name("a.")
-    plain = row._replace(bounds="bounds(0, 1) not_empty()")
-    assert plain.checks == (("bounds", "0, 1"), ("not_empty", ""))
-
-
 def test_classes_of_pluginlib_with_their_older_names() -> None:
     base = plugin_bases()["controller_interface::ControllerInterface"]
     now = "joint_state_broadcaster/JointStateBroadcaster"
@@ -593,7 +573,8 @@ def test_checks_of_a_value_with_their_arguments(
         ("rate", "rate", {}), ("rate", "rates", None), ("<a>.x", "b.x", {"<a>": "b"}),
         ("<a>.x", ".x", None), ("<a>.x", "b.y", None), ("a.<b>", "a.c.d", {"<b>": "c.d"}),
         ("a.<b>.c", "a.c", None), ("<a>.x.<b>", "c.x.d", {"<a>": "c", "<b>": "d"}),
-        ("<a>.x.<b>", "c.y.d", None),
+        ("<a>.x.<b>", "c.y.d", None), ("<id>_config", "odom0_config", {"<id>": "odom0"}),
+        ("<id>_config", "odom0", None),
     ],
 )  # fmt: skip
 def test_a_path_stands_for_names(path: str, name: str, words: dict[str, str] | None) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 
 from multibot_rewrite import rewrite, rewrite_all
 from multibot_rewrite.base.findings.finding import Finding
@@ -18,9 +19,7 @@ from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import make_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings
 
@@ -53,7 +52,7 @@ def verdicts(path: Path, layout: str, folder: Path) -> dict[str, set[str]]:
     file = folder / "fleet.yaml"
     robots = "\n".join(f"  - {{name: {it}}}" for it in ROBOTS)
     file.write_text(f"layout: {layout}\ndescription: {path}\nrobots:\n{robots}\n")
-    plan = plan_fleet(read_fleet(str(file), "", {}))
+    plan = planned_fleet(file)
     return {
         "rewrite": named(first.findings),
         "lint": named(lint_file(str(path), settings)),

@@ -10,6 +10,8 @@ import sys
 import pytest
 from paths import ROOT
 
+pytestmark = pytest.mark.slow
+
 # Waiting for a process; when to kill one; a clock that a test puts in place of the real one; seconds
 # that a page shows.
 # Stamps of messages are held against the time of now.
@@ -23,7 +25,6 @@ CLOCKS = {
 }
 
 
-@pytest.mark.slow
 def test_no_test_reads_a_clock() -> None:
     """A limit of seconds fails on a busy machine: count calls or steps, or compare two sizes."""
     clock = re.compile(r"\b(perf_counter|process_time|monotonic|thread_time)\b|\btime\.time\b")
@@ -37,7 +38,6 @@ def test_no_test_reads_a_clock() -> None:
     assert found - {own} == CLOCKS
 
 
-@pytest.mark.more
 def test_no_test_module_imports_another() -> None:
     """What several need is in tests/support."""
     found = [
@@ -48,7 +48,6 @@ def test_no_test_module_imports_another() -> None:
     assert found == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "arguments",
     [

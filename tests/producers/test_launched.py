@@ -27,7 +27,6 @@ from multibot_rewrite.producers.launch.records import (
     orders_in_words,
     to_json,
 )
-from multibot_rewrite.producers.launch.ros_arguments import ros2_run, ros_arguments
 from multibot_rewrite.system.records import Place
 
 PUBLISHER = "robot_state_publisher"
@@ -252,22 +251,6 @@ def test_a_launch_file_that_nobody_trusts_is_not_run(
     with pytest.raises(InputError, match="--trust"):
         launch_graph(LaunchOrder(str(file)))
     assert not ran.exists()
-
-
-def test_ros_arguments_are_those_between_their_flags() -> None:
-    line = "-d f --ros-args -r __node:=n -r a:=b --params-file p -p x:=1 -r __ns:=/r -- --last"
-    found = ros_arguments(line.split())
-    assert found == ("n", "/r", (("a", "b"),), (("x", "1"),), ("p",), ("-d", "f", "--last"))
-
-
-def test_a_line_of_ros2_run_has_package_and_executable() -> None:
-    assert ros2_run(["/opt/bin/ros2", "run", "--prefix", "gdb", "acme", "driver", "-v"]) == (
-        "acme",
-        "driver",
-        ("-v",),
-    )
-    assert ros2_run(["ros2", "service", "call", "/a", "b"]) is None
-    assert ros2_run(["ros2", "run", "acme"]) is None
 
 
 def test_a_node_in_the_namespace_of_a_robot_is_that_robots_alone() -> None:

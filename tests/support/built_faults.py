@@ -12,14 +12,14 @@ from tempfile import TemporaryDirectory
 
 from fault_changes import Fault
 from fault_sources import SOURCES
+from fleet_folder import planned_fleet
 from graph_faults import needed
 from paths import ROOT
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.rules.check import ABSENCE
 
 LAUNCH, OUT = "fleet.launch.py", "/anywhere/out"
@@ -42,7 +42,7 @@ def fleet() -> tuple[FleetPlan, Outputs]:
     with TemporaryDirectory() as folder:
         file = Path(folder) / "fleet.yaml"
         file.write_text(FLEET)
-        plan = plan_fleet(read_fleet(str(file), "", os.environ), trust=True)
+        plan = planned_fleet(file, around=os.environ, trust=True)
         return plan, make_outputs(plan, OUT)
 
 

@@ -4,7 +4,13 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Mapping
 from pathlib import Path
+
+from multibot_rewrite.fleet.file.fleet_data import FleetSource
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.file.robot_choice import ALL, Choice
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 
 MASS = (
     '<inertial><mass value="1"/>'
@@ -122,3 +128,15 @@ def fleet_folder(folder: Path, fleet: str = SMALL, **files: str) -> Path:
 def mixed(layout: str = "L2", affix: str = "prefix") -> str:
     """Robots of two kinds and three sets of nodes, one with three words that differ."""
     return MIXED.replace("LAYOUT", layout).replace("AFFIX", affix)
+
+
+def planned_fleet(
+    source: Path | FleetSource,
+    release: str = "",
+    around: Mapping[str, str] | None = None,
+    choice: Choice = ALL,
+    trust: bool = False,
+) -> FleetPlan:
+    """Read and plan a fleet file, or the same as data; raises as the commands do."""
+    given = str(source) if isinstance(source, Path) else source
+    return plan_fleet(read_fleet(given, release, around or {}, choice), trust=trust)

@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from fleet_folder import planned_fleet
+
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 # What a build tells of the odometry of these robots in some layouts, and is no gap.
 BESIDE = ("MB105", "MF7", "MB4", "MR")
@@ -24,7 +24,7 @@ def found(
         (folder / name).write_text(text)
     fleet = folder / "fleet.yaml"
     fleet.write_text(f"layout: {layout}\n{files['fleet.yaml']}")
-    plan = plan_fleet(read_fleet(str(fleet), "", {}))
+    plan = planned_fleet(fleet)
     problems = plan.fleet.table.problems
     built = {*problems, *make_outputs(plan).findings}
     planned = {*problems, *closed_plan(plan).gaps}

@@ -6,11 +6,11 @@ from __future__ import annotations
 import random
 from pathlib import Path
 
+from fleet_folder import planned_fleet
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
 
@@ -60,5 +60,5 @@ def planned(
         f"stack: [{stack}]\ncompanions: {{params: p.yaml}}\n"
         "robots: [{name: robot1}, {name: robot2}]\n"
     )
-    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    plan = planned_fleet(folder / "fleet.yaml")
     return plan, {it.path: it.data.decode() for it in make_outputs(plan).files}

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import yaml
+from fleet_folder import planned_fleet
 from graph_examples import read_example, read_system
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
@@ -18,9 +19,7 @@ from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import known_nodes, make_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.producers.launch.read import read_own
@@ -179,7 +178,7 @@ def _fleet(
     options = {it: value for it, value in rule.options.items() if it != BUILT}
     more = {it: value for it, value in {**FLEET, **options, **keys}.items() if it not in said}
     _write(folder, {"fleet.yaml": text + (yaml.safe_dump(more) if more else "")})
-    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    plan = planned_fleet(folder / "fleet.yaml")
     found = [it for it in make_outputs(plan).findings if it.code == rule.code]
     return found or list(plan.fleet.table.problems)
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import yaml
+from fleet_folder import planned_fleet
 
 from multibot_rewrite import knowledge
 from multibot_rewrite.base.bounded import own_text
@@ -22,9 +23,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.file.robot_choice import Choice
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 ROOT = Path(__file__).parents[2]
 STACKS = tuple(yaml.safe_load(own_text(knowledge.__file__, "stacks.yaml"))["stacks"])
@@ -169,7 +168,7 @@ def findings(cell: Cell, folder: Path) -> tuple[Finding, ...]:
 def of_file(file: Path) -> tuple[Finding, ...]:
     """Return what the build of a fleet file says that is no note."""
     folder = file.parent
-    plan = plan_fleet(read_fleet(str(file), "", {}, Choice()))
+    plan = planned_fleet(file, choice=Choice())
     try:
         made = make_outputs(plan, str(folder / "out"))
     except UsageError as error:

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
+from fleet_folder import planned_fleet
 from vendor_compare import Built, Compared, Difference, compare
 from vendor_live import Looked, Said, look
 from vendor_sources import install, packages_below
@@ -28,9 +29,7 @@ from vendor_systems import RECORDER, Vendors, filled, prepare
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 HERE = Path(__file__).parent
 ROBOTS = ("robot1", "robot2", "robot3")
@@ -117,7 +116,7 @@ def build(text: str, words: Mapping[str, str], layout: str, count: int) -> Built
     places = {it: words[it] for it in ("sources", "work")}
     file.write_text(str(filled(text, places)))
     try:
-        plan = plan_fleet(read_fleet(str(file), "", {}), trust=True)
+        plan = planned_fleet(file, trust=True)
         return Built(layout, robots, plan.fleet, expected(plan.fleet), make_outputs(plan))
     except (InputError, UsageError) as problem:
         return Built(layout, robots, None, None, None, str(problem))

@@ -22,12 +22,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
+from fleet_folder import planned_fleet
 from vendor_rows import parameter_rows
 from vendor_sources import WITHOUT, install, packages_below, sources_folder
 
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import Fleet, expected
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.system.records import RUNS, System
 
 HERE = Path(__file__).parent
@@ -205,7 +204,7 @@ def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -
     fleet = {"layout": "tf-per-robot", "distro": system["release"], "robots": robots}
     file = work / "fleet.yaml"
     file.write_text(yaml.safe_dump({**fleet, **filled(system["fleet"], words)}, sort_keys=False))
-    return plan_fleet(read_fleet(str(file), "", {}), trust=True).fleet
+    return planned_fleet(file, trust=True).fleet
 
 
 def missing(system: Mapping[str, Any], folder: Path) -> list[str]:

@@ -16,18 +16,18 @@ from typing import Any
 import pytest
 import yaml
 from declared_graph import endpoints, facts
+from fleet_folder import planned_fleet
 from lxml import etree
 from nav2_graphs import environment
 from paths import FIXTURES
 
+from multibot_rewrite import compare
 from multibot_rewrite.base.rosnames import bind, resolve_bound
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.of_runs import parsed
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System
@@ -106,7 +106,7 @@ def planned(name: str, release: str, layout: str, folder: Path) -> FleetPlan:
     for file, data in (*texts.items(), ("system.yaml", {"structure": {"nodes": model}})):
         (folder / file).write_text(yaml.safe_dump(data, sort_keys=False))
     (folder / "arm.urdf").write_text(ARM)
-    return plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}), trust=True)
+    return planned_fleet(folder / "fleet.yaml", trust=True)
 
 
 def _model(name: str, it: dict[str, Any]) -> dict[str, Any]:
@@ -172,7 +172,7 @@ def _tree(description: bytes, publisher: Run) -> Iterator[Edge]:
 
 
 def told(plan: FleetPlan, seen: System, release: str = "") -> list[str]:
-    found = (it for it in check(expected(plan.fleet), seen) if (release, *it.names) not in WAITS)
+    found = (it for it in compare(expected(plan.fleet), seen) if (release, *it.names) not in WAITS)
     return [f"{it.code} {it.node} {it.message}" for it in found]
 
 

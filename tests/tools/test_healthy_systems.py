@@ -11,12 +11,12 @@ import pytest
 from declared_graph import endpoints, facts
 from nav2_graphs import environment
 
+from multibot_rewrite import compare
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table import build_table
@@ -81,7 +81,7 @@ def graph(release: str, name: str) -> tuple[System, System]:
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_healthy_system_has_no_finding(release: str, name: str) -> None:
     """But for what is not fed there, which is true."""
-    found = check(*graph(release, name))
+    found = compare(*graph(release, name))
     unfed = UNFED[name, release]
     assert [f"{it.code} {it.node} {it.message}" for it in found if it.names not in unfed] == []
     assert {it.names for it in found} == unfed
@@ -92,7 +92,7 @@ def test_a_healthy_system_has_no_finding(release: str, name: str) -> None:
 def test_what_a_node_lacks_is_found(name: str) -> None:
     plan, seen = graph("jazzy", "nav2")
     left = tuple(it for it in seen.ends if it.name != name)
-    assert {it.code for it in check(plan, seen._replace(ends=left))} >= {"MG102"}
+    assert {it.code for it in compare(plan, seen._replace(ends=left))} >= {"MG102"}
 
 
 def test_the_private_node_is_needed() -> None:
@@ -102,5 +102,5 @@ def test_the_private_node_is_needed() -> None:
         nodes=tuple(it for it in seen.nodes if it.name != gone),
         ends=tuple(it for it in seen.ends if it.node != gone),
     )
-    (found,) = check(plan, left)
+    (found,) = compare(plan, left)
     assert (found.code, found.node) == ("MG101", "/robot1/move_group_private_*")

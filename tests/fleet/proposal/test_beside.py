@@ -65,30 +65,35 @@ def test_a_bridge_is_for_a_simulated_robot(simulator: str, tmp_path: Path) -> No
         assert made.left == {} and made.files == {"bridge": (str(bridge),)}
 
 
+EKF = ("ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform")
+
+
 @pytest.mark.parametrize(
     ("nodes", "stacks"),
     [
-        (["amcl", "controller_server"], ["nav2"]),
-        (["slam_toolbox", "controller_server"], ["nav2_slam"]),
-        (["controller_server"], ["navigation"]),
-        (["amcl"], ["localization"]),
-        (["slam_toolbox"], ["slam_toolbox"]),
-        (["ekf_node"], ["robot_localization"]),
-        (["ekf_filter_node"], ["robot_localization"]),
-        (
-            ["ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform"],
-            ["robot_localization_gps"],
-        ),
-        (["teleop_twist_joy_node"], ["teleop"]),
-        (["driver"], []),
+        ("amcl controller_server", ["nav2: amcl and controller_server"]),
+        ("/a/amcl /a/controller_server", ["nav2: amcl and controller_server"]),
+        ("amcl controller_server slam_toolbox", ["nav2: amcl and controller_server"]),
+        ("slam_toolbox controller_server", ["nav2_slam: slam_toolbox and controller_server"]),
+        ("controller_server", ["navigation: controller_server"]),
+        ("amcl", ["localization: amcl"]), ("slam_toolbox", ["slam_toolbox: slam_toolbox"]),
+        ("amcl slam_toolbox", ["localization: amcl", "slam_toolbox: slam_toolbox"]),
+        ("ekf_node", ["robot_localization: ekf_node"]),
+        ("ekf_filter_node", ["robot_localization: ekf_filter_node"]),
+        ("ekf_node ekf_filter_node", ["robot_localization: ekf_node"]),
+        (" ".join(EKF), [f"robot_localization_gps: {' and '.join(EKF)}"]),
+        (f"ekf_filter_node {EKF[0]}", []),
+        ("teleop_twist_joy_node", ["teleop: teleop_twist_joy_node"]),
+        ("driver", []),
     ],
-)
-def test_sections_say_the_stacks(nodes: list[str], stacks: list[str], tmp_path: Path) -> None:
-    file = params(tmp_path, "p.yaml", *nodes)
+)  # fmt: skip
+def test_sections_say_the_stacks(nodes: str, stacks: list[str], tmp_path: Path) -> None:
+    file = params(tmp_path, "p.yaml", *nodes.split())
     made = companions_of(looked(tmp_path), Found(params=(file,)), "jazzy")
     # Besides those that the description itself says.
     bare = companions_of(looked(tmp_path), Found(), "jazzy").stacks
-    assert [it for it in made.stacks if it not in bare] == stacks
+    said = {it: f"p.yaml has parameters of {by}" for it, by in (it.split(": ") for it in stacks)}
+    assert {it: why for it, why in made.stacks.items() if it not in bare} == said
 
 
 _LAUNCH = "def generate_launch_description():\n    {} return LaunchDescription([{}])\n"

@@ -25,20 +25,6 @@ def test_a_model_is_called_by_its_folder(path: str, stem: str, word: str, model:
     assert found == (stem, word, model)
 
 
-@pytest.mark.parametrize(
-    ("stem", "part"),
-    [
-        *((it, True) for it in (
-            "gripper", "hand", "finger", "camera", "sensor", "lidar", "tool", "effector", "mount",
-            "wheel", "dock", "geometry",
-        )),
-        ("rover", False), ("ur5e", False),
-    ],
-)  # fmt: skip
-def test_what_parts_are_called(stem: str, part: bool) -> None:
-    assert (choosing._PART.search(f"my_{stem}_x") is not None) is part
-
-
 def looked(tag: str, inside: str = "", path: str = "a.urdf", links: int = 1) -> Looked:
     made = "".join(f'<link name="l{at}"/>' for at in range(links))
     root = etree.fromstring(f"<{tag}>{made}{inside}</{tag}>")

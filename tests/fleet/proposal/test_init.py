@@ -12,15 +12,12 @@ from typing import Any
 import closed_robot
 import pytest
 import yaml
+from fleet_folder import planned_fleet
 from paths import ROBOTS, ROOT
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_data import FleetText
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal import trying
-from multibot_rewrite.fleet.proposal.looking import NeededValues
-from multibot_rewrite.fleet.proposal.propose import names_of, unlike
 
 ARM = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -39,14 +36,6 @@ ARM = """\
 </robot>
 """
 TOOL = '<robot name="tool" xmlns:xacro="http://www.ros.org/wiki/xacro"/>'
-# Two metres wide and long: its corners are 1.41 m from its base.
-WIDE = """\
-<robot name="wide">
-  <link name="base"><collision><geometry><box size="2 2 1"/></geometry></collision></link>
-  <link name="top"/>
-  <joint name="j" type="fixed"><parent link="base"/><child link="top"/></joint>
-</robot>
-"""
 
 
 def init(*words: object) -> int:
@@ -83,27 +72,6 @@ def test_so_many_robots_apart_from_each_other(tmp_path: Path) -> None:
     places = [it["pose"]["y"] for it in fleet["robots"]]
     assert len(places) == 4
     assert all(b - a >= 0.5 for a, b in pairwise(places))
-
-
-@pytest.mark.more
-def test_wide_robots_are_further_apart(tmp_path: Path) -> None:
-    (tmp_path / "wide.urdf").write_text(WIDE)
-    fleet = made(tmp_path, tmp_path / "wide.urdf", "-n", 3)
-    # 2 * 1.41 m and half a metre, in steps of half a metre.
-    assert [it["pose"]["y"] for it in fleet["robots"]] == [0, 3.5, 7]
-
-
-@pytest.mark.slow
-def test_what_another_file_includes_is_no_description(tmp_path: Path) -> None:
-    """The part would be taken for the robot: it has more links and a shorter path."""
-    part = TOOL.replace("/>", '><link name="x"/><link name="y"/><link name="z"/></robot>')
-    (tmp_path / "a.xacro").write_text(part)
-    (tmp_path / "robot.urdf.xacro").write_text(
-        TOOL.replace("/>", '><xacro:include filename="a.xacro"/><link name="x0"/></robot>')
-    )
-    assert init(tmp_path, "-o", tmp_path / "fleet.yaml") in (0, 1)
-    fleet = yaml.safe_load((tmp_path / "fleet.yaml").read_text())
-    assert fleet["description"] == "robot.urdf.xacro"
 
 
 @pytest.mark.slow
@@ -310,19 +278,6 @@ def test_a_default_that_is_no_value_is_chosen(tmp_path: Path) -> None:
     assert made(tmp_path, tmp_path)["arguments"] == {"kind": "small"}
 
 
-@pytest.mark.parametrize(
-    ("declared", "chosen"),
-    [("", {"kind": "small"}), ("default_value='large', ", {})],
-)
-def test_only_what_every_launch_has_to_choose_is_chosen(
-    declared: str, chosen: dict[str, str], tmp_path: Path
-) -> None:
-    xacro, launch = tmp_path / "r.urdf.xacro", tmp_path / "r.launch.py"
-    xacro.write_text(TOOL.replace("/>", '><xacro:arg name="kind" default="none"/></robot>'))
-    launch.write_text(f"DeclareLaunchArgument('kind', {declared}choices=['small', 'large'])\n")
-    assert NeededValues([str(launch)]).of_mandatory(str(xacro)) == chosen
-
-
 @pytest.mark.slow
 def test_classic_is_of_humble_and_its_plugin_has_the_manager(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -411,12 +366,6 @@ def test_mistakes_are_one_line(words: list[str], says: str, tmp_path: Path, caps
     assert says in said
     assert len(said.splitlines()) == 1
     assert there.read_text() == "mine"
-
-
-def test_names_of_robots() -> None:
-    assert names_of(["rover"], 2) == [("robot1", "robot2")]
-    assert names_of(["Arm-7", "arm-7"], 1) == [("arm_1",), ("arm__1_1",)]
-    assert len(set(unlike(["a", "A", "7", "-"]))) == 4
 
 
 CRANE = """\
@@ -587,5 +536,5 @@ def test_the_rule_that_the_reason_names_is_all_that_is_needed(tmp_path: Path) ->
     fleet = steered(tmp_path, "~/tf_odometry:=tf")
     assert trying.errors_of(fleet) == []
     # Gazebo's plugin has the description already: nothing is told about the manager's own topic.
-    table = plan_fleet(read_fleet(fleet, "", {})).fleet.table
+    table = planned_fleet(fleet).fleet.table
     assert [it for it in table.problems if it.code == "MR105"] == []

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite.fleet.proposal.choosing import acts, chosen, launches_of
+from multibot_rewrite.fleet.proposal.choosing import chosen, launches_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.searching import Found
 
@@ -150,16 +150,3 @@ def test_files_of_one_robot_are_alike(made: Made) -> None:
     copy = made("copied.urdf", "abc", "jk", name="rover.urdf")
     Path(copy.path).write_bytes(Path(first.path).read_bytes())
     assert rivals(first, copy) == ([], ["copied"])
-
-
-def test_a_model_of_a_thing_does_nothing() -> None:
-    def model(inner: str, links: int = 1) -> Looked:
-        return Looked(
-            "m.sdf", "m", "sdf", links, root=etree.fromstring(f"<sdf><model>{inner}</model></sdf>")
-        )
-
-    assert not acts(model("<link name='a'/>"))
-    assert acts(model("<link name='a'><sensor name='s'/></link>"))
-    assert acts(model('<joint name="j" type="revolute"/>')) and acts(model("", 2))
-    assert not acts(model('<joint name="j" type="fixed"/>'))
-    assert acts(Looked("r.urdf", "r", "robot", 1)) and not acts(Looked("m.sdf", "m", "sdf", 1))

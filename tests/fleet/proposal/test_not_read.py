@@ -143,20 +143,6 @@ def test_the_fleet_file_names_them(tmp_path: Path) -> None:
     assert "#   up.launch.py:3: twist.py (own)\n" in (tmp_path / "fleet.yaml").read_text()
 
 
-@pytest.mark.parametrize(
-    ("text", "kind"),
-    [
-        ("# rows\n---\n- topic_name: a\n", "bridge"), ("[{topic_name: a}]\n", ""),
-        ("nodes:\n  - topic_name: a\n", ""), ("- ros_topic_name: a\n", "bridge"), ("", ""),
-    ],
-)  # fmt: skip
-def test_a_bridge_is_a_list(text: str, kind: str, tmp_path: Path) -> None:
-    """A file of knowledge with the same word is no bridge that is wrong."""
-    (tmp_path / "a.yaml").write_text(text)
-    (tmp_path / "car.urdf").write_text(robot("car", "wheel"))
-    assert len(search([str(tmp_path)]).bridge) == (1 if kind else 0)
-
-
 def test_hidden_files_are_none_of_the_robot(tmp_path: Path) -> None:
     for name in (".car.urdf", "car.urdf", "._car.rviz"):
         (tmp_path / name).write_text(robot("car", "wheel"))

@@ -11,6 +11,8 @@ import yaml
 
 from multibot_rewrite.cli.multibot import main
 
+pytestmark = pytest.mark.slow
+
 LINKS = ("base_link", "left_wheel", "right_wheel")
 URDF = """<robot name="rover"><link name="base_link"/>
 <link name="left_wheel"/><joint name="left" type="continuous"><parent link="base_link"/>
@@ -56,7 +58,6 @@ def package(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("given", [(), ("rover.urdf",), ("rover_sim.sdf",)])
 def test_both_files_of_a_robot_are_named(given: tuple[str, ...], package: Path) -> None:
     found = made(package, *(given or (".",)))
@@ -64,20 +65,17 @@ def test_both_files_of_a_robot_are_named(given: tuple[str, ...], package: Path) 
     assert found["simulator"] == "gazebo"
 
 
-@pytest.mark.slow
 def test_an_sdf_of_other_links_is_no_partner(package: Path) -> None:
     (package / "sim.launch.py").write_text(SPAWNS.replace("rover_sim", "dock"))
     assert "simulated" not in made(package, "rover.urdf")
 
 
-@pytest.mark.slow
 def test_the_file_whose_names_the_robot_has_is_taken(package: Path) -> None:
     (package / "a_husky.yaml").write_text(AMCL.format("husky_base", "scan"))
     (package / "rover.yaml").write_text(AMCL.format("base_link", "scan"))
     assert made(package, "rover.urdf")["companions"]["params"] == ["rover.yaml"]
 
 
-@pytest.mark.slow
 def test_without_a_winner_one_is_named(package: Path, capsys: Any) -> None:
     (package / "husky.yaml").write_text(AMCL.format("husky_base", "scan"))
     (package / "tb3.yaml").write_text(AMCL.format("base_link", "tb3/front/scan"))

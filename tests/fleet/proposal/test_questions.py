@@ -16,6 +16,8 @@ import pytest
 import yaml
 from paths import ROBOTS, ROOT
 
+pytestmark = pytest.mark.slow
+
 ARM = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="prefix" default=""/>
@@ -65,7 +67,6 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.slow
 def test_enter_takes_all_defaults(folder: Path) -> None:
     shown, fleet = talked(folder, [""] * 6)
     asked = ("Robots", "ROS release", "Files to leave out", "Metres", "Layout", "Simulator")
@@ -78,7 +79,6 @@ def test_enter_takes_all_defaults(folder: Path) -> None:
     assert yaml.safe_load(without.stdout) == fleet
 
 
-@pytest.mark.slow
 def test_answers_are_taken_and_wrong_ones_asked_for_again(folder: Path) -> None:
     answers = ["1robot", "scout, carrier", "jazzy", "7", "1", "wide", "3.5", "both", "none"]
     shown, fleet = talked(folder, answers, "rover.urdf")
@@ -89,7 +89,6 @@ def test_answers_are_taken_and_wrong_ones_asked_for_again(folder: Path) -> None:
     assert "companions" not in fleet
 
 
-@pytest.mark.slow
 def test_what_options_say_is_not_asked(folder: Path) -> None:
     words = ("--robots", "a,b", "--distro", "jazzy", "--layout", "both", "--simulator", "gazebo")
     shown, fleet = talked(folder, ["", ""], *words)
@@ -97,7 +96,6 @@ def test_what_options_say_is_not_asked(folder: Path) -> None:
     assert [it["name"] for it in fleet["robots"]] == ["a", "b"]
 
 
-@pytest.mark.slow
 def test_an_argument_that_names_the_robot(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf.xacro").write_text(ARM)
     shown, fleet = talked(tmp_path, ["", "", "{robot}/", "", "", ""])
@@ -105,7 +103,6 @@ def test_an_argument_that_names_the_robot(tmp_path: Path) -> None:
     assert fleet["arguments"] == {"prefix": "{robot}/"}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("answer", "taken"), [("", []), ("2", ["b.yaml"])])
 def test_of_two_files_that_fit_alike_one_is_asked_for(
     answer: str, taken: Sequence[str], folder: Path
@@ -129,7 +126,6 @@ WARNED = """\
 
 
 @pytest.mark.sample(3)
-@pytest.mark.more
 @pytest.mark.parametrize(("on_a_terminal", "term"), [(True, "xterm"), (True, "dumb"), (False, "")])
 def test_what_is_looked_at_is_shown_on_a_terminal(
     on_a_terminal: bool, term: str, tmp_path: Path

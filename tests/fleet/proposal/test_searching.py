@@ -45,6 +45,9 @@ KINDS = [
     ("a.launch.xml", "", "launch"), ("launch.py", "", ""), ("a.txt", ROBOT, ""),
     ("launch/up.py", "def generate_launch_description():", "launch"), ("launch/up.py", "", ""),
     ("launch/up.xml", "<launch/>", "launch"), ("up.py", "def generate_launch_description():", ""),
+    # A bridge is a list: a file of knowledge with the same word is none that is wrong.
+    ("r.yaml", "# rows\n---\n- topic_name: a\n", "bridge"), ("r.yaml", "[{topic_name: a}]\n", ""),
+    ("r.yaml", "nodes:\n  - topic_name: a\n", ""), ("r.yaml", "", ""),
 ]  # fmt: skip
 
 

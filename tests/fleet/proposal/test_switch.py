@@ -11,6 +11,8 @@ import yaml
 
 from multibot_rewrite.cli.multibot import main
 
+pytestmark = pytest.mark.slow
+
 ROVER = """\
 <robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="{switch}" default="{default}"/>
@@ -63,7 +65,6 @@ def fleet_of(folder: Path, *words: str) -> Any:
     return yaml.safe_load(file.read_text())
 
 
-@pytest.mark.more
 @pytest.mark.parametrize("switch", ["sim_mode", "use_sim", "use_gazebo", "sim_gazebo", "gz"])
 def test_the_simulators_switch_is_set(switch: str, folder: Path) -> None:
     write(folder, switch, "false")
@@ -74,7 +75,6 @@ def test_the_simulators_switch_is_set(switch: str, folder: Path) -> None:
     assert said in (folder / "fleet.yaml").read_text()
 
 
-@pytest.mark.more
 @pytest.mark.parametrize(("default", "arguments"), [("false", {"use_sim": "true"}), ("true", None)])
 def test_hardware_without_a_class_is_of_the_other_world(
     default: str, arguments: dict[str, str] | None, folder: Path
@@ -90,7 +90,6 @@ def test_hardware_without_a_class_is_of_the_other_world(
     assert fleet_of(folder).get("arguments") == arguments
 
 
-@pytest.mark.more
 def test_the_parameters_that_the_description_loads_go_before_those_called_like_it(
     folder: Path,
 ) -> None:
@@ -100,20 +99,17 @@ def test_the_parameters_that_the_description_loads_go_before_those_called_like_i
     assert [Path(it).name for it in params] == ["control.yaml"]
 
 
-@pytest.mark.more
 def test_a_real_robot_gets_the_other_value(folder: Path) -> None:
     write(folder, "use_sim", "true")
     fleet = fleet_of(folder, "--simulator", "none")
     assert (fleet["simulator"], fleet["arguments"]) == ("none", {"use_sim": "false"})
 
 
-@pytest.mark.more
 def test_what_suits_stays(folder: Path) -> None:
     write(folder, "use_sim", "true")
     assert "arguments" not in fleet_of(folder)
 
 
-@pytest.mark.more
 @pytest.mark.parametrize(
     ("simulator", "value", "says"),
     [
@@ -140,7 +136,6 @@ def test_hardware_of_the_other_world_stops_the_build(
     assert not (folder / "out").exists()
 
 
-@pytest.mark.more
 def test_the_manager_of_another_plugin_loads_no_hardware(folder: Path) -> None:
     """Where the simulator has no plugin of ros2_control, nothing reads the real robot's block."""
     write(folder, "use_sim", "false")
@@ -158,7 +153,6 @@ def test_the_manager_of_another_plugin_loads_no_hardware(folder: Path) -> None:
 IF, UNLESS = '<xacro:if value="$(arg {switch})">', '<xacro:unless value="$(arg {switch})">'
 
 
-@pytest.mark.more
 @pytest.mark.parametrize("word", ["gazebo", "sim"])
 def test_a_word_that_a_xacro_compares_is_a_switch(word: str, folder: Path) -> None:
     """lbr_description has mode: mock, gazebo or hardware."""
@@ -171,7 +165,6 @@ def test_a_word_that_a_xacro_compares_is_a_switch(word: str, folder: Path) -> No
     assert fleet_of(folder)["arguments"] == {"mode": word}
 
 
-@pytest.mark.more
 @pytest.mark.parametrize(
     ("plugin", "hardware"),
     [
@@ -190,7 +183,6 @@ def test_a_hardware_class_that_is_an_argument(plugin: str, hardware: str, folder
     assert fleet_of(folder)["arguments"] == {"driver": hardware}
 
 
-@pytest.mark.more
 def test_a_file_of_controllers_that_launch_files_give_is_given(folder: Path) -> None:
     """A launch file gives a node of the fleet a value, too, which stands in the fleet file then."""
     write(folder, "use_sim", "true")

@@ -5,13 +5,11 @@ command_interface_configuration, state_interface_configuration and the names tha
 from __future__ import annotations
 
 import pytest
+from given_parameters import given_in
 
-from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.evidence.claims import Claimed, claimed, claimed_twice, claims_of
-from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Place
 
@@ -24,7 +22,7 @@ def claims(type_: str, parameters: str, release: str = "jazzy") -> set[str]:
         f"controller_manager:\n  ros__parameters:\n    it: {{type: {type_}}}\n"
         f"it:\n  ros__parameters: {{{parameters}}}\n"
     )
-    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes(release))
+    given = given_in(text, release, "c.yaml")
     (it,) = (node for node in given if node.manager)
     node = load_nodes(release)[it.known]
     return {f"{found.kind} {found.name}" for found in claims_of(node.claims, it)}
@@ -451,7 +449,7 @@ def test_a_command_that_two_parameters_name_is_told_with_both_places() -> None:
         "    it: {type: diff_drive_controller/DiffDriveController}\n"
         "it:\n  ros__parameters:\n    left_wheel_names: [w]\n    right_wheel_names: [w]\n"
     )
-    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
+    given = given_in(text, file="c.yaml")
     (it,) = (node for node in given if node.manager)
     found = [*claimed_twice(load_nodes("jazzy")[it.known].claims, it)]
     assert found == [

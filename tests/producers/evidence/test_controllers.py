@@ -11,19 +11,16 @@ from pathlib import Path
 
 import pytest
 import yaml
+from fleet_folder import planned_fleet
+from given_parameters import given_in
 from lxml import etree
 from named_ends import named_ends
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.producers.evidence.hardware import exported
 from multibot_rewrite.producers.evidence.nodes import nodes_of
-from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.transforms import sent_by
 from multibot_rewrite.spelling.ways import HOST, deliveries, started
@@ -90,7 +87,7 @@ def made(folder: Path, arm: str, controllers: str, layout: str, more: str = "") 
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\n{more}description: arm.urdf\n"
         "robots: [{name: left}, {name: right}]\ncompanions: {params: [controllers.yaml]}\n"
     )
-    return make_outputs(plan_fleet(read_fleet(str(fleet), "", {})))
+    return make_outputs(planned_fleet(fleet))
 
 
 def found(outputs: Outputs, *codes: str) -> list[tuple[str, str]]:
@@ -154,7 +151,7 @@ def test_code_of_hardware_exports_what_no_description_names() -> None:
 
 
 def planned(text: str) -> dict[str, str]:
-    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
+    given = given_in(text, file="c.yaml")
     nodes = nodes_of(load_stack("ros2_control", "jazzy"), given, load_nodes("jazzy")).nodes
     return {it.name: it.when for it in nodes}
 
@@ -192,7 +189,7 @@ own:
 arm:
   ros__parameters: {joints: [a], command_interfaces: [position]}
 """
-    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
+    given = given_in(text, file="c.yaml")
     nodes = nodes_of((), given, load_nodes("jazzy"))
     (unknown,) = nodes.findings
     assert unknown.code == "MF802"
@@ -212,17 +209,17 @@ arm:
 def test_a_type_that_a_release_lacks(release: str, type_: str) -> None:
     """From the plugin files of the branches of ros2_controllers and ur_controllers."""
     text = f"controller_manager:\n  ros__parameters:\n    one: {{type: {type_}}}\n"
-    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes(release))
+    given = given_in(text, release, "c.yaml")
     (lacking,) = nodes_of((), given, load_nodes(release)).findings
     assert (lacking.code, lacking.line) == ("MF802", 3)
     assert "which this release lacks" in lacking.message
-    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
+    given = given_in(text, file="c.yaml")
     assert nodes_of((), given, load_nodes("jazzy")).findings == ()
 
 
 def frames_of(release: str, text: str) -> list[tuple[str, str, str]]:
     """Who sends which transform, as parent and child."""
-    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes(release))
+    given = given_in(text, release, "c.yaml")
     nodes = nodes_of((), given, load_nodes(release)).nodes
     return [(node.name, edge.parent, edge.child) for node in nodes for edge in sent_by(node, "")]
 
@@ -262,7 +259,7 @@ def nodes_with(folder: Path, arm: str, layout: str, more: str = "") -> Table:
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\n{more}description: arm.urdf\n"
         "robots: [{name: left}, {name: right}]\n"
     )
-    return plan_fleet(read_fleet(str(fleet), "", {})).fleet.table
+    return planned_fleet(fleet).fleet.table
 
 
 MANAGED = "stack: ros2_control\ncompanions: {params: [controllers.yaml]}\n"
@@ -307,7 +304,7 @@ def test_a_type_below_a_second_ros_parameters() -> None:
     text = f"controller_manager:\n  ros__parameters:\n{inside}"
     said = r"^c\.yaml:4: the type of 'drive' is below a second ros__parameters, .*; write type: "
     with pytest.raises(InputError, match=said):
-        given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
+        given_in(text, file="c.yaml")
 
 
 @pytest.mark.parametrize("name", ["3drive", "base drive"])
@@ -315,7 +312,7 @@ def test_a_controller_whose_name_no_node_can_have(name: str) -> None:
     """rcl validate_node_name: letters, digits and underscores, no digit first."""
     text = f"controller_manager:\n  ros__parameters:\n    {name}: {{type: some/Drive}}\n"
     with pytest.raises(InputError, match=rf"^c\.yaml:3: controller '{name}': "):
-        given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
+        given_in(text, file="c.yaml")
     # A launch file fills in the placeholder.
     made = text.replace(name, '"<robot>_drive"')
-    assert given_nodes([read_yaml(made.encode(), "c.yaml")], built_in_nodes("jazzy"))
+    assert given_in(made, file="c.yaml")

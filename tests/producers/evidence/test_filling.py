@@ -5,25 +5,18 @@ robot_localization ros_filter.cpp, nav2_costmap_2d obstacle_layer.cpp, twist_mux
 from __future__ import annotations
 
 import pytest
+from given_parameters import given_in
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.programs import program_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.nodes import nodes_of
-from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.spelling.records import GivenNode
-
-
-def given(text: str, file: str = "params.yaml") -> list[GivenNode]:
-    return given_nodes([read_yaml(text.encode(), file)], built_in_nodes("jazzy"))
 
 
 def run(known: str, text: str, release: str = "jazzy") -> NodeFacts:
-    return filled(load_nodes(release)[known], given(text)[0])
+    return filled(load_nodes(release)[known], given_in(text)[0])
 
 
 def names(node: NodeFacts, role: str) -> set[str]:
@@ -138,7 +131,9 @@ CONTROLLERS = """\
 
 def test_controllers_are_those_that_the_files_declare() -> None:
     found = nodes_of(
-        load_stack("ros2_control", "jazzy"), given(CONTROLLERS, "c.yaml"), load_nodes("jazzy")
+        load_stack("ros2_control", "jazzy"),
+        given_in(CONTROLLERS, file="c.yaml"),
+        load_nodes("jazzy"),
     )
     by_name = {it.name: it for it in found.nodes}
     assert "diff_drive_controller" not in by_name
@@ -152,7 +147,7 @@ def test_controllers_are_those_that_the_files_declare() -> None:
 def test_a_controller_that_a_file_declares_needs_no_hardware_of_a_stack() -> None:
     text = "controller_manager:\n  ros__parameters:\n    joint_trajectory_controller:\n"
     text += "      type: joint_trajectory_controller/JointTrajectoryController\n"
-    found = nodes_of(load_stack("ros2_control", "jazzy"), given(text), load_nodes("jazzy"))
+    found = nodes_of(load_stack("ros2_control", "jazzy"), given_in(text), load_nodes("jazzy"))
     assert {it.name: it.when for it in found.nodes}["joint_trajectory_controller"] == ""
 
 
@@ -160,25 +155,25 @@ def test_a_helper_of_a_navigator_serves_no_action() -> None:
     """nav2_util simple_action_server.hpp (Humble): a node for the callbacks of the other's action."""
     helper = "bt_navigator_navigate_to_pose_rclcpp_node"
     body = ":\n  ros__parameters: {use_sim_time: true}\n"
-    found = given(f"bt_navigator{body}{helper}{body}")
+    found = given_in(f"bt_navigator{body}{helper}{body}")
     assert [it.name for it in found] == ["bt_navigator"]
 
 
 def test_a_node_of_a_file_may_run_and_then_sends_only_what_no_other_sends() -> None:
     amcl = "amcl:\n  ros__parameters: {base_frame_id: base_link}\n"
-    beside = nodes_of(load_stack("slam_toolbox", "jazzy"), given(amcl), load_nodes("jazzy"))
+    beside = nodes_of(load_stack("slam_toolbox", "jazzy"), given_in(amcl), load_nodes("jazzy"))
     assert next(it for it in beside.nodes if it.name == "amcl").sends == ()
-    alone = nodes_of((), given(amcl), load_nodes("jazzy"))
+    alone = nodes_of((), given_in(amcl), load_nodes("jazzy"))
     assert len(next(it for it in alone.nodes if it.name == "amcl").sends) == 1
     assert all(it.when for it in alone.nodes)
 
 
 def test_a_node_of_the_stack_under_another_name_is_not_there_twice() -> None:
-    found = nodes_of((load_nodes("jazzy")["ekf_filter_node"],), given(EKF), load_nodes("jazzy"))
+    found = nodes_of((load_nodes("jazzy")["ekf_filter_node"],), given_in(EKF), load_nodes("jazzy"))
     assert [it.name for it in found.nodes] == ["ekf_node"]
     assert [it.when for it in found.nodes] == [""]
     # A node that is not it does not make doubtful which one is meant.
-    beside = given(f"{EKF}navsat_transform_node:\n  ros__parameters: {{}}\n")
+    beside = given_in(f"{EKF}navsat_transform_node:\n  ros__parameters: {{}}\n")
     found = nodes_of((load_nodes("jazzy")["ekf_filter_node"],), beside, load_nodes("jazzy"))
     assert {it.name: bool(it.when) for it in found.nodes} == {
         "ekf_node": False,
@@ -191,15 +186,15 @@ def test_another_filter_of_the_package_is_the_one_of_the_stack() -> None:
     known = load_nodes("jazzy")
     stack = (known["ekf_filter_node"],)
     for name in ("ukf_filter_node", "ukf_node"):
-        (node,) = nodes_of(stack, given(EKF.replace("ekf_node", name)), known).nodes
+        (node,) = nodes_of(stack, given_in(EKF.replace("ekf_node", name)), known).nodes
         program = program_of(node, "jazzy")
         assert program and (node.name, program.executable, node.when) == (name, "ukf_node", "")
     beside = EKF + EKF.replace("ekf_node", "ukf_node")
     # Which of two is not known: with both there are rules that the stack does not have.
-    both = nodes_of(stack, given(beside), known).nodes
+    both = nodes_of(stack, given_in(beside), known).nodes
     assert {it.name for it in both if it.when} == {"ekf_node", "ukf_node"}
     # navsat_transform_node is of the package, and no filter.
-    other = nodes_of(stack, given("navsat_transform_node:\n  ros__parameters: {}\n"), known)
+    other = nodes_of(stack, given_in("navsat_transform_node:\n  ros__parameters: {}\n"), known)
     assert {it.name: bool(it.when) for it in other.nodes} == {
         "ekf_filter_node": False,
         "navsat_transform_node": True,
@@ -210,13 +205,13 @@ def test_a_name_of_before_humble_is_of_no_node() -> None:
     """Galactic's recoveries_server is behavior_server since Humble (nav2_behaviors)."""
     text = "recoveries_server:\n  ros__parameters: {costmap_topic: a}\n"
     known = load_nodes("humble")
-    found = nodes_of((known["behavior_server"],), given(text), known)
+    found = nodes_of((known["behavior_server"],), given_in(text), known)
     assert [(it.name, it.when) for it in found.nodes] == [("behavior_server", "")]
 
 
 def test_a_section_below_a_namespace_is_for_the_node_of_the_stack() -> None:
     text = "/r1/amcl:\n  ros__parameters: {scan_topic: front}\n"
-    found = nodes_of(load_stack("localization", "jazzy"), given(text), load_nodes("jazzy"))
+    found = nodes_of(load_stack("localization", "jazzy"), given_in(text), load_nodes("jazzy"))
     (amcl,) = (it for it in found.nodes if it.name.endswith("amcl"))
     assert amcl.name == "amcl"
     assert "front" in names(amcl, "subscribes")
@@ -238,7 +233,7 @@ def test_what_no_rule_reaches_is_fixed_unless_a_parameter_could_name_it() -> Non
     )
     bare = named._replace(name="b", parameter="")
     node = known._replace(endpoints=(named, bare))
-    found = filled(node, given("ekf_filter_node:\n  ros__parameters: {wanted: true}\n")[0])
+    found = filled(node, given_in("ekf_filter_node:\n  ros__parameters: {wanted: true}\n")[0])
     assert [(it.name, it.fixed) for it in found.endpoints] == [("a", ""), ("b", "made absolute")]
 
 
@@ -344,5 +339,5 @@ def test_a_section_with_a_name_of_before_is_of_no_node() -> None:
     """nav2_behaviors' server is called behavior_server since Humble, whatever a file has."""
     text = "recoveries_server: {ros__parameters: {costmap_topic: local_costmap/costmap_raw}}\n"
     stack = load_stack("nav2", "jazzy")
-    found = nodes_of(stack, given(text), load_nodes("jazzy"))
+    found = nodes_of(stack, given_in(text), load_nodes("jazzy"))
     assert [it.name for it in found.nodes] == [it.name for it in stack]

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import pytest
 from controller_types import registered
+from fleet_folder import planned_fleet
 from vendor_sources import (
     VARIABLE,
     installed_sources,
@@ -20,9 +21,9 @@ from vendor_sources import (
 
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.parameters import built_in_nodes
+
+pytestmark = pytest.mark.slow
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 # What the vendors' launch files replace, for one robot without a prefix.
@@ -103,7 +104,6 @@ ROBOTS = {
 sources = pytest.fixture(scope="module")(installed_sources)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_claimed_interfaces_are_exported(
@@ -124,7 +124,7 @@ def test_claimed_interfaces_are_exported(
         f"arguments: {{{arguments}}}\nrobots: [{{name: left}}, {{name: right}}]\n"
         "companions: {params: [controllers.yaml]}\nstack: ros2_control\n"
     )
-    outputs = make_outputs(plan_fleet(read_fleet(str(fleet), "", {})))
+    outputs = make_outputs(planned_fleet(fleet))
     found = [it for it in outputs.findings if it.code in ("MB229", "MF802")]
     lacking = {it.message.partition(" is ")[0].partition(" of ")[0] for it in found}
     # Which of them there are differs from branch to branch.
@@ -134,7 +134,6 @@ def test_claimed_interfaces_are_exported(
     assert [it for it in outputs.findings if it.level == "error"] == []
 
 
-@pytest.mark.slow
 def test_every_registered_controller_is_known(sources: Path) -> None:
     found = {it for folder in packages_below(sources).values() for it in registered(folder)}
     assert found
