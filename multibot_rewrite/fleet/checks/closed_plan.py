@@ -20,7 +20,7 @@ from multibot_rewrite.fleet.checks.robot_system import (
     with_controllers,
 )
 from multibot_rewrite.fleet.checks.shared_names import shared_by_nothing
-from multibot_rewrite.fleet.checks.written_files import written_findings
+from multibot_rewrite.fleet.checks.written_files import of_files, written_findings
 from multibot_rewrite.fleet.fleet import Fleet, planned
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
@@ -33,7 +33,6 @@ from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.ends import BRIDGE_FILE, bridge_ends
 from multibot_rewrite.producers.evidence.nodes import MANAGER
-from multibot_rewrite.rules.files.judge import codes
 from multibot_rewrite.spelling.bridged_topics import BOTH, once
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import Topic
@@ -79,7 +78,7 @@ def gaps_of(
     """What is open in the robots of a fleet, by place; ``made`` are the files of the robots, and what
     was found as they were made."""
     texts, found = sorted_out(made)
-    known = {it for it in found if it.code in codes() and it.level != NOTE}
+    known = of_files(found)
     for robot in (group.robots[0] for group in group_robots(plan)):
         known |= {it for it in robot.findings if it.file == robot.spec.srdf and it.level != NOTE}
     known |= {*_gaps(plan, fleet, texts, known), *not_across(fleet), *_shared(plan)}
