@@ -14,18 +14,14 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import quoted
-from multibot_rewrite.description.readback.meeting import OPENED
 from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.fleet.checks.across_domains import one_launch_each
 from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of, sorted_out
-from multibot_rewrite.fleet.checks.for_another_robot import for_another_robot
-from multibot_rewrite.fleet.checks.lacking import lacking
-from multibot_rewrite.fleet.checks.named_twice import named_twice
+from multibot_rewrite.fleet.checks.of_robots import of_robots
 from multibot_rewrite.fleet.file.fleet_file import input_files
 from multibot_rewrite.fleet.fleet import Fleet, expected, possible
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import fleet_starts, launch_file
-from multibot_rewrite.fleet.launch.launched_prefix import launched_prefixes
 from multibot_rewrite.fleet.launch.starts import FleetStarts
 from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleet.outputs.cell_outputs import cell_outputs
@@ -33,7 +29,7 @@ from multibot_rewrite.fleet.outputs.commands_file import commands_file
 from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.controller_files import with_own_controllers
 from multibot_rewrite.fleet.outputs.free_fleet import configurations as free_fleet
-from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_frames, moveit_parameters
+from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_parameters
 from multibot_rewrite.fleet.outputs.output_file import (
     PLAN,
     FilesAndFindings,
@@ -51,14 +47,8 @@ from multibot_rewrite.fleet.outputs.rviz_outputs import (
 from multibot_rewrite.fleet.outputs.shape_outputs import copied
 from multibot_rewrite.fleet.outputs.world_file import world_file
 from multibot_rewrite.fleet.outputs.zenoh_configuration import ZENOH, configurations
-from multibot_rewrite.fleet.robots.apart import too_near
-from multibot_rewrite.fleet.robots.devices import one_device_each
-from multibot_rewrite.fleet.robots.hardware_services import moved_services
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
-from multibot_rewrite.fleet.robots.simulators import other_hardware
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
-from multibot_rewrite.fleet.robots.two_descriptions import differences, of_sdf_alone
-from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.spelling.domain_bridge import bridge_files
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.foxglove import to_layout
@@ -102,7 +92,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
                 *rviz_files(configs),
             ]
         )
-        findings += _of_robots(plan)
+        findings += of_robots(plan)
         gaps = gaps_of(plan, fleet, made)
         findings += gaps
         fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, files)))
@@ -128,26 +118,6 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         _check_paths_differ(files)
         said = tuple(said_once(plan, [*findings, *told]))
         return Outputs(tuple(files), said, starts, planned)
-
-
-def _of_robots(plan: FleetPlan) -> Iterator[Finding]:
-    """What is wrong with the robots themselves, whatever files go with them."""
-    yield from plan.of_rewrites
-    yield from other_hardware(plan.robots, plan.file)
-    yield from moved_services(plan)
-    yield from named_twice(plan.robots)
-    met = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}
-    known = load_known_nodes(plan.file.nodes, plan.file.distro)
-    yield from one_device_each(plan.robots, plan.evidence_of, known, met)
-    for found in plan.evidence.values():
-        yield from found.findings
-    yield from lacking(plan)
-    yield from too_near(plan)
-    yield from launched_prefixes(plan)
-    yield from moveit_frames(plan)
-    yield from differences(plan)
-    yield from of_sdf_alone(plan)
-    yield from for_another_robot(plan)
 
 
 def _check_paths_differ(files: Sequence[OutputFile]) -> None:

@@ -64,7 +64,6 @@ HOMES: tuple[Home, ...] = (
             "fleet.robots.hardware_services",
             "fleet.robots.joined_robots",
             "fleet.robots.world_systems",
-            "fleet.checks.named_twice",
             "fleet.checks.across_domains",
             "fleet.checks.shared_names",
             "fleet.robots.own_ports",

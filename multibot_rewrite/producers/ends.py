@@ -9,16 +9,14 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge_entry import BOTH, FRAME, GZ, ROS, below
 from multibot_rewrite.companions.bridge_entry import SERVICE as SERVICE_ROW
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
-from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.of_runs import ends_of, with_names
+from multibot_rewrite.spelling.of_runs import with_names
 from multibot_rewrite.spelling.records import GivenNode, Run
 from multibot_rewrite.spelling.targets import expanded
 from multibot_rewrite.system.records import (
     CALLS,
     MAY,
     PUBLISHES,
-    RUNS,
     SERVES,
     SERVICE,
     SUBSCRIBES,
@@ -40,32 +38,20 @@ def either_way(end: End) -> Iterator[End]:
     yield from (end._replace(role=it, sure=MAY) for it in (PUBLISHES, SUBSCRIBES))
 
 
-def node_ends(node: NodeFacts, section: GivenNode | None) -> Iterator[End]:
-    """The ends of a node by the names of its code, or what the usual launch files make of them;
-    ``section`` is what a file sets for it. A node for all robots needs nothing of this one."""
+def run_alone(node: NodeFacts, section: GivenNode | None) -> Run:
+    """A node of a robot without a name, under the rules of the usual launch files alone; ``section`` is
+    what a file sets for it."""
     above, _, name = f"/{node.name}".rpartition("/")
     rules = tuple(it for end in node.endpoints if end.remapped for it in _usual_rules(end))
-    run = Run("", name, above or "/", name, rules, node)
+    run = Run("", node.name, above or "/", name, rules, node)
     run = run._replace(values=section.values, place=section.place) if section else run
-    # A node with parameters is meant to run.
-    may = bool(node.when) and section is None
-    for it in ends_of(with_names(run)):
-        if not (node.shared and it.role in NEEDS):
-            yield from either_way(it._replace(node=run.full_name, sure=MAY if may else it.sure))
+    return with_names(run)
 
 
 def _usual_rules(end: Endpoint) -> Iterator[tuple[str, str]]:
     meant = expanded(end._replace(name=end.remapped))
     for (_, source), (_, target) in zip(expanded(end), meant, strict=True):
         yield source, target
-
-
-def plugin_ends(reading: Reading) -> Iterator[End]:
-    """The ends of the nodes that a description starts."""
-    for node in reading.nodes:
-        for it in node.endpoints:
-            own = (it.kind, it.role, it.name, it.type, "", node.full_name, None, "", it.code_name)
-            yield from either_way(End(*own, sure=MAY if it.off else RUNS))
 
 
 class BridgeRow(NamedTuple):

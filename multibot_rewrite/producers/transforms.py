@@ -12,7 +12,6 @@ from multibot_rewrite.knowledge.records import MOVE_GROUP, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled, lookup
 from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics
 from multibot_rewrite.spelling.records import Given, GivenNode
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, sent_by
 from multibot_rewrite.system.records import (
     NOWHERE,
     OFF,
@@ -34,19 +33,6 @@ def edge(
     """A transform on the tf topic of its robot, or on the static one beside it."""
     on = "/".join("tf_static" if it == "tf" and pair.static else it for it in topic.split("/"))
     return pair._replace(topic=on, publishers=(node,), sure=sure, place=place)
-
-
-def joint_edges(tree: Iterable[tuple[Edge, Place]]) -> Iterator[Edge]:
-    """What robot_state_publisher sends for the joints of a description."""
-    yield from (edge(pair, f"/{STATE_PUBLISHER}", place) for pair, place in tree)
-
-
-def node_edges(nodes: Iterable[NodeFacts], given: Iterable[GivenNode], root: str) -> Iterator[Edge]:
-    """What nodes send; ``root`` is the robot's first link."""
-    places = {it.name: it.place for it in given}
-    for node in nodes:
-        for pair in sent_by(node, root):
-            yield edge(pair, f"/{node.name}", places.get(node.name, NOWHERE))
 
 
 def lookups_of(name: str, node: NodeFacts, values: Mapping[str, Given]) -> Iterator[Lookup]:

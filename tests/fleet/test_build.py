@@ -26,12 +26,16 @@ from hypothesis import strategies as st
 from lxml import etree
 from plans import PlannedRobot, from_plugin, planned, planned_end
 
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import folders
 from multibot_rewrite.cli.files import write_new
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.release_said import MANIFEST
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.manifest import NOTE
+from multibot_rewrite.fleet.robots.robot_groups import said_once
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.json import from_yaml
 
@@ -298,6 +302,15 @@ def test_findings_are_sorted_and_said_once(
     assert "multibotTagSlot" not in "".join(lines)
 
 
+def test_findings_that_differ_in_their_hints_alone_are_sorted_too(tmp_path: Path) -> None:
+    """A set of them has another order in every process."""
+    fleet_folder(tmp_path)
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    found = [Finding("MB853", WARNING, "unknown", hint=f"did you mean {it}?") for it in "abcdefghi"]
+    assert said_once(plan, found[::-1]) == found
+
+
+@pytest.mark.slow
 def test_errors_stop_the_job_and_strict_makes_errors(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -20,7 +20,7 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
-from multibot_rewrite.producers.ends import bridge_ends, node_ends
+from multibot_rewrite.producers.ends import bridge_ends, run_alone
 from multibot_rewrite.producers.evidence.hardware import Exported
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
@@ -48,15 +48,13 @@ from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.producers.transforms import (
     edge,
     edges_off,
-    joint_edges,
     lookups_of,
-    node_edges,
 )
+from multibot_rewrite.spelling.of_runs import ends_of
 from multibot_rewrite.spelling.records import Given, GivenNode, Run
 from multibot_rewrite.system.records import (
     COMPUTER,
     DEVICE,
-    MAY,
     NOWHERE,
     OFF,
     PUBLISHES,
@@ -101,29 +99,17 @@ DRIVER = NodeFacts(
 
 
 def test_the_ends_of_a_node_by_the_names_of_its_code() -> None:
-    found = [*node_ends(DRIVER, given("a/driver", topic="/scan"))]
-    assert [(it.role, it.name, it.sure, it.place) for it in found] == [
+    run = run_alone(DRIVER, given("a/driver", topic="/scan"))
+    assert (run.robot, run.node, run.full_name) == ("", "a/driver", "/a/driver")
+    assert [(it.role, it.name, it.sure, it.place) for it in ends_of(run)] == [
         (PUBLISHES, "/a/scan", RUNS, THERE),
         (SUBSCRIBES, "/cmd_vel", RUNS, AT),
-        (PUBLISHES, "/a/driver/either", MAY, AT),
-        (SUBSCRIBES, "/a/driver/either", MAY, AT),
+        ("", "/a/driver/either", RUNS, AT),
         (PUBLISHES, "/a/maybe", Sure("may", "x"), AT),
     ]
-    assert {it.node for it in found} == {"/a/driver"}
-    assert (found[0].type, found[0].code_name, found[0].also) == (
-        "a/msg/Scan",
-        "scan",
-        ("a/msg/Old",),
-    )
-    assert node_ends(DRIVER, None).__next__().place == NOWHERE
-
-
-def test_a_node_with_parameters_is_meant_to_run() -> None:
-    optional = DRIVER._replace(when="started")
-    assert [it.sure for it in node_ends(optional, None)][:2] == [MAY, MAY]
-    assert [it.sure for it in node_ends(optional, given("a/driver"))][:2] == [RUNS, RUNS]
-    shared = DRIVER._replace(shared=True)
-    assert "/cmd_vel" not in [it.name for it in node_ends(shared, None)]
+    first = next(ends_of(run))
+    assert (first.type, first.code_name, first.also) == ("a/msg/Scan", "scan", ("a/msg/Old",))
+    assert next(ends_of(run_alone(DRIVER, None))).place == NOWHERE
 
 
 def test_the_rows_of_a_bridge_in_a_namespace() -> None:
@@ -437,16 +423,8 @@ def test_a_transform_is_on_the_tf_of_its_robot() -> None:
     assert edge(moving, "/n", AT).topic == "/tf"
     assert edge(fixed, "/n", AT).topic == "/tf_static"
     assert edge(fixed, "/n", topic="/tf/a").topic == "/tf_static/a"
-    (made,) = joint_edges([(fixed, AT)])
-    assert (made.publishers, made.place, made.sure) == (("/robot_state_publisher",), AT, RUNS)
-
-
-def test_transforms_that_parameters_name() -> None:
-    sends = EKF._replace(sends=(SentTransform("odom", "base"),))
-    (own,) = node_edges([sends], [given("ekf")], "")
-    assert (own.parent, own.child, own.publishers, own.place) == ("odom", "base", ("/ekf",), AT)
-    (rooted,) = node_edges([sends], [], "root")
-    assert (rooted.child, rooted.place) == ("root", NOWHERE)
+    made = edge(fixed, "/n", AT)
+    assert (made.publishers, made.place, made.sure) == (("/n",), AT, RUNS)
 
 
 @pytest.mark.parametrize(

@@ -10,31 +10,31 @@ from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.fleet.checks.across_domains import not_across
-from multibot_rewrite.fleet.checks.judged import (
-    apart,
-    contradicted,
-    controlled,
-    missing,
-    not_sent,
-    whose_names,
+from multibot_rewrite.fleet.checks.judged import contradicted, left_open
+from multibot_rewrite.fleet.checks.robot_system import (
+    as_written,
+    beside,
+    joined,
+    of_all_robots,
+    of_sources,
+    with_controllers,
 )
 from multibot_rewrite.fleet.checks.shared_names import shared_by_nothing
-from multibot_rewrite.fleet.checks.written_files import written_findings
-from multibot_rewrite.fleet.checks.written_system import of_each_kind, with_robots, written_system
-from multibot_rewrite.fleet.fleet import Fleet
+from multibot_rewrite.fleet.checks.written_files import of_files, written_findings
+from multibot_rewrite.fleet.fleet import Fleet, planned
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
-from multibot_rewrite.fleet.robots.robot_groups import group_robots
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.robot_groups import group_robots, split_per_robot
 from multibot_rewrite.fleet.robots.simulators import unread_drives
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
-from multibot_rewrite.fleet.robots.systems import system_after, system_before
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.ends import BRIDGE_FILE, bridge_ends
 from multibot_rewrite.producers.evidence.nodes import MANAGER
-from multibot_rewrite.rules.files.judge import codes
 from multibot_rewrite.spelling.bridged_topics import BOTH, once
+from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import Topic
 
 
@@ -44,7 +44,9 @@ def closed_plan(plan: FleetPlan) -> Fleet:
     Raises InputError for a companion that cannot be read or rewritten.
     """
     with gc_paused():
-        fleet, few = with_start_pose_nodes(plan), _one_of_each(plan)
+        fleet = with_start_pose_nodes(plan)
+        # The others close as the first one of each that differs in more than its names does.
+        few = _of_some(plan, [it.robots[0] for it in group_robots(plan)])
         made = [*companion_files(few), *bridge_outputs(few)]
         gaps = gaps_of(plan, fleet, made)
         rows = [it for it in bridge_outputs(plan) if isinstance(it, OutputFile)]
@@ -76,11 +78,13 @@ def gaps_of(
     """What is open in the robots of a fleet, by place; ``made`` are the files of the robots, and what
     was found as they were made."""
     texts, found = sorted_out(made)
-    known = {it for it in found if it.code in codes() and it.level != NOTE}
+    known = of_files(found)
     for robot in (group.robots[0] for group in group_robots(plan)):
         known |= {it for it in robot.findings if it.file == robot.spec.srdf and it.level != NOTE}
     known |= {*_gaps(plan, fleet, texts, known), *not_across(fleet), *_shared(plan)}
-    return tuple(sorted(known, key=lambda it: (it.file, it.line, it.column, it.code, it.message)))
+    return tuple(
+        sorted(known, key=lambda it: (it.file, it.line, it.column, it.code, it.message, it))
+    )
 
 
 def _shared(plan: FleetPlan) -> Iterator[Finding]:
@@ -107,23 +111,25 @@ def _gaps(
     plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputFile], known: Collection[Finding]
 ) -> Iterator[Finding]:
     """Yield what is open; robots of the same sources are judged once, and all of them are named."""
-    shown = of_each_kind(plan)
-    few = with_robots(fleet, shown)
-    whole, whose = written_system(plan, few, shown, texts), whose_names(few)
-    yield from contradicted(plan, whole, whose)
+    groups = [*group_robots(plan)]
+    # Of robots that differ in their names alone two show where they meet.
+    few = _of_some(plan._replace(fleet=fleet), [one for it in groups for one in it.robots[:2]])
+    alone = [(it.robots[0], it.fleet) for it in split_per_robot(few)]
+    written = {it.spec.name: as_written(own, it, texts) for it, own in alone}
+    shared = of_all_robots((it for it in few.fleet.table.runs if not it.robot), texts)
+    whose = whose_by_plan(planned(few.fleet))
+    yield from contradicted(plan, joined(shared, *written.values()), whose)
     parameters = load_known_nodes(plan.file.nodes, plan.file.distro)
-    for group in group_robots(plan):
+    for group in groups:
         robot = group.robots[0]
         evidence = plan.evidence_of(robot)
-        before = system_before(robot, evidence, plan.jobs[robot.spec.sources].srdf)
-        after = system_after(robot, evidence, texts, parameters, whole)
+        before = of_sources(robot, evidence, plan.jobs[robot.spec.sources].srdf)
+        own = beside(written[robot.spec.name], shared)
+        after = with_controllers(own, robot, evidence, texts, parameters)
         loads = any(it.name.endswith(MANAGER) for it in group.facts)
         found = (
-            *controlled(robot, before.control, after.control, texts),
-            *apart(robot, before.system, after.system, whose),
-            *not_sent(robot, before.system),
+            *left_open(robot, before, after, whose, texts),
             *unread_drives(robot, loads),
-            *missing(robot, before.system, after.system, whose),
         )
         alike = tuple(it.spec.name for it in group.robots)
         several = alike if len(alike) > 1 else ()
@@ -131,8 +137,16 @@ def _gaps(
         yield from written_findings(plan, group, texts, known)
 
 
-def _one_of_each(plan: FleetPlan) -> FleetPlan:
-    """A plan of one robot for each that differs in more than its names: the others close as it does."""
-    robots = tuple(it.robots[0] for it in group_robots(plan))
-    own = {it.spec.namespace: plan.fleet.inventories[it.spec.namespace] for it in robots}
-    return plan._replace(robots=robots, fleet=plan.fleet._replace(inventories=own))
+def _of_some(plan: FleetPlan, robots: Sequence[RewrittenRobot]) -> FleetPlan:
+    """A plan of some of the robots, with the nodes for all."""
+    fleet, kept = plan.fleet, {"", *(it.spec.namespace for it in robots)}
+    table = fleet.table._replace(runs=tuple(it for it in fleet.table.runs if it.robot in kept))
+    return plan._replace(
+        robots=tuple(robots),
+        fleet=fleet._replace(
+            table=table,
+            inventories={name: it for name, it in fleet.inventories.items() if name in kept},
+            described={name: it for name, it in fleet.described.items() if name in kept},
+            edges={key: it for key, it in fleet.edges.items() if key[0] in kept},
+        ),
+    )

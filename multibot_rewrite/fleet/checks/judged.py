@@ -10,7 +10,6 @@ from typing import cast
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.fleet import Fleet, planned
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
 from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot
@@ -27,11 +26,7 @@ from multibot_rewrite.rules.system.states import interface_commanded_twice
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
 from multibot_rewrite.rules.system.unsent import no_longer_sent, open_ends
 from multibot_rewrite.system.index import Index, index
-from multibot_rewrite.system.ownership import (
-    ALONE,
-    Whose,
-    whose_by_plan,
-)
+from multibot_rewrite.system.ownership import ALONE, Whose
 from multibot_rewrite.system.records import (
     CLAIMS,
     EXPORTS,
@@ -44,11 +39,8 @@ from multibot_rewrite.system.records import (
 )
 
 Key = tuple[str, ...]
-
-
-def whose_names(fleet: Fleet) -> Whose:
-    """Whose the names of a fleet are, by its plan."""
-    return whose_by_plan(planned(fleet))
+# What is asked of the sources and of what is written apart from the rest.
+_ASKED = (tf_tree_in_pieces.code, frame_not_sent.code, interface_not_exported.code)
 
 
 def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Finding]:
@@ -65,62 +57,68 @@ def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Findi
         if any((it.code, about) in met for about in (*it.names, it.node)):
             continue
         level = WARNING if it.robot and it.level == ERROR else it.level
-        yield in_file(it._replace(level=level), robots.get(it.robot) or plan.robots[-1])
+        yield _in_file(it._replace(level=level), robots.get(it.robot) or plan.robots[-1])
 
 
-def missing(
-    robot: RewrittenRobot, before: System, after: System, whose: Whose
+def left_open(
+    robot: RewrittenRobot,
+    before: System,
+    after: System,
+    whose: Whose,
+    texts: Sequence[OutputFile] = (),
 ) -> Iterator[Finding]:
-    """What a robot needs and nothing gives, as it is written: an error where its sources had it.
-
-    What the sources need is asked for; what the build adds, such as rows of a bridge, may give it.
-    """
+    """What is open in a robot by its sources, and as it is written: an error where only its rewrite has
+    opened it. ``texts`` are the files that were made."""
     old, new = index(before, ALONE), index(_asked(before, after), whose)
+    in_sources, found = absences(old), absences(new)
+    yield from _controlled(robot, before, after, texts)
+    yield from _not_sent(robot, before)
+    yield from _apart(robot, after, in_sources, found)
     was_open = _by_key(before, open_ends(old))
     lost = {
         (it.node, it.name): it
         for key, it in _by_key(after, open_ends(new)).items()
         if key not in was_open
     }
-    in_sources = {_about(it, before): it for it in absences(old) if it.node}
-    asked = {tf_tree_in_pieces.code, frame_not_sent.code}
-    for it in (it for it in absences(new) if it.code not in asked):
+    by_end = {_about(it, before): it for it in in_sources if it.node}
+    for it in (it for it in found if it.code not in _ASKED):
         if it.node and (it.node, it.names[0]) in lost:
             del lost[it.node, it.names[0]]
-            yield in_file(it, robot)
+            yield _in_file(it, robot)
             continue
         # Names as the sources have them, where these have both.
-        source = in_sources.get(_about(it, after)) if it.node else None
+        source = by_end.get(_about(it, after)) if it.node else None
         said = source if source and _is_placed(before, source.names[-1]) else it
         level = WARNING if said.level == ERROR else said.level
         # Its drivers, which no file names, send what a localizer waits for.
         real = robot.spec.simulator == REAL and it.code == map_not_joined.code
         level = NOTE if real and len(it.names) == 1 else level
-        yield in_file(said._replace(level=level), robot, by_sources=said is source)
-    yield from (in_file(no_longer_sent(it), robot) for it in lost.values())
+        yield _in_file(said._replace(level=level), robot, by_sources=said is source)
+    yield from (_in_file(no_longer_sent(it), robot) for it in lost.values())
 
 
-def apart(robot: RewrittenRobot, before: System, after: System, whose: Whose) -> Iterator[Finding]:
+def _apart(
+    robot: RewrittenRobot, after: System, in_sources: Iterable[Finding], found: Iterable[Finding]
+) -> Iterator[Finding]:
     """Where the robot's frames are in pieces by its sources, and where only its rewrite cuts them."""
-    check = cast(Callable[[Index], Iterator[Finding]], tf_tree_in_pieces.check)
-    found = [*check(index(before, ALONE))]
     known = {it.name: it.known for it in after.nodes}
-    told = {it.node.lstrip("/") for it in found}
-    yield from (in_file(it, robot, by_sources=True) for it in found)
-    for it in check(index(after, whose)):
+    cut = [it for it in in_sources if it.code == tf_tree_in_pieces.code]
+    told = {it.node.lstrip("/") for it in cut}
+    yield from (_in_file(it, robot, by_sources=True) for it in cut)
+    for it in (it for it in found if it.code == tf_tree_in_pieces.code):
         if known.get(it.node, it.node) not in told:
-            yield in_file(it._replace(level=ERROR), robot)
+            yield _in_file(it._replace(level=ERROR), robot)
 
 
-def not_sent(robot: RewrittenRobot, before: System) -> Iterator[Finding]:
+def _not_sent(robot: RewrittenRobot, before: System) -> Iterator[Finding]:
     """The frames that the robot's files name and nothing of it sends. One in a simulator has no driver
     that might."""
     known = before._replace(environment=Environment())
     for it in _ask((frame_not_sent,), before if robot.spec.simulator == REAL else known):
-        yield in_file(it, robot, by_sources=True)
+        yield _in_file(it, robot, by_sources=True)
 
 
-def controlled(
+def _controlled(
     robot: RewrittenRobot, before: System, after: System, texts: Sequence[OutputFile]
 ) -> Iterator[Finding]:
     """What is wrong between a robot's controllers and its hardware, by its sources; an error where only
@@ -128,7 +126,7 @@ def controlled(
     for it in _ask(
         (interface_not_exported, interface_claimed_twice, interface_commanded_twice), before
     ):
-        yield in_file(_of_sources(it), robot, by_sources=True)
+        yield _in_file(_of_sources(it), robot, by_sources=True)
     was_open = open_claims(before.interfaces)
     old = {key for key, it in _claims(before) if it in was_open}
     left = [it for key, it in _claims(after) if key not in old]
@@ -139,7 +137,7 @@ def controlled(
         file, line = line_in_source(source, it.line) if source else (it.file, it.line)
         hint = SET_PREFIX if robot.needs_prefix else it.hint
         found = it._replace(level=ERROR, file=file, line=line, hint=hint)
-        yield in_file(found, robot, by_sources=True)
+        yield _in_file(found, robot, by_sources=True)
 
 
 def _ask(rules: Iterable[Rule], system: System) -> Iterator[Finding]:
@@ -184,7 +182,7 @@ def _is_placed(system: System, name: str) -> bool:
     return any(it.name == name and it.place != NOWHERE for it in system.ends)
 
 
-def in_file(finding: Finding, robot: RewrittenRobot, by_sources: bool = False) -> Finding:
+def _in_file(finding: Finding, robot: RewrittenRobot, by_sources: bool = False) -> Finding:
     """The finding as one of its file, else of the robot's line in the fleet file: who it is about is in
     the message. The names of the sources say no robot."""
     it, spec = finding, robot.spec

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the rules of files find in those that a build writes: MoveIt's, and the bridge of each robot."""
+"""What the rules of files find in those of a fleet, and in those that a build writes: MoveIt's, and the
+bridge of each robot."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS
@@ -25,9 +26,32 @@ from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.rules.files.bridges import GzTopic, GzTopics, no_gz_topic
 from multibot_rewrite.rules.files.controllers import undeclared_controller
 from multibot_rewrite.rules.files.given import Beside
-from multibot_rewrite.rules.files.judge import judged
+from multibot_rewrite.rules.files.judge import codes, judged, judged_once
+from multibot_rewrite.rules.files.wheels import with_description
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.records import NOWHERE, Place
+
+
+def wrong_in_file(
+    plan: FleetPlan, file: NamedFile, robots: Sequence[RewrittenRobot]
+) -> list[Finding]:
+    """What all rules find in a file for some robots, with what a fleet knows: the words for its robots,
+    frames that its nodes send, and what is beside it."""
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
+    words = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
+    own = frozenset(robots[0].spec.words if len(robots) == 1 else ())
+    evidence = plan.evidence_of(robots[0])
+    file.memo[Beside] = Beside(evidence.given, evidence.known)
+    whole = with_description(file, robots[0].member.source)
+    return judged_once(
+        whole._replace(robots=frozenset(words), own=own, sent=file.sent | known.sent)
+    )
+
+
+def of_files(found: Iterable[Finding]) -> set[Finding]:
+    """Those of the rules for files that are more than a note."""
+    asked = codes()
+    return {it for it in found if it.code in asked and it.level != NOTE}
 
 
 def written_findings(

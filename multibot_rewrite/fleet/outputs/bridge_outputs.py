@@ -19,8 +19,8 @@ from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.template import FileTemplate, fill_template
 from multibot_rewrite.companions.yaml_blocks import blocks, cut_out, moved
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, items, read_yaml
+from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.companion_files import of_fleet
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
     OutputFile,
@@ -33,7 +33,6 @@ from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.producers.ends import BRIDGE_FILE
-from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.spelling.bridged_topics import (
     BridgedTopic,
     UnbridgedTopic,
@@ -63,7 +62,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
         for file in files.values():
             yield from (
                 *file.own.findings,
-                *judged_once(of_fleet(plan, file.own.file, group.robots)),
+                *wrong_in_file(plan, file.own.file, group.robots),
             )
         for robot in group.robots:
             made = list(_for_robot(robot, files, topics))

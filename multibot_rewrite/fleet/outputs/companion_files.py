@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
@@ -23,6 +23,7 @@ from multibot_rewrite.companions.template import (
 )
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.description.own_ports import said_of_numbers
+from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
@@ -40,9 +41,6 @@ from multibot_rewrite.knowledge.parameter_entries import PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.nodes import children_of
-from multibot_rewrite.rules.files.given import Beside
-from multibot_rewrite.rules.files.judge import judged_once
-from multibot_rewrite.rules.files.wheels import with_description
 from multibot_rewrite.spelling.records import GivenNode
 
 # The key of a fleet file -> the kind of the files that it names.
@@ -67,13 +65,10 @@ def companion_files(plan: FleetPlan) -> FilesAndFindings:
 def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesAndFindings:
     """A file for each robot of a group, and what is found in it."""
     made = _made(plan, group, _KINDS[key], path)
-    evidence = plan.evidence_of(group.robots[0])
-    made.file.memo[Beside] = Beside(evidence.given, evidence.known)
     numbers = _numbers(plan, key, path)
-    file = of_fleet(plan, made.file, group.robots)
     # Robots that differ in their descriptions may have one file.
-    file = file._replace(is_for_one=file.is_for_one and len(numbers) == 1)
-    found = (*made.findings, *judged_once(file))
+    file = made.file._replace(is_for_one=made.file.is_for_one and len(numbers) == 1)
+    found = (*made.findings, *wrong_in_file(plan, file, group.robots))
     yield from (_with_names_of(group.robots[0], it) for it in found)
     yield from _numbered(made.file, numbers)
     for robot in group.robots:
@@ -110,21 +105,9 @@ def _numbered(file: NamedFile, numbers: Mapping[str, int]) -> Iterator[Finding]:
 
 def _made(plan: FleetPlan, group: RobotGroup, kind: str, path: str) -> Companion:
     if kind == PARAMS:
-        made = _params(plan, group, path)
-    else:
-        made = made_for_any(
-            kind, text_of(group.robots[0].spec, path), path, group.context, group.facts
-        )
-    return made._replace(file=with_description(made.file, group.robots[0].member.source))
-
-
-def of_fleet(plan: FleetPlan, file: NamedFile, robots: Sequence[RewrittenRobot]) -> NamedFile:
-    """A file for some robots with what a fleet knows: the words for its robots, and frames that its
-    nodes send."""
-    known = load_known_nodes(plan.file.nodes, plan.file.distro)
-    words = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
-    own = frozenset(robots[0].spec.words if len(robots) == 1 else ())
-    return file._replace(robots=frozenset(words), own=own, sent=file.sent | known.sent)
+        return _params(plan, group, path)
+    text = text_of(group.robots[0].spec, path)
+    return made_for_any(kind, text, path, group.context, group.facts)
 
 
 def _with_names_of(robot: RewrittenRobot, finding: Finding) -> Finding:

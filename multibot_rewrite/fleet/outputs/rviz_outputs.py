@@ -14,9 +14,9 @@ from multibot_rewrite.companions.rviz.of_plan import windows_of_plan
 from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
+from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.cell_outputs import cell_window, parameters_path
-from multibot_rewrite.fleet.outputs.companion_files import of_fleet
 from multibot_rewrite.fleet.outputs.moveit_parameters import FILE, has_moveit
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
@@ -28,7 +28,6 @@ from multibot_rewrite.fleet.outputs.output_file import (
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import world_of
-from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.spelling.start import File, Start
 from multibot_rewrite.system.records import System
 
@@ -75,7 +74,7 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
             texts, found = (window, *texts), (*found, *bare)
         found = (
             *found,
-            *judged_once(of_fleet(plan, read_for(document, shown, plan.file.distro), robots)),
+            *wrong_in_file(plan, read_for(document, shown, plan.file.distro), robots),
         )
         done = ONE_TF_TOPIC.code if relayed else ""
         left = tuple(it for it in found if it.code != done)

@@ -65,7 +65,7 @@ def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
     """Findings sorted by place; what is the same for many robots is one finding."""
     specs = [it.spec for it in plan.robots]
     ordered = sorted(
-        set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message)
+        set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message, it)
     )
     # Lines of robots in the fleet file: that they differ is no difference. One for several tells none.
     count = Counter((it.file, it.line) for it in specs)

@@ -11,13 +11,14 @@ from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.judged import controlled
+from multibot_rewrite.fleet.checks.judged import left_open
+from multibot_rewrite.fleet.checks.robot_system import of_sources, with_controllers
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.robots.robot_nodes import node_sources
-from multibot_rewrite.fleet.robots.systems import system_after, system_before
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.semantics import semantics
+from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import System
 
 
@@ -124,11 +125,11 @@ def test_a_joint_that_the_rewrite_takes_from_its_controller_is_an_error(tmp_path
     plan, _ = planned(tmp_path, "shoulder, elbow")
     robot = plan.robots[0]
     evidence = plan.evidence[node_sources(robot.spec)]
-    before = system_before(robot, evidence, plan.jobs[robot.spec.sources].srdf)
+    before = of_sources(robot, evidence, plan.jobs[robot.spec.sources].srdf)
     # As if MoveIt's file had stayed as it is.
     same = OutputFile("robot1/m.yaml", (tmp_path / "m.yaml").read_bytes())
     known = load_known_nodes("", plan.file.distro)
-    after = system_after(robot, evidence, [same], known, System())
-    found = list(controlled(robot, before.control, after.control, []))
+    after = with_controllers(System(), robot, evidence, [same], known)
+    found = [it for it in left_open(robot, before, after, ALONE) if it.code == "MB229"]
     assert [(it.level, it.line) for it in found] == [("error", 3), ("error", 5)]
     assert "shoulder_robot1" in found[0].message

@@ -5,22 +5,23 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import open_findings
 import pytest
 from closed_robot import FILES
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.fleet.checks.closed_plan import gaps_of
-from multibot_rewrite.fleet.checks.written_system import DRIVERS
+from multibot_rewrite.fleet.checks.robot_system import DRIVERS
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.producers.transforms import edge, edges_off, joint_edges
+from multibot_rewrite.producers.transforms import edge, edges_off
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
 from multibot_rewrite.spelling.records import Given, GivenNode
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import ALONE
-from multibot_rewrite.system.records import NOWHERE, Edge, Place, System, edge_of
+from multibot_rewrite.system.records import Edge, Place, System, edge_of
 
 
 def pair(text: str) -> Edge:
@@ -53,7 +54,7 @@ def told(*edges: Edge) -> list[Finding]:
 def test_nodes_whose_transforms_are_apart(
     description: str, senders: dict[str, str], apart: list[str]
 ) -> None:
-    tree = joint_edges((pair(it), NOWHERE) for it in description.split())
+    tree = (edge(pair(it), "/robot_state_publisher") for it in description.split())
     sent = (edge(pair(text), f"/{node}") for node, text in senders.items())
     assert [it.node for it in told(*tree, *sent)] == apart
 
@@ -117,3 +118,38 @@ def test_a_filter_of_the_map_would_send_another_one() -> None:
 def test_a_filter_that_sends_is_not_off() -> None:
     on = OFF._replace(values={**OFF.values, "publish_tf": Given(True, HERE)})  # type: ignore[arg-type]
     assert off(on) == []
+
+
+DRIVE = """\
+<robot name="r"><link name="base_link"/><link name="wheel"/>
+  <joint name="wheel_joint" type="continuous">
+    <parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
+  </joint>
+  <gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+    <left_joint>wheel_joint</left_joint><right_joint>wheel_joint</right_joint>
+    <frame_id>odom</frame_id><child_frame_id>base_link</child_frame_id><tf_topic>tf</tf_topic>
+  </plugin></gazebo>
+</robot>
+"""
+AMCL = (
+    "amcl: {ros__parameters: {base_frame_id: base_link, odom_frame_id: ODOM, scan_topic: scan}}\n"
+)
+SIMULATED = """\
+description: r.urdf
+simulator: gazebo
+stack: [navigation]
+companions: {params: [p.yaml]}
+robots: [{name: r1}, {name: r2}]
+"""
+
+
+@pytest.mark.parametrize("layout", ["postfix", "frames-per-robot"])
+@pytest.mark.parametrize(("odom", "levels"), [("odom", []), ("other", ["warning"])])
+def test_what_the_sources_cut_from_a_simulators_odometry_is_no_error(
+    layout: str, odom: str, levels: list[str], tmp_path: Path
+) -> None:
+    files = {"r.urdf": DRIVE, "p.yaml": AMCL.replace("ODOM", odom), "fleet.yaml": SIMULATED}
+    built, _ = open_findings.found(tmp_path, files, layout)
+    cut = [it for it in built if it.code == "MG406"]
+    assert [it.level for it in cut] == levels
+    assert all("sends map -> other, apart from odom -> base_link" in it.message for it in cut)

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is wrong with the robots of a fleet themselves, whatever files go with them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import combinations, pairwise
+from math import ceil, dist
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.description.checks.problem import to_findings
+from multibot_rewrite.description.checks.shapes import filled_by
+from multibot_rewrite.description.readback.meeting import OPENED
+from multibot_rewrite.fleet.checks.lacking import lacking
+from multibot_rewrite.fleet.checks.named_twice import named_twice
+from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec, Sources
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.launched_prefix import launched_prefixes
+from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_frames
+from multibot_rewrite.fleet.robots.hardware_services import moved_services
+from multibot_rewrite.fleet.robots.own_values import own_value, sources_of
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.fleet.robots.robot_groups import group_robots
+from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
+from multibot_rewrite.fleet.robots.simulators import is_simulated, other_hardware
+from multibot_rewrite.fleet.robots.two_descriptions import differences, of_sdf_alone
+from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
+from multibot_rewrite.knowledge.records import MANAGER
+from multibot_rewrite.producers.addresses import of_hardware, of_parameters
+from multibot_rewrite.rules.check import judge
+from multibot_rewrite.rules.files.robot_words import in_description
+from multibot_rewrite.rules.launch.models import in_each_other
+from multibot_rewrite.rules.system.sharing import one_device
+from multibot_rewrite.system.index import index
+from multibot_rewrite.system.ownership import whose_by_plan
+from multibot_rewrite.system.records import DEVICE, Address, Place, Robot, System
+
+_NAMED = ("topic", "service")
+# Robots of which each pair is looked at; of more the nearest neighbours in a list are.
+MOST = 400
+# A robot, where it starts, and how far it reaches.
+_Placed = tuple[RewrittenRobot, tuple[float, float, float], float]
+
+
+def of_robots(plan: FleetPlan) -> Iterator[Finding]:
+    """What is wrong with the robots themselves, whatever files go with them."""
+    yield from plan.of_rewrites
+    yield from other_hardware(plan.robots, plan.file)
+    yield from moved_services(plan)
+    yield from named_twice(plan.robots)
+    yield from _one_device_each(plan)
+    for found in plan.evidence.values():
+        yield from found.findings
+    yield from lacking(plan)
+    yield from _too_near(plan)
+    yield from launched_prefixes(plan)
+    yield from moveit_frames(plan)
+    yield from differences(plan)
+    yield from of_sdf_alone(plan)
+    yield from _for_another_robot(plan)
+
+
+def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
+    """What two robots were both given of a device, its address, number or calibration, or a port: at
+    the second one, but for values that are told already."""
+    robots = plan.robots
+    told = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
+    hardware = {it.spec.namespace: tuple(_of_hardware(it, told)) for it in robots}
+    by_name = {it.spec.namespace: it for it in robots}
+    count = Counter((it.name, it.value) for its in hardware.values() for it in its)
+    hints: dict[Sources, str] = {}
+    for it in _met(robots, [one for its in hardware.values() for one in its]):
+        sources = by_name[it.robot].spec.sources
+        if sources not in hints:
+            hints[sources] = _own_values(by_name[it.robot], count)
+        yield _said(it, "; ".join(filter(None, (it.hint, hints[sources]))))
+    of_all = Counter(path for it in robots for path in it.spec.companions.get("params", ()))
+    # What a file for several robots has is told there, or numbered.
+    shared = frozenset(path for path, count in of_all.items() if count > 1)
+    given = [one for it in robots for one in _of_nodes(it, plan.evidence_of(it), known, shared)]
+    yield from (_said(it, it.hint) for it in _met(robots, given))
+
+
+def _met(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
+    fleet = System(
+        robots=tuple(Robot(it.spec.namespace) for it in robots), addresses=tuple(addresses)
+    )
+    found = judge(index(fleet, whose_by_plan(fleet))) if addresses else ()
+    yield from (it for it in found if it.code == one_device.code)
+
+
+def _said(it: Finding, hint: str) -> Finding:
+    return it._replace(message=f"{it.node} {it.message}", hint=hint, node="", robot="")
+
+
+def _of_hardware(robot: RewrittenRobot, told: Collection[str]) -> Iterator[Address]:
+    """At the robot's line of the fleet file; those of simulators have no devices."""
+    spec = robot.spec
+    if spec.simulator != "gazebo":
+        node, place = f"/{spec.namespace}/{MANAGER}", Place(spec.file, spec.line, 1)
+        found = of_hardware(robot.member.inventory.document.root, node, place)
+        yield from (it for it in found if it.value not in told)
+
+
+def _own_values(robot: RewrittenRobot, count: Mapping[tuple[str, str], int]) -> str:
+    """How a robot gets its own of what others have, too."""
+    params = robot.member.source.root.iterfind("ros2_control/hardware/param")
+    met = [it for it in params if count.get((it.get("name", ""), (it.text or "").strip()), 0) > 1]
+    return own_value(sources_of(robot.written, robot.member, met))
+
+
+def _of_nodes(
+    robot: RewrittenRobot, evidence: RobotEvidence, known: KnownNodes, shared: Collection[str]
+) -> Iterator[Address]:
+    for node in evidence.given:
+        facts = known.nodes.get(node.known)
+        own = {name: it for name, it in node.values.items() if it.place.file not in shared}
+        name = f"/{robot.spec.namespace}/{node.name}"
+        found = of_parameters(name, facts.params if facts else {}, own)
+        simulated = robot.spec.simulator == "gazebo"
+        yield from (it for it in found if it.kind != DEVICE or not simulated)
+
+
+def _for_another_robot(plan: FleetPlan) -> Iterator[Finding]:
+    """Each description that names another robot of the fleet in values of unknown use, at its first
+    such value; what is for the one robot of it is right."""
+    words = {word for it in plan.robots for word in it.spec.words}
+    for group in group_robots(plan):
+        first, *more = group.robots
+        source = first.member.source
+        others = words if more else words.difference(first.spec.words)
+        problems = in_description(source.root, others, first.names.declared)
+        yield from to_findings(source, problems, ERROR)
+
+
+def _too_near(plan: FleetPlan) -> Iterator[Finding]:
+    """The robots in a simulator that start in another one.
+
+    A robot turns in its place, so half of what the larger one reaches is let pass: what is found
+    overlaps however they are turned. A fleet that all stands at the origin is a warning: somebody else
+    may place it, but the launch file of a build does not.
+    """
+    robots = [it for it in plan.robots if is_simulated(it)]
+    if not any(any(_place(it.spec)) for it in robots):
+        yield from _without_poses(robots)
+        return
+    sources = [it.spec.sources for it in robots]
+    reach = {key: _within(it) for key, it in dict(zip(sources, robots, strict=True)).items()}
+    placed = [(it, _place(it.spec), reach[key]) for key, it in zip(sources, robots, strict=True)]
+    for (one, here, own), (other, there, more) in _pairs(placed):
+        if (gap := dist(here, there)) < own + more:
+            yield _finding(other, one.spec.name, gap, own + more)
+
+
+def _without_poses(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
+    if len(robots) > 1:
+        room = max(1, ceil(4 * max(map(_within, robots))))
+        message = f"the {len(robots)} robots are spawned at the origin, in each other"
+        hint = f"write pose: {{x: {room}}} for {robots[1].spec.name}, and so on"
+        yield at_robot(in_each_other, robots[1], message, hint, level=WARNING)
+
+
+def _within(it: RewrittenRobot) -> float:
+    return filled_by(it.member.inventory.document.root)
+
+
+def _pairs(robots: Sequence[_Placed]) -> Iterator[tuple[_Placed, _Placed]]:
+    return combinations(robots, 2) if len(robots) <= MOST else pairwise(robots)
+
+
+def _place(spec: RobotSpec) -> tuple[float, float, float]:
+    pose = spec.pose or Pose()
+    return pose.x, pose.y, pose.z
+
+
+def _finding(robot: RewrittenRobot, other: str, gap: float, needed: float) -> Finding:
+    message = (
+        f"robot {robot.spec.name!r} starts {gap:.2f} m from robot {other!r}; their shapes need"
+        f" {needed:.2f} m"
+    )
+    return at_robot(in_each_other, robot, message, "give them pose: further apart")
