@@ -17,6 +17,7 @@ from multibot_rewrite.spelling.targets import expanded
 from multibot_rewrite.system.records import (
     CALLS,
     MAY,
+    NOWHERE,
     PUBLISHES,
     RUNS,
     SERVES,
@@ -40,17 +41,21 @@ def either_way(end: End) -> Iterator[End]:
     yield from (end._replace(role=it, sure=MAY) for it in (PUBLISHES, SUBSCRIBES))
 
 
-def node_ends(node: NodeFacts, section: GivenNode | None) -> Iterator[End]:
-    """The ends of a node by the names of its code, or what the usual launch files make of them;
-    ``section`` is what a file sets for it. A node for all robots needs nothing of this one."""
+def source_run(node: NodeFacts, section: GivenNode | None) -> Run:
+    """A node under the names of its code, or what the usual launch files make of them; ``section`` is
+    what a file sets for it."""
     above, _, name = f"/{node.name}".rpartition("/")
     rules = tuple(it for end in node.endpoints if end.remapped for it in _usual_rules(end))
     run = Run("", name, above or "/", name, rules, node)
-    run = run._replace(values=section.values, place=section.place) if section else run
-    # A node with parameters is meant to run.
-    may = bool(node.when) and section is None
+    return run._replace(values=section.values, place=section.place) if section else run
+
+
+def source_ends(run: Run) -> Iterator[End]:
+    """The ends of a node of the sources. A node for all robots needs nothing of this one, and a node
+    with parameters is meant to run."""
+    may = bool(run.fact.when) and run.place == NOWHERE
     for it in ends_of(with_names(run)):
-        if not (node.shared and it.role in NEEDS):
+        if not (run.fact.shared and it.role in NEEDS):
             yield from either_way(it._replace(node=run.full_name, sure=MAY if may else it.sure))
 
 

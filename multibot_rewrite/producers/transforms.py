@@ -6,12 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 
-from multibot_rewrite.base.conventions import USUAL_FRAMES, WORLD_FRAMES
 from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
 from multibot_rewrite.knowledge.records import MOVE_GROUP, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled, lookup
 from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics
-from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.spelling.records import GivenNode, Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, sent_by
 from multibot_rewrite.system.records import (
     NOWHERE,
@@ -25,7 +24,6 @@ from multibot_rewrite.system.records import (
 )
 
 TOPIC = "/tf"
-_OF_ROBOTS = frozenset(USUAL_FRAMES) - frozenset(WORLD_FRAMES)
 
 
 def edge(
@@ -41,24 +39,10 @@ def joint_edges(tree: Iterable[tuple[Edge, Place]]) -> Iterator[Edge]:
     yield from (edge(pair, f"/{STATE_PUBLISHER}", place) for pair, place in tree)
 
 
-def node_edges(nodes: Iterable[NodeFacts], given: Iterable[GivenNode], root: str) -> Iterator[Edge]:
+def node_edges(runs: Iterable[Run], root: str) -> Iterator[Edge]:
     """What nodes send; ``root`` is the robot's first link."""
-    places = {it.name: it.place for it in given}
-    for node in nodes:
-        for pair in sent_by(node, root):
-            yield edge(pair, f"/{node.name}", places.get(node.name, NOWHERE))
-
-
-def lookups_of(name: str, node: NodeFacts, values: Mapping[str, Given]) -> Iterator[Lookup]:
-    """The frames that a node reads by its parameters, and does not send itself; by default the usual
-    ones of a robot."""
-    own = {name for it in node.sends for name in it[:2]}
-    for it in (frame for frame in node.frames if frame.parameter not in own):
-        found = values.get(it.parameter)
-        if found and isinstance(found.value, str) and found.value:
-            yield Lookup(name, found.value.lstrip("/"), place=found.place)
-        elif not found and it.default in _OF_ROBOTS:
-            yield Lookup(name, it.default)
+    for it in runs:
+        yield from (edge(pair, it.full_name, it.place) for pair in sent_by(it.fact, root))
 
 
 def virtual_lookups(semantics: Semantics) -> Iterator[Lookup]:

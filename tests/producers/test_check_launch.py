@@ -27,7 +27,7 @@ from multibot_rewrite.producers.launch.records import (
     ParameterText,
 )
 from multibot_rewrite.producers.launch.running import Knowledge
-from multibot_rewrite.producers.launch.snapshot import launched, would_run
+from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.launch.judge import judge_launch
 from multibot_rewrite.system.records import System, clocks
 
@@ -46,7 +46,7 @@ def known() -> Knowledge:
 @pytest.fixture
 def run(known: Knowledge) -> Graph:
     def made(*nodes: LaunchedNode, notes: Sequence[LaunchNote] = ()) -> System:
-        return would_run(LaunchGraph(nodes, tuple(notes)), known)
+        return launched(LaunchGraph(nodes, tuple(notes)), known).system
 
     return made
 
@@ -220,7 +220,7 @@ def test_the_type_that_a_release_has_by_default(release: str, wanted: str) -> No
         one = (
             monitor if not given else node("nav2_collision_monitor/collision_monitor", "c", **given)
         )
-        made = would_run(LaunchGraph((one,)), facts)
+        made = launched(LaunchGraph((one,)), facts).system
         (found,) = {it.type for it in made.ends if it.name == "/robot1/cmd_vel"}
         assert found == f"geometry_msgs/msg/{type_}"
 
@@ -356,7 +356,7 @@ def controlled(known: Knowledge, space: str, asked: str) -> System:
         (),
         (("/made/c.yaml", ParameterText("", text)),),
     )
-    return would_run(graph, known)
+    return launched(graph, known).system
 
 
 def test_controllers_of_a_simulators_plugin_are_those_of_its_description(known: Knowledge) -> None:
@@ -384,7 +384,7 @@ def test_a_description_that_is_published_and_spawned_from_its_file_has_one_manag
     spawner = node("controller_manager/spawner", "s", arguments=("drive", "-c", MANAGER))
     every = (publisher("/", robot_description=text), create, spawner)
     for nodes in (every, (every[0], spawner)):
-        made = would_run(LaunchGraph(nodes, ()), known)
+        made = launched(LaunchGraph(nodes, ()), known).system
         assert [it.name for it in made.nodes].count(MANAGER) == 1
         assert "MG301" not in codes(made)
 

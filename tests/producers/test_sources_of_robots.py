@@ -20,7 +20,7 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
-from multibot_rewrite.producers.ends import bridge_ends, node_ends
+from multibot_rewrite.producers.ends import bridge_ends, source_ends, source_run
 from multibot_rewrite.producers.evidence.hardware import Exported
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
@@ -49,9 +49,9 @@ from multibot_rewrite.producers.transforms import (
     edge,
     edges_off,
     joint_edges,
-    lookups_of,
     node_edges,
 )
+from multibot_rewrite.spelling.of_runs import lookups_of
 from multibot_rewrite.spelling.records import Given, GivenNode, Run
 from multibot_rewrite.system.records import (
     COMPUTER,
@@ -101,7 +101,7 @@ DRIVER = NodeFacts(
 
 
 def test_the_ends_of_a_node_by_the_names_of_its_code() -> None:
-    found = [*node_ends(DRIVER, given("a/driver", topic="/scan"))]
+    found = [*source_ends(source_run(DRIVER, given("a/driver", topic="/scan")))]
     assert [(it.role, it.name, it.sure, it.place) for it in found] == [
         (PUBLISHES, "/a/scan", RUNS, THERE),
         (SUBSCRIBES, "/cmd_vel", RUNS, AT),
@@ -115,15 +115,18 @@ def test_the_ends_of_a_node_by_the_names_of_its_code() -> None:
         "scan",
         ("a/msg/Old",),
     )
-    assert node_ends(DRIVER, None).__next__().place == NOWHERE
+    assert source_ends(source_run(DRIVER, None)).__next__().place == NOWHERE
 
 
 def test_a_node_with_parameters_is_meant_to_run() -> None:
     optional = DRIVER._replace(when="started")
-    assert [it.sure for it in node_ends(optional, None)][:2] == [MAY, MAY]
-    assert [it.sure for it in node_ends(optional, given("a/driver"))][:2] == [RUNS, RUNS]
+    assert [it.sure for it in source_ends(source_run(optional, None))][:2] == [MAY, MAY]
+    assert [it.sure for it in source_ends(source_run(optional, given("a/driver")))][:2] == [
+        RUNS,
+        RUNS,
+    ]
     shared = DRIVER._replace(shared=True)
-    assert "/cmd_vel" not in [it.name for it in node_ends(shared, None)]
+    assert "/cmd_vel" not in [it.name for it in source_ends(source_run(shared, None))]
 
 
 def test_the_rows_of_a_bridge_in_a_namespace() -> None:
@@ -443,9 +446,9 @@ def test_a_transform_is_on_the_tf_of_its_robot() -> None:
 
 def test_transforms_that_parameters_name() -> None:
     sends = EKF._replace(sends=(SentTransform("odom", "base"),))
-    (own,) = node_edges([sends], [given("ekf")], "")
+    (own,) = node_edges([source_run(sends, given("ekf"))], "")
     assert (own.parent, own.child, own.publishers, own.place) == ("odom", "base", ("/ekf",), AT)
-    (rooted,) = node_edges([sends], [], "root")
+    (rooted,) = node_edges([source_run(sends, None)], "root")
     assert (rooted.child, rooted.place) == ("root", NOWHERE)
 
 
@@ -470,9 +473,11 @@ def test_a_transform_that_one_parameter_switches_off(
 
 def test_frames_that_a_node_looks_up() -> None:
     values = given("ekf", map="/world", base="b", odom="").values
-    assert [*lookups_of("/ekf", EKF, values)] == [Lookup("/ekf", "world", place=THERE)]
-    assert [*lookups_of("/ekf", EKF, {"map": Given(5, AT)})] == []
-    assert [*lookups_of("/ekf", EKF, {"map": Given("", AT)})] == []
+    assert [*lookups_of(source_run(EKF, None)._replace(values=values))] == [
+        Lookup("/ekf", "world", place=THERE)
+    ]
+    assert [*lookups_of(source_run(EKF, None)._replace(values={"map": Given(5, AT)}))] == []
+    assert [*lookups_of(source_run(EKF, None)._replace(values={"map": Given("", AT)}))] == []
 
 
 def test_words_that_rcl_reads() -> None:

@@ -23,7 +23,13 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.ends import bridge_ends, either_way, node_ends, plugin_ends
+from multibot_rewrite.producers.ends import (
+    bridge_ends,
+    either_way,
+    plugin_ends,
+    source_ends,
+    source_run,
+)
 from multibot_rewrite.producers.evidence.hardware import Exported, exported
 from multibot_rewrite.producers.evidence.moveit import planning_system
 from multibot_rewrite.producers.evidence.nodes import children_of
@@ -34,11 +40,11 @@ from multibot_rewrite.producers.launch.spawners import active
 from multibot_rewrite.producers.transforms import (
     edges_off,
     joint_edges,
-    lookups_of,
     node_edges,
     virtual_lookups,
 )
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.of_runs import lookups_of
+from multibot_rewrite.spelling.records import GivenNode, Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, tree_joints
 from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import (
@@ -71,6 +77,8 @@ def system_before(
     source, given = robot.member.source, evidence.given
     moves = any(it.get("type", FIXED) != FIXED for it in source.root.iter("joint"))
     nodes = [_runs(it, moves) for it in evidence.nodes]
+    sections = {it.name: it for it in given}
+    runs = [source_run(it, sections.get(it.name)) for it in nodes]
     real = robot.spec.simulator == REAL
     text = without_simulator(source.source, source.file) if real else source.source
     reading = read(text, source.file, robot.member.vocabulary)
@@ -85,8 +93,8 @@ def system_before(
         _control(plain, evidence, exports, _documents(robot, "moveit"), said),
         System(
             nodes=tuple(_nodes_of(nodes, reading)),
-            ends=tuple(_ends_of(robot, nodes, given, reading)),
-            edges=tuple(_edges_of(robot, nodes, evidence, sent)),
+            ends=tuple(_ends_of(robot, runs, reading)),
+            edges=tuple(_edges_of(robot, runs, evidence, sent)),
             environment=DRIVERS,
             lookups=tuple(it for it in lookups if it.frame not in simulated),
         ),
@@ -100,13 +108,10 @@ def _said(srdf: Job | None, root: _Element) -> Semantics:
     return semantics(read_document(srdf.data, srdf.file).root, root, srdf.file)
 
 
-def _ends_of(
-    robot: RewrittenRobot, nodes: Iterable[NodeFacts], given: Iterable[GivenNode], reading: Reading
-) -> Iterator[End]:
+def _ends_of(robot: RewrittenRobot, runs: Iterable[Run], reading: Reading) -> Iterator[End]:
     """The ends of nodes, plugins and bridges."""
-    sections = {it.name: it for it in given}
-    for node in nodes:
-        yield from node_ends(node, sections.get(node.name))
+    for run in runs:
+        yield from source_ends(run)
     yield from _plugin_ends(reading)
     for it in _documents(robot, "bridge"):
         for row in bridge_ends(it, robot.spec.bridge_namespace_of(it.file)):
@@ -145,10 +150,10 @@ def _lookups(
     for it in given:
         # A costmap is known as a part of the server that has it.
         if facts := known.get(it.known, runs.get(it.name)):
-            yield from lookups_of(f"/{it.name}", facts, it.values)
+            yield from lookups_of(Run("", "", "/", it.name, (), facts, values=it.values))
     filed = {it.name for it in given}
     for node in (it for it in nodes if it.name not in filed):
-        yield from lookups_of(f"/{node.name}", node, {})
+        yield from lookups_of(Run("", "", "/", node.name, (), node))
     yield from (it for it in virtual_lookups(said) if it.frame not in sent)
 
 
@@ -158,14 +163,14 @@ def _nodes_of(nodes: Iterable[NodeFacts], reading: Reading) -> Iterator[Node]:
 
 
 def _edges_of(
-    robot: RewrittenRobot, nodes: Sequence[NodeFacts], evidence: RobotEvidence, sent: Container[str]
+    robot: RewrittenRobot, runs: Sequence[Run], evidence: RobotEvidence, sent: Container[str]
 ) -> Iterator[Edge]:
     tree = (
         (it, Place(robot.spec.description, cast(int, joint.sourceline or 1)))
         for joint, it in tree_joints(robot.member.source.root)
     )
     yield from joint_edges(tree)
-    yield from node_edges(nodes, evidence.given, _root(robot))
+    yield from node_edges(runs, _root(robot))
     off = edges_off(evidence.given, evidence.known)
     yield from (it for it in off if it.child not in sent)
 
