@@ -58,7 +58,7 @@ def named(text: str, own: str) -> Iterator[str]:
     known = library()
     nodes = {it.rpartition("/")[2] for it in (*known.nodes, *known.parameters)} - {own}
     # A parameter is told from a word by its underscore or dot.
-    params = {it.path for it in known.parameters[own].params} if own in known.parameters else set()
+    params = {it.path for it in known.parameters[own].forms} if own in known.parameters else set()
     patterns = {"endpoint": TOPIC, "file": FILE, "port": PORT, "condition": CONDITION}
     yield from (what for what, pattern in patterns.items() if pattern.search(text))
     yield from ["node"] * bool(words & nodes)

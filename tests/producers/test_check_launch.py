@@ -29,7 +29,7 @@ from multibot_rewrite.producers.launch.records import (
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.launch.judge import judge_launch
-from multibot_rewrite.system.records import System, clocks
+from multibot_rewrite.system.records import RUNS, Sure, System, clocks
 
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
 URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\
@@ -61,6 +61,28 @@ def node(
     texts = (ParameterText("", own),) if more else ()
     given = (package, executable, name, space, rules, texts, container, arguments, "", AT)
     return LaunchedNode(*given)  # type: ignore[arg-type]
+
+
+def test_an_end_that_only_may_be_there_is_no_cause_of_a_finding(run: Graph) -> None:
+    """The tools of rviz2 publish, where its configuration has them."""
+    amcl = (node("nav2_amcl/amcl", "amcl", f"/robot{it}") for it in (1, 2))
+    made = run(node("rviz2/rviz2", "rviz2", "/"), *amcl)
+    (pose,) = (it for it in made.ends if (it.node, it.name) == ("/rviz2", "/initialpose"))
+    assert (pose.role, pose.sure.word, bool(pose.sure.why)) == ("publishes", "may", True)
+    sure = tuple(it._replace(sure=RUNS) if it == pose else it for it in made.ends)
+    for ends, told in ((made.ends, False), (sure, True)):
+        found = diagnose(made._replace(ends=ends)).findings
+        assert any(pose.name in it.names for it in found) is told
+
+
+def test_an_end_that_only_may_be_there_may_give_what_others_need(run: Graph) -> None:
+    made = run(node("nav2_amcl/amcl", "amcl"))
+    scan = next(it for it in made.ends if it.name == "/robot1/scan")
+    giver = scan._replace(role="publishes", node="/robot1/driver")
+    for sure, there in ((RUNS, True), (Sure("may", "x set"), True), (None, False)):
+        more = (giver._replace(sure=sure),) if sure else ()
+        found = diagnose(made._replace(ends=(*made.ends, *more))).findings
+        assert any(scan.name in it.names for it in found) is not there
 
 
 def publisher(space: str, rules: object = (), **more: object) -> LaunchedNode:
