@@ -44,7 +44,7 @@ def notes() -> Iterator[tuple[str, str]]:
         yield from ((node.name, it) for it in node.fixed)
         yield from ((node.name, it.note) for it in node.endpoints if it not in of_parts())
     for facts in known.parameters.values():
-        yield from ((facts.name, it.note) for it in facts.params)
+        yield from ((facts.name, it.note) for it in facts.forms)
 
 
 @cache

@@ -29,7 +29,7 @@ from multibot_rewrite.producers.launch.records import (
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.launch.judge import judge_launch
-from multibot_rewrite.system.records import RUNS, Sure, System, clocks
+from multibot_rewrite.system.records import RUNS, TOPIC, End, Sure, System, clocks
 
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
 URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\
@@ -73,6 +73,16 @@ def test_an_end_that_only_may_be_there_is_no_cause_of_a_finding(run: Graph) -> N
     for ends, told in ((made.ends, False), (sure, True)):
         found = diagnose(made._replace(ends=ends)).findings
         assert any(pose.name in it.names for it in found) is told
+
+
+def test_what_two_robots_only_may_share_is_no_finding(run: Graph) -> None:
+    made = run(*(node("nav2_amcl/amcl", "amcl", f"/robot{it}") for it in (1, 2)))
+    twist = "geometry_msgs/msg/Twist"
+    both = [End(TOPIC, "subscribes", "/cmd_vel", twist, node=it.name) for it in made.nodes]
+    for sure, told in ((RUNS, True), (Sure("may", "x set"), False)):
+        ends = (*made.ends, *(it._replace(sure=sure) for it in both))
+        found = diagnose(made._replace(ends=ends)).findings
+        assert any("/cmd_vel" in it.names for it in found) is told
 
 
 def test_an_end_that_only_may_be_there_may_give_what_others_need(run: Graph) -> None:
