@@ -165,7 +165,7 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
         if in_files:
             parameters[last] = found
         if not (in_files and keys.keys().isdisjoint(GRAPH_KEYS)):
-            new_node = read_node(name, item, keys, parts, found.params)
+            new_node = read_node(name, item, keys, parts, found.forms)
             nodes[name] = _as_before(new_node, nodes.get(name))
     known = {*library.stacks, *new.get("stacks", {})}
     grown = library._replace(

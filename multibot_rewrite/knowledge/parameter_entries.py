@@ -70,7 +70,7 @@ def read_parameters(
     return NodeParameters(
         old.name,
         word_of(keys, "package", old.package),
-        (*(it for it in old.params if it.path not in said), *given),
+        (*(it for it in old.forms if it.path not in said), *given),
         (*old.aliases, *words_of(keys, "aliases")),
         (*old.types, *words_of(keys, "types")),
         words_of(keys, "known_by") or old.known_by,

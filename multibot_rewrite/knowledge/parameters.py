@@ -12,35 +12,12 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, has_default
-from multibot_rewrite.knowledge.records import NodeParameters, Param
+from multibot_rewrite.knowledge.records import Branch, NodeParameters, Param
 from multibot_rewrite.knowledge.stacks import every_release, with_file
 
 # Undeclared names of these kinds stay as they are, so a wrong guess does no harm.
 SAFE_KINDS = ("link", "joint")
 _INDEX = "<index>"
-
-
-class Branch(NamedTuple):
-    """Paths by their next segment: ``exact``, ``numbered`` (a stem with digits), ``wild`` (what the
-    segment is, if any word is allowed); ``params`` are those whose path ends here."""
-
-    exact: dict[str, Branch]
-    numbered: dict[str, Branch]
-    wild: dict[str, Branch]
-    params: list[Param]
-
-
-class KnownNode(NamedTuple):
-    """A node's parameters in a release: ``params`` by path, as a tree, and those that hold one name by
-    ``defaults``. What a release lacks is known all the same: where a file sets it, it is for a release
-    that has it. ``facts`` is what is known of it in all of them."""
-
-    name: str
-    package: str
-    facts: NodeParameters
-    params: Mapping[str, Param]
-    tree: Branch
-    defaults: tuple[Param, ...]
 
 
 class KnownNodes(NamedTuple):
@@ -49,7 +26,7 @@ class KnownNodes(NamedTuple):
     ``sent`` frames that nodes send.
     """
 
-    nodes: Mapping[str, KnownNode]
+    nodes: Mapping[str, NodeParameters]
     names: Mapping[str, str]
     types: Mapping[str, str]
     anywhere: Branch
@@ -119,19 +96,20 @@ def _known(library: NodeLibrary, release: str) -> KnownNodes:
     )
 
 
-def _node(facts: NodeParameters, release: str) -> KnownNode:
-    """A node in a release; a parameter that it lacks is what it was in the last that had it."""
+def _node(facts: NodeParameters, release: str) -> NodeParameters:
+    """A node in a release. What this lacks is known as the last had it that did: where a file sets it,
+    it is for a release that has it."""
     params: dict[str, Param] = {}
-    for it in facts.params:
+    for it in facts.forms:
         if it.path not in params or not has_release(params[it.path].releases, release):
             params[it.path] = it
     here = has_release(facts.releases, release)
     there = [it for it in params.values() if here and has_release(it.releases, release)]
     defaults = tuple(it for it in there if has_default(it))
-    return KnownNode(facts.name, facts.package, facts, params, _tree(params.values()), defaults)
+    return facts._replace(params=params, tree=_tree(params.values()), defaults=defaults)
 
 
-def _anywhere(nodes: Iterable[KnownNode], guessing: re.Pattern[str]) -> Iterator[Param]:
+def _anywhere(nodes: Iterable[NodeParameters], guessing: re.Pattern[str]) -> Iterator[Param]:
     """Parameters that likely mean the same in an unknown node: several nodes have them with one
     meaning, or their name suggests it."""
     found: dict[str, list[Param]] = {}

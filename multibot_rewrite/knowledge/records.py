@@ -97,16 +97,31 @@ class Param(NamedTuple):
     instead: tuple[str, ...] = ()
 
 
+class Branch(NamedTuple):
+    """Paths by their next segment: ``exact``, ``numbered`` (a stem with digits), ``wild`` (what the
+    segment is, if any word is allowed); ``params`` are those whose path ends here."""
+
+    exact: dict[str, Branch]
+    numbered: dict[str, Branch]
+    wild: dict[str, Branch]
+    params: list[Param]
+
+
+NO_PARAMS: Mapping[str, Param] = {}
+NO_TREE = Branch({}, {}, {}, [])
+
+
 class NodeParameters(NamedTuple):
-    """A node in parameter files: ``params`` in each of their forms, ``types`` are controller types,
-    ``known_by`` parameters that identify the node if its section has another name. ``strips`` are the
-    releases in which the node takes off a slash that a frame starts with, empty for none;
+    """A node in parameter files: ``forms`` of its parameters in all releases, ``types`` are controller
+    types, ``known_by`` parameters that identify the node if its section has another name. ``strips``
+    are the releases in which the node takes off a slash that a frame starts with, empty for none;
     ``deprecated_types`` has those of types. ``declared_in`` are packages besides its own whose classes
-    declare parameters on it: plugins, helpers, libraries."""
+    declare parameters on it: plugins, helpers, libraries. Of a release are the ``params`` by path,
+    as a ``tree``, and those that hold one name by ``defaults``: all are empty in the library."""
 
     name: str
     package: str
-    params: tuple[Param, ...] = ()
+    forms: tuple[Param, ...] = ()
     aliases: tuple[str, ...] = ()
     types: tuple[str, ...] = ()
     known_by: tuple[str, ...] = ()
@@ -115,6 +130,9 @@ class NodeParameters(NamedTuple):
     strips: str = ""
     deprecated_types: Mapping[str, str] = NO_TYPES
     declared_in: tuple[str, ...] = ()
+    params: Mapping[str, Param] = NO_PARAMS
+    tree: Branch = NO_TREE
+    defaults: tuple[Param, ...] = ()
 
 
 class SentTransform(NamedTuple):

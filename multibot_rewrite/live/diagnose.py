@@ -19,7 +19,7 @@ from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import named, side_by_side, space_of, unnamed
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
 from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, ends_of, index
-from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, Robot, System
+from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, Robot, System, surely
 from multibot_rewrite.system.tf_copies import tree_topic
 
 # Rules that hold robots against each other, which they are in whatever domain.
@@ -51,11 +51,11 @@ class Diagnosis(NamedTuple):
 
 def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosis:
     """Look at a graph without a plan; ``messages`` counts those of each topic, if they were counted."""
-    robots = guess_robots(graph)
+    robots = guess_robots(surely(graph))
     known = Known(messages=messages, seconds=graph.environment.seconds)
     seen = index(graph, whose_by_guess(robots), known)
     found = inconclusive_where_in_doubt(judge(seen), graph)
-    tf = tuple(_tf_senders(graph))
+    tf = tuple(_tf_senders(surely(graph)))
     return Diagnosis(graph, robots, seen, _layout(robots, seen, tf), tf, tuple(found))
 
 

@@ -208,7 +208,7 @@ def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
         if state in (OK, MISSING):
             state = OK if common or _is_expected(plan, key, bridged) else UNEXPECTED
         yield DrawnEdge(*key, type_, state, common)
-    for key, planned in plan.by_key.items():
+    for key, planned in plan.sure.by_key.items():
         node, *_, name = key
         reported = states.nodes.get(node) == MISSING or (node, name) in states.endpoints
         if reported and key not in seen.by_key:

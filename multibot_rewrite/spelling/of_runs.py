@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node as it runs -> its ends, with the names that rcl makes of its rules."""
+"""A node as it runs -> its ends, with the names that rcl makes of its rules, and what it asks of tf."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.conventions import USUAL_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.rosnames import (
     BoundNode,
     RemapRule,
@@ -15,9 +16,10 @@ from multibot_rewrite.base.rosnames import (
 )
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.spelling.records import Rule, Run
-from multibot_rewrite.system.records import ACTION, MAY, RUNS, SERVICE, End, Sure
+from multibot_rewrite.system.records import ACTION, MAY, RUNS, SERVICE, End, Lookup, Sure
 
 _PART = "/_action/send_goal"
+_OF_ROBOTS = frozenset(USUAL_FRAMES) - frozenset(WORLD_FRAMES)
 
 
 def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
@@ -67,6 +69,7 @@ def _below_namespace_above(run: Run, end: Endpoint) -> str:
 
 def ends_of(run: Run) -> Iterator[End]:
     """The ends of a node; those under a condition may be there."""
+    full_name = run.full_name
     for end, name in run.names:
         given = run.values.get(end.parameter)
         yield End(
@@ -75,7 +78,7 @@ def ends_of(run: Run) -> Iterator[End]:
             name,
             end.type,
             "",
-            f"{run.full_name}{end.by}",
+            f"{full_name}{end.by}",
             None,
             run.process,
             end.name,
@@ -92,3 +95,15 @@ def each_once(ends: Iterable[End]) -> Iterator[End]:
     for it in every:
         if known.setdefault((it.node, it.kind, it.role, it.name), it) is it or it.sure == RUNS:
             yield it
+
+
+def lookups_of(run: Run, prefix: str = "") -> Iterator[Lookup]:
+    """The frames that a node reads by its parameters, and does not send itself; by default the usual
+    ones of a robot. The node puts ``prefix`` before each."""
+    own = {name for it in run.fact.sends for name in it[:2]}
+    for it in (frame for frame in run.fact.frames if frame.parameter not in own):
+        found = run.values.get(it.parameter)
+        if found and isinstance(found.value, str) and found.value:
+            yield Lookup(run.full_name, f"{prefix}{found.value.lstrip('/')}", place=found.place)
+        elif not found and it.default in _OF_ROBOTS:
+            yield Lookup(run.full_name, f"{prefix}{it.default}")

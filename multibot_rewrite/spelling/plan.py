@@ -180,9 +180,10 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
 def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, ...]]:
     """By robot: patterns of the nodes that its nodes make for themselves, or ``always`` make."""
     found: dict[str, tuple[str, ...]] = {}
-    for run, end, _ in table.ends:
+    made = ((run, end) for run, end, _ in table.ends if end.by and not (always and end.when))
+    for run, end in made:
         full = f"{run.full_name}{end.by}"
-        if end.by and not (always and end.when) and full not in found.get(run.robot, ()):
+        if full not in found.get(run.robot, ()):
             found[run.robot] = (*found.get(run.robot, ()), full)
     return found
 

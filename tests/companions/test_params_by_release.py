@@ -205,7 +205,7 @@ def test_an_unknown_parameter_is_of_no_release() -> None:
 def test_a_node_that_only_another_release_has_is_told_once() -> None:
     known = built_in_nodes("humble")
     amcl = known.nodes["amcl"]
-    later = amcl._replace(facts=amcl.facts._replace(releases="rolling"))
+    later = amcl._replace(releases="rolling")
     known = known._replace(nodes={**known.nodes, "amcl": later})
     text = section("amcl", "saved_pose_filepath: /tmp/x")
     _, found = made(text, distro="humble", known=known)

@@ -305,7 +305,7 @@ nodes:
     assert [it.name for it in node.endpoints] == ["new"]
     # It is started as before.
     assert (node.programs, node.component) == (("drive", "other/run"), "acme::Driver")
-    assert [(it.path, it.kind) for it in own.params] == [
+    assert [(it.path, it.kind) for it in own.forms] == [
         ("map_frame", "frame"),
         ("other", "topic"),
         ("third", "topic"),

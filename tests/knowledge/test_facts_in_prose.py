@@ -44,7 +44,7 @@ def notes() -> Iterator[tuple[str, str]]:
         yield from ((node.name, it) for it in node.fixed)
         yield from ((node.name, it.note) for it in node.endpoints if it not in of_parts())
     for facts in known.parameters.values():
-        yield from ((facts.name, it.note) for it in facts.params)
+        yield from ((facts.name, it.note) for it in facts.forms)
 
 
 @cache
@@ -58,7 +58,7 @@ def named(text: str, own: str) -> Iterator[str]:
     known = library()
     nodes = {it.rpartition("/")[2] for it in (*known.nodes, *known.parameters)} - {own}
     # A parameter is told from a word by its underscore or dot.
-    params = {it.path for it in known.parameters[own].params} if own in known.parameters else set()
+    params = {it.path for it in known.parameters[own].forms} if own in known.parameters else set()
     patterns = {"endpoint": TOPIC, "file": FILE, "port": PORT, "condition": CONDITION}
     yield from (what for what, pattern in patterns.items() if pattern.search(text))
     yield from ["node"] * bool(words & nodes)

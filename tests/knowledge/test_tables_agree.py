@@ -11,8 +11,8 @@ import pytest
 
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.conditions import ALSO
-from multibot_rewrite.knowledge.parameters import Branch, KnownNode, built_in_nodes
-from multibot_rewrite.knowledge.records import NodeFacts, Param
+from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.knowledge.records import Branch, NodeFacts, NodeParameters, Param
 from multibot_rewrite.knowledge.stacks import built_in
 
 # Without a section in parameter files: a Lua file, a file of its own, no parameters but actions.
@@ -29,7 +29,7 @@ FRAMES = {"frame", "link"}
 MADE = ("_updates", "_metadata")
 
 
-def params_of(node: KnownNode, path: str) -> Iterator[Param]:
+def params_of(node: NodeParameters, path: str) -> Iterator[Param]:
     """Every parameter that may have this path."""
     branches = [node.tree]
     for segment in path.split("."):
@@ -46,7 +46,7 @@ def _below(branch: Branch, segment: str) -> Iterator[Branch]:
     yield from branch.wild.values()
 
 
-def both(release: str) -> Iterator[tuple[NodeFacts, KnownNode | None]]:
+def both(release: str) -> Iterator[tuple[NodeFacts, NodeParameters | None]]:
     params, library = built_in_nodes(release), built_in(release)
     for facts in library.nodes.values():
         name = facts.name.rpartition("/")[2]

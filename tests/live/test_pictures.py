@@ -44,7 +44,7 @@ from multibot_rewrite.pages.svg import clipped, columns, visible
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.records import MAY, PUBLISHES, Caveat, Edge, Node, System
+from multibot_rewrite.system.records import MAY, PUBLISHES, Caveat, Edge, Node, System, surely
 
 LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
 CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")
@@ -171,7 +171,7 @@ def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.without_node(nav2_graphs.healthy(plan), ABSENT))
     assert node_states(scene)[ABSENT] == MISSING
-    own = {e.name for e in plan.ends if e.node == ABSENT}
+    own = {e.name for e in surely(plan).ends if e.node == ABSENT}
     missing = {e.name for e in group(scene, "robot2").edges if e.state == MISSING}
     assert missing == {name for name in own if "robot2" in name} | {"/tf", "/tf_static"}
     shown = {

@@ -27,9 +27,9 @@ from multibot_rewrite.producers.launch.records import (
     ParameterText,
 )
 from multibot_rewrite.producers.launch.running import Knowledge
-from multibot_rewrite.producers.launch.snapshot import launched, would_run
+from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.launch.judge import judge_launch
-from multibot_rewrite.system.records import System, clocks
+from multibot_rewrite.system.records import RUNS, TOPIC, End, Sure, System, clocks
 
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
 URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\
@@ -46,7 +46,7 @@ def known() -> Knowledge:
 @pytest.fixture
 def run(known: Knowledge) -> Graph:
     def made(*nodes: LaunchedNode, notes: Sequence[LaunchNote] = ()) -> System:
-        return would_run(LaunchGraph(nodes, tuple(notes)), known)
+        return launched(LaunchGraph(nodes, tuple(notes)), known).system
 
     return made
 
@@ -61,6 +61,38 @@ def node(
     texts = (ParameterText("", own),) if more else ()
     given = (package, executable, name, space, rules, texts, container, arguments, "", AT)
     return LaunchedNode(*given)  # type: ignore[arg-type]
+
+
+def test_an_end_that_only_may_be_there_is_no_cause_of_a_finding(run: Graph) -> None:
+    """The tools of rviz2 publish, where its configuration has them."""
+    amcl = (node("nav2_amcl/amcl", "amcl", f"/robot{it}") for it in (1, 2))
+    made = run(node("rviz2/rviz2", "rviz2", "/"), *amcl)
+    (pose,) = (it for it in made.ends if (it.node, it.name) == ("/rviz2", "/initialpose"))
+    assert (pose.role, pose.sure.word, bool(pose.sure.why)) == ("publishes", "may", True)
+    sure = tuple(it._replace(sure=RUNS) if it == pose else it for it in made.ends)
+    for ends, told in ((made.ends, False), (sure, True)):
+        found = diagnose(made._replace(ends=ends)).findings
+        assert any(pose.name in it.names for it in found) is told
+
+
+def test_what_two_robots_only_may_share_is_no_finding(run: Graph) -> None:
+    made = run(*(node("nav2_amcl/amcl", "amcl", f"/robot{it}") for it in (1, 2)))
+    twist = "geometry_msgs/msg/Twist"
+    both = [End(TOPIC, "subscribes", "/cmd_vel", twist, node=it.name) for it in made.nodes]
+    for sure, told in ((RUNS, True), (Sure("may", "x set"), False)):
+        ends = (*made.ends, *(it._replace(sure=sure) for it in both))
+        found = diagnose(made._replace(ends=ends)).findings
+        assert any("/cmd_vel" in it.names for it in found) is told
+
+
+def test_an_end_that_only_may_be_there_may_give_what_others_need(run: Graph) -> None:
+    made = run(node("nav2_amcl/amcl", "amcl"))
+    scan = next(it for it in made.ends if it.name == "/robot1/scan")
+    giver = scan._replace(role="publishes", node="/robot1/driver")
+    for sure, there in ((RUNS, True), (Sure("may", "x set"), True), (None, False)):
+        more = (giver._replace(sure=sure),) if sure else ()
+        found = diagnose(made._replace(ends=(*made.ends, *more))).findings
+        assert any(scan.name in it.names for it in found) is not there
 
 
 def publisher(space: str, rules: object = (), **more: object) -> LaunchedNode:
@@ -220,7 +252,7 @@ def test_the_type_that_a_release_has_by_default(release: str, wanted: str) -> No
         one = (
             monitor if not given else node("nav2_collision_monitor/collision_monitor", "c", **given)
         )
-        made = would_run(LaunchGraph((one,)), facts)
+        made = launched(LaunchGraph((one,)), facts).system
         (found,) = {it.type for it in made.ends if it.name == "/robot1/cmd_vel"}
         assert found == f"geometry_msgs/msg/{type_}"
 
@@ -356,7 +388,7 @@ def controlled(known: Knowledge, space: str, asked: str) -> System:
         (),
         (("/made/c.yaml", ParameterText("", text)),),
     )
-    return would_run(graph, known)
+    return launched(graph, known).system
 
 
 def test_controllers_of_a_simulators_plugin_are_those_of_its_description(known: Knowledge) -> None:
@@ -384,7 +416,7 @@ def test_a_description_that_is_published_and_spawned_from_its_file_has_one_manag
     spawner = node("controller_manager/spawner", "s", arguments=("drive", "-c", MANAGER))
     every = (publisher("/", robot_description=text), create, spawner)
     for nodes in (every, (every[0], spawner)):
-        made = would_run(LaunchGraph(nodes, ()), known)
+        made = launched(LaunchGraph(nodes, ()), known).system
         assert [it.name for it in made.nodes].count(MANAGER) == 1
         assert "MG301" not in codes(made)
 

@@ -15,7 +15,7 @@ from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.running import Knowledge
-from multibot_rewrite.producers.launch.snapshot import would_run
+from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.system.records import MAY, RUNS, End, Place
 
 CLOUD = "depth_image_proc/point_cloud_xyz_node"
@@ -43,7 +43,7 @@ def read(known: Knowledge, *nodes: LaunchedNode, role: str = "subscribes") -> se
 
 def _ends(known: Knowledge, *nodes: LaunchedNode) -> list[End]:
     """The ends of the first node."""
-    made = would_run(LaunchGraph(nodes), known)
+    made = launched(LaunchGraph(nodes), known).system
     return [it for it in made.ends if it.node == made.nodes[0].name]
 
 

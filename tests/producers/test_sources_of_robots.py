@@ -48,9 +48,8 @@ from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.producers.transforms import (
     edge,
     edges_off,
-    lookups_of,
 )
-from multibot_rewrite.spelling.of_runs import ends_of
+from multibot_rewrite.spelling.of_runs import ends_of, lookups_of
 from multibot_rewrite.spelling.records import Given, GivenNode, Run
 from multibot_rewrite.system.records import (
     COMPUTER,
@@ -448,9 +447,11 @@ def test_a_transform_that_one_parameter_switches_off(
 
 def test_frames_that_a_node_looks_up() -> None:
     values = given("ekf", map="/world", base="b", odom="").values
-    assert [*lookups_of("/ekf", EKF, values)] == [Lookup("/ekf", "world", place=THERE)]
-    assert [*lookups_of("/ekf", EKF, {"map": Given(5, AT)})] == []
-    assert [*lookups_of("/ekf", EKF, {"map": Given("", AT)})] == []
+    assert [*lookups_of(run_alone(EKF, None)._replace(values=values))] == [
+        Lookup("/ekf", "world", place=THERE)
+    ]
+    assert [*lookups_of(run_alone(EKF, None)._replace(values={"map": Given(5, AT)}))] == []
+    assert [*lookups_of(run_alone(EKF, None)._replace(values={"map": Given("", AT)}))] == []
 
 
 def test_words_that_rcl_reads() -> None:

@@ -34,7 +34,7 @@ from multibot_rewrite.producers.bags.recording import (
 )
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.running import Knowledge
-from multibot_rewrite.producers.launch.snapshot import would_run
+from multibot_rewrite.producers.launch.snapshot import launched as read_launch
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.rosgraph.reading import from_message
 from multibot_rewrite.producers.rosgraph.writing import to_message
@@ -242,7 +242,7 @@ def _frame(graph: System, name: str) -> str:
 def from_launch(graph: System) -> System:
     nodes, facts = launched(graph)
     parameters = _parameters()
-    return would_run(LaunchGraph(nodes), Knowledge(facts, parameters, "jazzy"))
+    return read_launch(LaunchGraph(nodes), Knowledge(facts, parameters, "jazzy")).system
 
 
 @cache

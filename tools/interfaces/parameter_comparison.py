@@ -75,7 +75,7 @@ def our_parameters(nodes: Iterable[NodeParameters]) -> tuple[OurParameter, ...]:
             it.releases or node.releases,
         )
         for node in nodes
-        for it in node.params
+        for it in node.forms
     )
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, has_default
-from multibot_rewrite.knowledge.parameters import KnownNode, KnownNodes, built_in_nodes
-from multibot_rewrite.knowledge.records import Param
+from multibot_rewrite.knowledge.parameters import KnownNodes, built_in_nodes
+from multibot_rewrite.knowledge.records import NodeParameters, Param
 
 HEAD = """\
 # Known parameters
@@ -33,12 +33,8 @@ def _rows(known: KnownNodes) -> Iterator[str]:
             yield f"| {_title(node)} | {_listed(names)} | {_inserted(node)} |\n"
 
 
-def _title(node: KnownNode) -> str:
-    also = (
-        f"<br>also {', '.join(f'`{it}`' for it in node.facts.aliases)}"
-        if node.facts.aliases
-        else ""
-    )
+def _title(node: NodeParameters) -> str:
+    also = f"<br>also {', '.join(f'`{it}`' for it in node.aliases)}" if node.aliases else ""
     return f"`{node.name}` ({node.package}){also}"
 
 
@@ -51,7 +47,7 @@ def _listed(params: list[Param]) -> str:
     return "; ".join(groups)
 
 
-def _inserted(node: KnownNode) -> str:
+def _inserted(node: NodeParameters) -> str:
     kinds = ("frame", "link", "stem", "off", "interface", *PREFIX_KINDS)
     found = (it for it in node.params.values() if it.kind in kinds and has_default(it))
     return ", ".join(f"`{it.path}`{it.releases and f' (in {it.releases})'}" for it in found)

@@ -15,14 +15,12 @@ from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL, S
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, names_below
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PREFIX_KINDS
 from multibot_rewrite.knowledge.parameters import (
-    Branch,
-    KnownNode,
     KnownNodes,
     guess,
     is_absolute,
     is_below_costmap,
 )
-from multibot_rewrite.knowledge.records import Param
+from multibot_rewrite.knowledge.records import Branch, NodeParameters, Param
 
 STRING = "tag:yaml.org,2002:str"
 NULL = "tag:yaml.org,2002:null"
@@ -91,7 +89,7 @@ def find_names(
     return names
 
 
-def params_at(node: KnownNode, name: str, key: yaml.ScalarNode) -> list[Param]:
+def params_at(node: NodeParameters, name: str, key: yaml.ScalarNode) -> list[Param]:
     """What is known of a parameter by its dotted name, in this release or another."""
     return [param for branch, _ in _below([(node.tree, ())], name, key) for param in branch.params]
 
@@ -197,7 +195,7 @@ def _values(
 
 def _is_stripped(job: _Job) -> bool:
     """Does the node take off a slash that a frame starts with?"""
-    words = job.section.node.facts.strips if job.section.node else ""
+    words = job.section.node.strips if job.section.node else ""
     return bool(words) and has_release(words, job.release)
 
 

@@ -26,7 +26,8 @@ from multibot_rewrite.companions.yaml_text import (
     names_below,
     pairs,
 )
-from multibot_rewrite.knowledge.parameters import KnownNode, KnownNodes
+from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.records import NodeParameters
 from multibot_rewrite.knowledge.stacks import apart_nodes, is_apart
 
 PARAMETERS = "ros__parameters"
@@ -62,7 +63,7 @@ class ParamSection(NamedTuple):
     path: str
     body: yaml.MappingNode
     full: str
-    node: KnownNode | None
+    node: NodeParameters | None
     wild: bool
     shared: bool
     inner: bool
@@ -186,7 +187,7 @@ def identify_sections(
 def _is_by_words(it: ParamSection, known: KnownNodes) -> bool:
     """Is a section for a node in any namespace known by its parameters alone?"""
     by_name = it.path.rpartition("/")[2] in known.names
-    return it.wild and it.node is not None and not by_name and not it.node.facts.types
+    return it.wild and it.node is not None and not by_name and not it.node.types
 
 
 def _is_of(packages: Collection[str], it: ParamSection) -> bool:
@@ -234,7 +235,7 @@ def _full_wild(path: str, name: str, context: Context) -> str:
 
 def identify_node(
     name: str, body: yaml.Node | None, known: KnownNodes, types: Mapping[str, str]
-) -> KnownNode | None:
+) -> NodeParameters | None:
     """The known node of a section: by its controller type, its name, or its parameters."""
     top = {key.value: value for key, value in pairs(body)}
     own = top.get("type")
@@ -247,11 +248,7 @@ def identify_node(
     if type_ and "/" in type_:
         return None
     words = {key.partition(".")[0] for key in top}
-    found = (
-        it
-        for it in known.nodes.values()
-        if it.facts.known_by and words.issuperset(it.facts.known_by)
-    )
+    found = (it for it in known.nodes.values() if it.known_by and words.issuperset(it.known_by))
     return next(found, None)
 
 

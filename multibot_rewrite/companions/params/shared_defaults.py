@@ -23,7 +23,7 @@ from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob, fram
 from multibot_rewrite.companions.yaml_blocks import line_start, newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, quoted
 from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
-from multibot_rewrite.knowledge.parameters import KnownNode
+from multibot_rewrite.knowledge.records import NodeParameters
 
 DEFAULT = "# multibot: the default is every robot's"
 OFF = "# multibot: the default puts the namespace before frames"
@@ -59,12 +59,14 @@ def default_lines(
             yield inserted(job.document, section.body, lines)
 
 
-def bare_frames(node: KnownNode) -> set[str]:
+def bare_frames(node: NodeParameters) -> set[str]:
     """The parameters of a node that hold frames, and have a default."""
     return {it.path for it in node.defaults if it.kind == "frame"}
 
 
-def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Iterator[DefaultLine]:
+def missing_defaults(
+    context: Context, node: NodeParameters, here: set[str]
+) -> Iterator[DefaultLine]:
     """The parameters of a node whose default must differ from robot to robot."""
     for param in node.defaults:
         if param.path in here:

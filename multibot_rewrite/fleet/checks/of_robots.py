@@ -36,7 +36,6 @@ from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import DEVICE, Address, Place, Robot, System
 
-_NAMED = ("topic", "service")
 # Robots of which each pair is looked at; of more the nearest neighbours in a list are.
 MOST = 400
 # A robot, where it starts, and how far it reaches.

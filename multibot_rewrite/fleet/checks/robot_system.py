@@ -52,10 +52,9 @@ from multibot_rewrite.producers.transforms import (
     TOPIC,
     edge,
     edges_off,
-    lookups_of,
     virtual_lookups,
 )
-from multibot_rewrite.spelling.of_runs import ends_of, with_names
+from multibot_rewrite.spelling.of_runs import ends_of, lookups_of, with_names
 from multibot_rewrite.spelling.plan import tf_topic
 from multibot_rewrite.spelling.records import GivenNode, Run
 from multibot_rewrite.spelling.table import plugin_nodes
@@ -117,7 +116,7 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
     lookups = [
         it
         for run in sorted(alone, key=lambda it: order.get(it.node, len(order)))
-        for it in lookups_of(run.full_name, run.fact, run.values)
+        for it in lookups_of(run)
     ]
     lookups += (it for it in virtual_lookups(said) if it.frame not in moved)
     rows = (

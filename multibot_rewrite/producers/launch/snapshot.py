@@ -52,8 +52,7 @@ from multibot_rewrite.producers.launch.running import (
 )
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_on
-from multibot_rewrite.producers.transforms import lookups_of
-from multibot_rewrite.spelling.of_runs import each_once, ends_of, with_names
+from multibot_rewrite.spelling.of_runs import each_once, ends_of, lookups_of, with_names
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
@@ -69,7 +68,6 @@ from multibot_rewrite.system.records import (
     End,
     Environment,
     Heard,
-    Lookup,
     Node,
     Parameter,
     Place,
@@ -87,13 +85,9 @@ class _Part(NamedTuple):
     edges: tuple[tuple[str, Edge], ...]
 
 
-def would_run(graph: LaunchGraph, known: Knowledge) -> System:
-    """The graph of all that the launch starts; what is not known makes the view incomplete."""
-    return launched(graph, known).system
-
-
 def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
-    """All that the launch starts, and the system that this makes."""
+    """All that the launch starts, and the system that this makes; what is not known makes its view
+    incomplete."""
     nodes, notes, models, published, spawned = running_nodes(graph, known)
     inside = sent_in_simulator(models.found)
     parts, refused = _parts(nodes, inside)
@@ -111,7 +105,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
         Environment(caveats=caveats),
         release=known.release,
         parameters=tuple(_clocks(nodes, graph.notes)),
-        lookups=tuple(it for node in nodes for it in _lookups(node)),
+        lookups=tuple(it for node in nodes for it in lookups_of(node, prefix_of(node))),
         addresses=tuple(it for node in nodes for it in _addresses(node, known, models)),
         interfaces=tuple(interfaces_of(nodes, published, graph)),
     )
@@ -171,12 +165,6 @@ def _measured(parts: Iterable[_Part], frames: Mapping[str, str]) -> Iterator[Hea
     for end in (it for part in parts if part.name in frames for it in part.endpoints):
         if end.sure == RUNS and end.role == PUBLISHES and end.type.startswith("sensor_msgs/"):
             yield Heard(end.name, frames[end.node])
-
-
-def _lookups(it: Run) -> Iterator[Lookup]:
-    """What a node asks of tf by its parameters, with what it puts before its frames."""
-    for asked in lookups_of(it.full_name, it.fact, it.values):
-        yield asked._replace(frame=f"{prefix_of(it)}{asked.frame}")
 
 
 def _addresses(it: Run, known: Knowledge, models: Models) -> Iterator[Address]:

@@ -37,7 +37,7 @@ def _missing(file: NamedFile, section: Section) -> Iterator[Finding]:
     # same; a section with nothing of it adds to one of another file.
     unknown = [it for it, known in section.known if not known and it.name != TYPE]
     is_whole = len(unknown) < len(found) < len(needed)
-    controller = section.node is not None and bool(section.node.facts.types)
+    controller = section.node is not None and bool(section.node.types)
     yield from found if is_whole or not controller else ()
     for fact in facts:
         for words in (words for check, words in fact.checks if check == "required_or"):

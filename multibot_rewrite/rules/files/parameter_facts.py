@@ -21,7 +21,7 @@ from multibot_rewrite.knowledge.declared import (
     says_something,
 )
 from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
-from multibot_rewrite.knowledge.parameters import KnownNode
+from multibot_rewrite.knowledge.records import NodeParameters
 from multibot_rewrite.rules.files.parameter_files import file_parameters
 
 NODL = "nodl"
@@ -31,7 +31,7 @@ _CALLED = lazy_compile(r".*param(?!.*?param)\w*\.ya?ml")
 
 
 def facts_of_node(
-    node: KnownNode | None, type_: str, file: str, roots: tuple[str, ...]
+    node: NodeParameters | None, type_: str, file: str, roots: tuple[str, ...]
 ) -> tuple[Declared, ...]:
     """What the packages of a node declare: its own sources if they are there; ``type_`` is a
     controller's."""
@@ -44,14 +44,14 @@ def facts_of_node(
         return ()
     # What one class of a package, or one of its nodes, demands beside the others.
     one = (type_,) if named else (f"{node.package}/{node.name}",)
-    others = {it.partition("/")[0] for it in node.facts.types} - {node.package, named}
-    shared = (it for it in node.facts.declared_in if not named or it not in others)
+    others = {it.partition("/")[0] for it in node.types} - {node.package, named}
+    shared = (it for it in node.declared_in if not named or it not in others)
     owners = (node.package, *shared, *one)
     known = (it for owner in owners for it in declared_by(owner))
     return (*_in_nodl(node), *known)
 
 
-def _in_nodl(node: KnownNode) -> Iterator[Declared]:
+def _in_nodl(node: NodeParameters) -> Iterator[Declared]:
     """What the installed NoDL document of a node declares."""
     for path, type_ in nodl_parameters(node.package, node.name):
         if says_something(path):

@@ -50,7 +50,7 @@ def unknown_classes(file: NamedFile) -> Iterator[Finding]:
     """Classes that no package of the release registers, in parameters and kinematics of MoveIt."""
     release = file.context.distro
     known = file.known.nodes.values() if file.known else ()
-    told = {type_ for node in known for type_ in node.facts.deprecated_types}  # MB869
+    told = {type_ for node in known for type_ in node.deprecated_types}  # MB869
     for it, given, name in _named_classes(file):
         if name not in told:
             where = f"{it.section.title}: {given.name}"

@@ -78,8 +78,8 @@ def _of_another_release(section: ParamSection, release: str) -> Iterator[Finding
     node = section.node
     if node is None or section.wild:
         return
-    if not has_release(node.facts.releases, release):
-        yield _elsewhere(section.keys[-1], f"node {node.name}", node.facts, release)
+    if not has_release(node.releases, release):
+        yield _elsewhere(section.keys[-1], f"node {node.name}", node, release)
         return
     for name, key in flattened(section.body):
         found = params_at(node, name, key)
@@ -108,7 +108,7 @@ def _deprecated_types(body: yaml.Node, known: KnownNodes | None, release: str) -
     types = {
         type_: it
         for node in (known.nodes.values() if known else ())
-        for type_, it in node.facts.deprecated_types.items()
+        for type_, it in node.deprecated_types.items()
     }
     for key, value in _scalars(body):
         words = types.get(value.value, "") if key.value.rpartition(".")[2] == "type" else ""

@@ -26,7 +26,8 @@ from multibot_rewrite.companions.params.sections import (
 from multibot_rewrite.companions.yaml_text import YamlText, names_below, pairs
 from multibot_rewrite.description.sources.packages import is_for_ros_1
 from multibot_rewrite.knowledge.declared import EVERY_NODE, Declared, declared_by, stands_for
-from multibot_rewrite.knowledge.parameters import KnownNode, built_in_nodes
+from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.knowledge.records import NodeParameters
 from multibot_rewrite.rules.files.parameter_facts import facts_of_node
 from multibot_rewrite.rules.files.plugins import plugins_in
 from multibot_rewrite.system.parameters import Value
@@ -49,7 +50,7 @@ class Section(NamedTuple):
     ``whole`` is all that the node is given, where names of a plugin begin with ``at``."""
 
     title: str
-    node: KnownNode | None
+    node: NodeParameters | None
     given: tuple[Setting, ...]
     facts: tuple[Declared, ...]
     known: tuple[tuple[Setting, tuple[Declared, ...]], ...]
@@ -106,7 +107,7 @@ def _by_name(given: Sequence[Setting]) -> Mapping[str, Setting]:
 
 def _section(
     title: str,
-    node: KnownNode | None,
+    node: NodeParameters | None,
     given: tuple[Setting, ...],
     facts: tuple[Declared, ...],
     whole: Mapping[str, Setting],
@@ -174,12 +175,12 @@ def _of_plugins(
     return found, tuple(rest)
 
 
-def _is_surely(node: KnownNode, name: str, type_: str, given: Sequence[Setting]) -> bool:
+def _is_surely(node: NodeParameters, name: str, type_: str, given: Sequence[Setting]) -> bool:
     """Is it this controller, not another one that is often called the same?"""
-    if not node.facts.types or type_ in node.facts.types:
+    if not node.types or type_ in node.types:
         return True
     words = {it.name.partition(".")[0] for it in given}
-    by_words = bool(node.facts.known_by) and words.issuperset(node.facts.known_by)
+    by_words = bool(node.known_by) and words.issuperset(node.known_by)
     return "/" not in type_ and (name == node.name or by_words)
 
 
