@@ -5,12 +5,10 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.outputs import spawn
 from multibot_rewrite.fleet.outputs.spawn import Spawn
 from multibot_rewrite.fleet.robots import start_poses
-from multibot_rewrite.spelling.start import Start
 
 POSE = Pose(1.0, -2.0, 0.5, 0.1, 0.2, 1.5)
 FLAGS = ["-x", "1.0", "-y", "-2.0", "-z", "0.5", "-R", "0.1", "-P", "0.2", "-Y", "1.5"]
@@ -34,28 +32,6 @@ def test_what_follows_a_spawner(it: Spawn, source: list[str]) -> None:
     assert spawn.spawner(it._replace(namespace=""), True).words == classic[:-2]
     assert made["gz"][:2] == ("ros_gz_sim", "create")
     assert made["classic"][:2] == ("gazebo_ros", "spawn_entity.py")
-
-
-@pytest.mark.parametrize(
-    ("layout", "namespace", "node", "remaps"),
-    [
-        ("L1", "/r1", "start_pose", (("/tf_static", "tf_static"),)),
-        ("L2", "/r1", "start_pose", ()),
-        ("L4", "/", "start_pose_r1", (("/tf_static", "/tf_static/r1"),)),
-    ],
-)
-def test_a_static_transform_is_a_process(
-    layout: str, namespace: str, node: str, remaps: tuple[tuple[str, str], ...]
-) -> None:
-    made = start_poses.static_transform("r1", "map", "odom", POSE, make_naming(layout))
-    words = [
-        "--x", "1.0", "--y", "-2.0", "--z", "0.5", "--roll", "0.1", "--pitch", "0.2", "--yaw", "1.5",
-        "--frame-id", "map", "--child-frame-id", "odom",
-    ]  # fmt: skip
-    assert made == start_poses.StaticTransform("r1", "map", "odom", POSE, namespace, node, remaps)
-    program = ("tf2_ros", "static_transform_publisher", namespace, node)
-    assert made.start == Start(*program, (), remaps, tuple(words))
-    assert made.start.words[: len(words) + 1] == [*words, "--ros-args"]
 
 
 def test_a_pose_as_parameters_of_amcl() -> None:
