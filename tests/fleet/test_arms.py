@@ -160,6 +160,9 @@ def test_without_namespaces_a_window_has_the_rules_of_its_robot(tmp_path: Path) 
     assert "-r move_action/_action/send_goal:=left/move_action/_action/send_goal" in left
     assert "-r robot_description_semantic:=left/robot_description_semantic" in left
     assert displays(files["left/moveit.rviz"])["Planned Path"]
+    starting = [it for it in lines if it.startswith("ros2 run moveit_ros_move_group move_group")]
+    named = zip(starting, ("left", "right"), strict=True)
+    assert all(f" -r __node:={robot}_move_group " in line for line, robot in named)
     # The other robot runs none: its window is without the display, and that is said.
     assert "__node" not in right
     assert "MotionPlanning" in next(it.message for it in findings if it.code == "MF202")

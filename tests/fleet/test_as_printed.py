@@ -242,6 +242,15 @@ def test_a_robot_has_its_own_clock_where_not_all_have_one(
     assert "CLOCK" in python[python.index("def start_r2") :]
 
 
+def test_what_is_of_no_use_without_a_simulator_or_a_screen_depends_on_it() -> None:
+    """So ``simulator:=false`` starts the robots alone, and ``rviz:=false`` opens no window."""
+    _, made = planned(str(ROOT / "examples" / "two_robots_nav2" / "fleet.yaml"))
+    conditions = {"create": "simulator", "parameter_bridge": "simulator", "rviz2": "rviz"}
+    every = [it for it in made.starts.every if it.executable]
+    assert {it.executable for it in every} > conditions.keys()
+    assert all(it.condition == conditions.get(it.executable, "") for it in every)
+
+
 @pytest.mark.deep
 @pytest.mark.parametrize("path", ["two_robots_nav2", "two_arms_moveit", "mixed_fleet"])
 def test_whatever_is_changed_in_an_example_is_noticed(path: str, tmp_path: Path) -> None:

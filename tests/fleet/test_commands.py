@@ -159,7 +159,10 @@ def test_all_nodes_have_the_clock_of_the_fleet_file(told: str, wanted: str, tmp_
     )
     (tmp_path / "fleet.yaml").write_text(text)
     fleet = load_fleet(tmp_path / "fleet.yaml")
-    first, second = fleet.text("commands.md").partition("## RViz")[0].split("## robot2")
+    of_robots, _, windows = fleet.text("commands.md").partition("## RViz")
+    # A window has the clock of all robots, if they have one.
+    assert windows.count(" -p use_sim_time:=true\n") == windows.count("rviz2 -d") * (told == "true")
+    first, second = of_robots.split("## robot2")
     lines = [it for it in first.splitlines() if "teleop" in it or "static_transform" in it]
     assert lines
     clocks = [it.rpartition(" -p use_sim_time:=")[2] if " -p use" in it else "" for it in lines]

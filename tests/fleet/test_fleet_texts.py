@@ -422,19 +422,12 @@ def test_the_fleets_world_frame_is_the_parent(fleet: Any) -> None:
     assert found.transforms[0].parent == "world"
 
 
-def test_spawning_in_gz(fleet: Any) -> None:
-    first, second = spawn.spawns(fleet("L2"))[0]
-    assert spawn.spawner(first, False).words == [
-        *("-name", "r1", "-topic", "/r1/robot_description"),
-        *("-x", "1.0", "-y", "-0.5", "-z", "0.25", "-R", "0.1", "-P", "0.2", "-Y", "1.57"),
-        "-allow_renaming=false",
-    ]
-    assert spawn.spawner(second, False).words[:4] == [
-        "-name",
-        "second",
-        "-topic",
-        "/two/robot_description",
-    ]
+def test_a_robot_is_spawned_by_its_model_from_its_topic(fleet: Any) -> None:
+    made = spawn.spawns(fleet("L2"))[0]
+    assert [(it.model, it.topic) for it in made] == [
+        ("r1", "/r1/robot_description"), ("second", "/two/robot_description"),
+    ]  # fmt: skip
+    assert [*made[0].pose] == [1.0, -0.5, 0.25, 0.1, 0.2, 1.57]
 
 
 def test_the_postfix_layout_has_a_topic_for_each_description(fleet: Any) -> None:

@@ -5,10 +5,8 @@ from __future__ import annotations
 
 import re
 import shutil
-import sys
 from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 from xml.etree import ElementTree
 
@@ -22,6 +20,7 @@ from multibot_rewrite import launch, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.live.rehearsal import with_substitutes
 from multibot_rewrite.live.staged import stage, staged
+from multibot_rewrite.producers.launch.performed import Launching, performed
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.system.records import doubts
@@ -29,54 +28,28 @@ from multibot_rewrite.system.records import doubts
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 
 
-def of_python(out: Path, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
-    """The processes: program, namespace, name, rules, number of files and of own words; the classes of
-    launch_ros only note what they are given."""
-    noted: list[dict[str, Any]] = []
-
-    class Noting:
-        def __init__(self, *words: Any, **named: Any) -> None:
-            if "executable" in named:
-                noted.append(named)
-
-        def perform(self, context: Any) -> str:
-            return ""
-
-    for name in (
-        *("launch", "launch.actions", "launch.conditions", "launch.substitutions", "launch_ros"),
-        *("launch_ros.actions", "launch_ros.substitutions", "launch_ros.descriptions"),
-        "launch_ros.parameter_descriptions",
-    ):
-        module = ModuleType(name)
-        module.__getattr__ = lambda _: Noting  # type: ignore[method-assign]
-        monkeypatch.setitem(sys.modules, name, module)
-    text = (out / "fleet.launch.py").read_text()
-    names: dict[str, Any] = {"__file__": str(out / "fleet.launch.py"), "__name__": "fleet"}
-    exec(compile(text, "fleet.launch.py", "exec"), names)
-    names["generate_launch_description"]()
-    names["chosen"](None)
+def of_python(out: Path) -> list[tuple[Any, ...]]:
+    """The processes: program, namespace, name, rules, number of files and of own words."""
+    (done,) = performed(str(out / "fleet.launch.py"), [Launching({})])
+    assert not done.error
     return sorted(
         (
-            it["package"],
-            it["executable"],
-            it.get("namespace", ""),
-            it.get("name", ""),
-            tuple(it.get("remappings", ())),
+            *(it["package"], it["executable"], it.get("namespace", ""), it.get("name", "")),
+            tuple(map(tuple, it.get("remappings", ()))),
             sum(1 for one in it["parameters"] if isinstance(one, str)),
             len(it.get("arguments", ())),
         )
-        for it in noted
+        for it in (action.values for action in done.actions)
+        if "executable" in it
     )
 
 
 @pytest.mark.more
-def test_what_two_robots_of_gazebo_classic_are_started_with(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_two_robots_of_gazebo_classic_are_started_with(tmp_path: Path) -> None:
     out = built(tmp_path, "classic", "tf-per-robot")
     tf = (("/tf", "tf"), ("/tf_static", "tf_static"))
     state = "robot_state_publisher"
-    assert of_python(out, monkeypatch) == [
+    assert of_python(out) == [
         ("gazebo_ros", "spawn_entity.py", "", "", (), 0, 16),
         ("gazebo_ros", "spawn_entity.py", "", "", (), 0, 16),
         (state, state, "/robot1", state, tf, 0, 0),
@@ -101,12 +74,10 @@ def test_the_nodes_of_nav2_with_their_lifecycle(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
-def test_a_plugin_of_the_simulator_is_not_started_again(
-    layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_plugin_of_the_simulator_is_not_started_again(layout: str, tmp_path: Path) -> None:
     """gz_ros2_control makes the controller manager; controllers that files declare are spawned."""
     out = built(tmp_path, "gz", layout)
-    found = [it[1] for it in of_python(out, monkeypatch)]
+    found = [it[1] for it in of_python(out)]
     assert "ros2_control_node" not in found
     assert "spawner" in found
     if layout == "postfix":
@@ -381,36 +352,21 @@ def test_tf_is_bridged_where_the_bridge_is_installed(installed: bool, tmp_path: 
     assert (line in said) == (not installed)
 
 
-def chosen(out: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> list[str]:
-    """The robots that the Python file starts for ``robots:=`` with this text."""
-    of_python(out, monkeypatch)
-    names: dict[str, Any] = {"__file__": str(out / "fleet.launch.py"), "__name__": "fleet"}
-    exec(compile((out / "fleet.launch.py").read_text(), "fleet.launch.py", "exec"), names)
-    names["ROBOTS"] = {name: lambda name=name: [name] for name in names["ROBOTS"]}
-
-    class Given:
-        def __init__(self, _: str) -> None: ...
-
-        def perform(self, _: object) -> str:
-            return text
-
-    names["LaunchConfiguration"] = Given
-    found: list[str] = names["chosen"](None)
-    return found
+def chosen(out: Path, text: str) -> list[str] | str:
+    """The robots that are started for ``robots:=`` with this text, or why none is."""
+    (done,) = performed(str(out / "fleet.launch.py"), [Launching({"robots": text})])
+    spaces = (it.values.get("namespace", "/").strip("/") for it in done.actions)
+    return done.error or [*dict.fromkeys(filter(None, spaces))]
 
 
 @pytest.mark.slow
-def test_so_many_robots_are_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_so_many_robots_are_started(tmp_path: Path) -> None:
     out = built(tmp_path, "ten", "both")
-    assert chosen(out, monkeypatch, "3") == ["robot1", "robot2", "robot3"]
-    assert chosen(out, monkeypatch, "robot9, robot2") == ["robot9", "robot2"]
-    assert len(chosen(out, monkeypatch, "")) == 10
-    for text, said in (
-        ("12", "10 robots were built; for more: multibot build"),
-        ("0", "robots:=0"),
-    ):
-        with pytest.raises(RuntimeError, match=said):
-            chosen(out, monkeypatch, text)
+    assert chosen(out, "3") == ["robot1", "robot2", "robot3"]
+    assert chosen(out, "robot9, robot2") == ["robot9", "robot2"]
+    assert len(chosen(out, "")) == 10
+    assert "10 robots were built; for more: multibot build" in chosen(out, "12")
+    assert "robots:=0" in chosen(out, "0")
 
 
 @pytest.mark.more

@@ -264,6 +264,8 @@ def test_a_line_for_a_shell() -> None:
         "ros2 run p e -f y --ros-args -r '__ns:=/r 1' -r __node:=n -r /scan:=scan "
         "--params-file x.yaml -p a:=b"
     )
+    line = shell_line(Start("p", "e", parameters=(File("x.yaml"),)))
+    assert line == "ros2 run p e --ros-args --params-file x.yaml"
 
 
 # ---------------------------------------------------------------- robots that start the same

@@ -116,6 +116,8 @@ def test_bare_frames_are_bridged(tmp_path: Path) -> None:
         "/robot2/tf_namespace_bridge",
         "/robot2/bridged_world",
     )
+    # The world of one without the bridge hangs on nothing.
+    assert bridge.start.needs == world.start.needs == "tf_namespace_bridge"
     plan = expected(robot._fleet.plan.fleet)
     ends = {(it.role, it.name) for it in plan.ends if it.node == bridge.run.full_name}
     assert ends == {

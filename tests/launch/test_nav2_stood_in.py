@@ -116,10 +116,6 @@ def test_a_map_server_gets_its_map_and_no_node_is_told_of_others(
     assert all(it.startswith("/lifecycle_manager_") for it in told) and len(told) == 4
 
 
-def test_a_node_is_configured_and_then_activated() -> None:
-    assert dict(nav2.TRANSITIONS) == {"configure": 1, "activate": 3}
-
-
 @pytest.mark.more
 def test_programs_are_those_of_nav2(nodes: dict[str, LaunchedNode]) -> None:
     for name, package in NAV2.items():

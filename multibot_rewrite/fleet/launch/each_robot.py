@@ -9,13 +9,14 @@ f-string, if it gives the text of every robot. Any other text becomes a paramete
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import count
 from keyword import iskeyword
 from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.launch.starts import RobotStarts
+from multibot_rewrite.spelling.start import Start
 
 FLAG = re.compile(r"-{1,2}[A-Za-z][\w-]*")
 _POSE = {
@@ -31,7 +32,7 @@ _TAKEN = frozenset((_NAME, "file", "text", "params", "str", "if_installed", "bro
 # What is printed of a robot, but for people.
 _VALUES = ("files", "starts", "not_bridged")
 # Robots are of one kind only if they start the same programs.
-_OF_PROGRAMS = ("package", "executable", "plugin", "condition", "needs")
+_OF_PROGRAMS = frozenset(("package", "executable", "plugin", "condition", "needs"))
 
 
 class Code(str):
@@ -76,40 +77,30 @@ def of_any(text: str, robot: str) -> str:
 
 def _kind(it: RobotStarts) -> object:
     """Return all of a robot but for the texts of its own."""
-    numbers = count()
-
-    def blank(text: str, _: str) -> str:
-        return text if FLAG.fullmatch(text) else f"{next(numbers)}"
-
     left = tuple((name, of_any(why, it.name)) for name, why in it.left)
-    every = (one for start in it.starts for one in start.every)
-    programs = tuple(tuple(getattr(one, field) for field in _OF_PROGRAMS) for one in every)
-    changed = _with_texts(it, blank)
-    return left, it.clock, programs, repr([getattr(changed, field) for field in _VALUES])
+    return left, it.clock, _shape([getattr(it, field) for field in _VALUES])
 
 
-def _with_texts(it: RobotStarts, change: Callable[[str, str], str]) -> RobotStarts:
-    """Return a robot with other texts: ``change`` gives one for each and for what it may be called."""
-    values = {field: _mapped(getattr(it, field), change, field) for field in _VALUES}
-    return it._replace(**values)
-
-
-def _mapped(it: Any, change: Callable[[str, str], str], label: str) -> Any:
-    """Return a value with other texts. The name of a node is not that of the robot, a path is what it
-    is given as, an argument of a program is called as the flag before it."""
+def _shape(it: Any, field: str = "") -> object:
     if isinstance(it, str):
-        return change(it, label)
+        return it if field in _OF_PROGRAMS or FLAG.fullmatch(it) else ""
     if isinstance(it, Mapping):
-        return {change(key, "key"): _mapped(one, change, key) for key, one in it.items()}
-    if not isinstance(it, tuple | list):
-        return it
-    if fields := getattr(it, "_fields", None):
-        labels = [{"path": label, _NAME: "node_name"}.get(field, field) for field in fields]
-        return type(it)(*(_mapped(one, change, own) for one, own in zip(it, labels, strict=True)))
-    flags = [one if isinstance(one, str) and FLAG.fullmatch(one) else label for one in it]
-    return type(it)(
-        _mapped(one, change, flag) for flag, one in zip([label, *flags], it, strict=False)
-    )
+        return tuple((_shape(key), _shape(one)) for key, one in it.items())
+    if isinstance(it, tuple | list):
+        return (type(it), *(_shape(one, name) for name, one in _named(it)))
+    return type(it), it
+
+
+def _named(it: Sequence[Any]) -> Iterator[tuple[str, Any]]:
+    """Yield the items, each with its field; that of an argument of a program is the flag before it."""
+    fields = getattr(it, "_fields", None)
+    if fields:
+        yield from zip(fields, it, strict=True)
+        return
+    before = ""
+    for one in it:
+        yield before, one
+        before = one if isinstance(one, str) and FLAG.fullmatch(one) else ""
 
 
 def _functions(group: Sequence[RobotStarts]) -> list[Function]:
@@ -136,15 +127,41 @@ class _Merging(NamedTuple):
     def starts(self, group: Sequence[RobotStarts]) -> RobotStarts:
         """Return what all of them start."""
         first = group[0]
-        merged = (
-            self.text([text for text, _ in it], it[0][1])
-            for it in zip(*map(_texts, group), strict=True)
-        )
-        return _with_texts(first, lambda *_: next(merged))._replace(
+        values = {it: self.one([getattr(own, it) for own in group], it) for it in _VALUES}
+        left = tuple((name, of_any(why, first.name)) for name, why in first.left)
+        return first._replace(
             description=_any_of([it.description for it in group], "description"),
             where=_any_of([of_any(it.where, it.name) for it in group], "namespace"),
-            left=tuple((name, of_any(why, first.name)) for name, why in first.left),
+            left=left,
+            **values,
         )
+
+    def one(self, values: Sequence[Any], label: str) -> Any:
+        """Return one value for those of all robots, which have the same shape."""
+        first = values[0]
+        if isinstance(first, str):
+            return self.text(values, label)
+        if isinstance(first, Mapping):
+            every = zip(*(it.items() for it in values), strict=True)
+            return dict(self.pair(pairs) for pairs in every)
+        if isinstance(first, tuple | list):
+            labels = (name or label for name, _ in _named(first))
+            columns = zip(labels, zip(*values, strict=True), strict=True)
+            own = [self.one(column, self.label(first, name, label)) for name, column in columns]
+            return type(first)(*own) if hasattr(first, "_fields") else type(first)(own)
+        return first
+
+    def label(self, owner: Any, field: str, above: str) -> str:
+        """Return what a value may be called: the name of a node is not that of the robot, a path is
+        what it is given as."""
+        if isinstance(owner, Start):
+            return "node_name" if field == _NAME else field
+        return above if field == "path" else field
+
+    def pair(self, pairs: Sequence[tuple[str, Any]]) -> tuple[str, Any]:
+        """Return a key and its value for those of all robots."""
+        keys, values = zip(*pairs, strict=True)
+        return self.text(keys, "key"), self.one(values, keys[0])
 
     def text(self, values: Sequence[str], label: str) -> str:
         """Return the text of all robots, or Python that gives the text of each."""
@@ -167,18 +184,6 @@ class _Merging(NamedTuple):
         own = next(it for it in every if self.parameters.get(it, given) == given)
         self.parameters[own] = given
         return Code(f"str({own})" if numbers else own)
-
-
-def _texts(it: RobotStarts) -> list[tuple[str, str]]:
-    """Return the texts of a robot in their order, each with what it may be called."""
-    found: list[tuple[str, str]] = []
-
-    def keep(text: str, label: str) -> str:
-        found.append((text, label))
-        return text
-
-    _with_texts(it, keep)
-    return found
 
 
 def _parts(text: str, robot: str) -> list[str]:

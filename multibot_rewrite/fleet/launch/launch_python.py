@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib.resources import files
 from textwrap import wrap
 
 from multibot_rewrite.fleet.launch.each_robot import Function, functions
@@ -16,8 +18,6 @@ from multibot_rewrite.fleet.launch.python_actions import (
     value,
 )
 from multibot_rewrite.fleet.launch.starts import (
-    CLASSIC,
-    GZ,
     FleetStarts,
     RobotStarts,
     launch_arguments,
@@ -46,79 +46,21 @@ _IMPORTS = {
     "launch_ros.substitutions": ("FindPackageShare",),
     "lifecycle_msgs.msg": ("Transition",),
 }
-_BODY = '''\
-FOLDER = Path(__file__).resolve().parent
-CLOCK = {'use_sim_time': ParameterValue(LaunchConfiguration('use_sim_time'), value_type=bool)}
-
-
-def file(name):
-    """Return the path of a file beside this one."""
-    return str(FOLDER / name)
-
-
-def text(name):
-    """Return what a file beside this one holds, as a parameter."""
-    return ParameterValue((FOLDER / name).read_text(), value_type=str)
-'''
-_INSTALLED = '''\
-def if_installed(package, otherwise, actions):
-    """Return the actions if the package is installed, else a line that says what is missing."""
-    try:
-        get_package_prefix(package)
-    except PackageNotFoundError:
-        return [LogInfo(msg=otherwise)]
-    return actions
-'''
-_BROUGHT_UP = '''\
-def brought_up(node):
-    """Start a node with a life cycle: configure it, and activate it when that is done."""
-
-    def change(transition):
-        matched = matches_action(node)
-        event = ChangeState(lifecycle_node_matcher=matched, transition_id=transition)
-        return EmitEvent(event=event)
-
-    configured = OnStateTransition(
-        target_lifecycle_node=node,
-        start_state='configuring',
-        goal_state='inactive',
-        entities=[change(Transition.TRANSITION_ACTIVATE)],
-    )
-    return [node, RegisterEventHandler(configured), change(Transition.TRANSITION_CONFIGURE)]
-'''
-_IN_DOMAIN = '''\
-def in_domain(name, actions):
-    """Start the nodes of a robot in its ROS domain."""
-    return GroupAction([SetEnvironmentVariable('ROS_DOMAIN_ID', DOMAINS[name]), *actions])
-'''
-_CHOSEN = '''\
-def first(count):
-    """Return the names of so many robots."""
-    if not 0 < count <= len(ROBOTS):
-        more = f'multibot build FLEET -o {FOLDER} --count {count}'
-        raise RuntimeError(f'robots:={count}: {len(ROBOTS)} robots were built; for more: {more}')
-    return list(ROBOTS)[:count]
-
-
-def chosen(context):
-    """Start the robots that robots:= names, or so many of them; all of them by default."""
-    words = LaunchConfiguration('robots').perform(context).replace(',', ' ').split()
-    if len(words) == 1 and words[0].isdigit():
-        words = first(int(words[0]))
-    unknown = [it for it in words if it not in ROBOTS]
-    if unknown:
-        known = ', '.join(ROBOTS)
-        raise RuntimeError(f'robots:={unknown[0]} is not in this fleet; it has {known}')
-    return {started}
-'''
 _STARTED = "[action for name in words or ROBOTS for action in ROBOTS[name]()]"
 _STARTED_APART = "[in_domain(name, ROBOTS[name]()) for name in words or ROBOTS]"
 
 
 def to_python(it: FleetStarts) -> str:
     """The text of the file."""
-    body = _text(_BODY.splitlines(), *_parts(it))
+    body = _text(_part("file and text"), *_parts(it))
     return _text(_head(it), _imports(body)) + body
+
+
+@cache
+def _part(name: str) -> tuple[str, ...]:
+    """Return the lines of a part that is the same in all launch files."""
+    text = files("multibot_rewrite.fleet.launch").joinpath("parts.txt").read_text(encoding="utf-8")
+    return tuple(text.partition(f"### {name}\n")[2].partition("\n### ")[0].splitlines())
 
 
 def _text(*parts: Iterable[str]) -> str:
@@ -127,18 +69,18 @@ def _text(*parts: Iterable[str]) -> str:
 
 def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
     if any(start.needs for start in it.every):
-        yield "", "", *_INSTALLED.splitlines()
+        yield "", "", *_part("if_installed")
     if any(start.brought_up for start in it.every):
-        yield "", "", *_BROUGHT_UP.splitlines()
+        yield "", "", *_part("brought_up")
     made = functions(it.robots)
     for own in made:
         yield ("", "", *_function(own))
     calls = {name: _call(own, name) for own in made for name in own.calls}
     names = (f"    {value(robot.name)}: {calls[robot.name]}," for robot in it.robots)
     yield "", "", "ROBOTS = {", *names, "}", *_domains(it)
-    chosen = _CHOSEN.replace("{started}", _STARTED_APART if it.domains else _STARTED)
-    yield "", "", *chosen.splitlines()
-    yield from (("", "", *_SWITCHES[one]) for one in it.simulators)
+    started = _STARTED_APART if it.domains else _STARTED
+    yield "", "", *(line.replace("{started}", started) for line in _part("chosen"))
+    yield from (("", "", *_part(f"{one} switches")) for one in it.simulators)
     yield "", "", *_description(it)
 
 
@@ -147,7 +89,7 @@ def _domains(it: FleetStarts) -> Iterator[str]:
     if it.domains:
         rows = ((robot.name, f"{it.domains[robot.name]}") for robot in it.robots)
         own = (f"    {value(name)}: {value(number)}," for name, number in rows)
-        yield from ("DOMAINS = {", *own, "}", "", "", *_IN_DOMAIN.splitlines())
+        yield from ("DOMAINS = {", *own, "}", "", "", *_part("in_domain"))
 
 
 def _head(it: FleetStarts) -> Iterator[str]:
@@ -242,48 +184,9 @@ def _description(it: FleetStarts) -> Iterator[str]:
         number = value(f"{it.domains['']}")
         yield f"            SetEnvironmentVariable('ROS_DOMAIN_ID', {number}),"
     for simulator in it.simulators:
-        yield from (f"            {line}" for line in _SIMULATORS[simulator])
+        yield from (f"            {line}" for line in _part(f"{simulator} simulator"))
     yield from actions(it.shared, 12)
     yield "            OpaqueFunction(function=chosen),"
     yield from actions(it.windows, 12)
     yield "        ]"
     yield "    )"
-
-
-_SIMULATORS: Mapping[str, tuple[str, ...]] = {
-    GZ: (
-        "IncludeLaunchDescription(",
-        "    PathJoinSubstitution(",
-        "        [FindPackageShare('ros_gz_sim'), 'launch', 'gz_sim.launch.py']",
-        "    ),",
-        "    launch_arguments=[",
-        "        ('gz_args', ['-r ', HEADLESS, '\"', LaunchConfiguration('world'), '\"']),",
-        "    ],",
-        "    condition=IfCondition(LaunchConfiguration('simulator')),",
-        "),",
-    ),
-    CLASSIC: (
-        "IncludeLaunchDescription(",
-        "    PathJoinSubstitution(",
-        "        [FindPackageShare('gazebo_ros'), 'launch', 'gazebo.launch.py']",
-        "    ),",
-        "    launch_arguments=[",
-        "        ('gui', GUI),",
-        "        ('world', LaunchConfiguration('world')),",
-        "    ],",
-        "    condition=IfCondition(LaunchConfiguration('simulator')),",
-        "),",
-    ),
-}
-_SWITCHES: Mapping[str, tuple[str, ...]] = {
-    GZ: (
-        "HEADLESS = PythonExpression(",
-        """    ["'-s ' if '", LaunchConfiguration('headless'), "'.lower() == 'true' else ''"]""",
-        ")",
-    ),
-    CLASSIC: (
-        "GUI = PythonExpression(",
-        """    ["'false' if '", LaunchConfiguration('headless'), "'.lower() == 'true' else 'true'"]""",
-        ")",
-    ),
-}
