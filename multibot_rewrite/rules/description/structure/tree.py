@@ -10,7 +10,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.base.wording import MANY, shorten
+from multibot_rewrite.base.wording import SHOWN, shorten
 from multibot_rewrite.description.checks.links_and_joints import (
     is_tree,
     loops,
@@ -68,7 +68,7 @@ def kinematic_loop(subject: Subject) -> Iterator[Problem]:
         last = max(joints, key=lambda it: order[it.element])
         at = joints.index(last) + 1
         names = [it.child for it in joints[at:] + joints[:at]]
-        path = " -> ".join(repr(it) for it in names[:MANY]) + (" -> ..." if names[MANY:] else "")
+        path = " -> ".join(repr(it) for it in names[:SHOWN]) + (" -> ..." if names[SHOWN:] else "")
         yield Problem(
             last.element,
             f"joint {last.name!r} closes a loop of {len(joints)} joints: {last.child!r} is below "
@@ -105,7 +105,7 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
     seen.update(it.child for it in robot.joints if it.child == it.parent)
     lost = [it for name, it in robot.link.items() if name not in seen]
     if lost:
-        names = shorten((repr(it.name) for it in lost), MANY)
+        names = shorten((repr(it.name) for it in lost), SHOWN)
         yield Problem(lost[0].element, f"not connected to the root: {names}", "name")
 
 
