@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-FEW, SEVERAL = 3, 5
+FEW, SEVERAL, SHOWN = 3, 5, 8
 _LONGEST = 60
 
 

@@ -103,7 +103,7 @@ class Rewrite(NamedTuple):
         """Every renamed, inserted or numbered value, in source order; raises as ``template`` does."""
         # Few ask for it.
         from multibot_rewrite.description.own_ports import number_changes
-        from multibot_rewrite.description.reports.changes import list_changes
+        from multibot_rewrite.description.steps.apply import list_changes
 
         every = list_changes(self.template, self.robot)
         return sorted([*every, *number_changes(self.template, self.data)])

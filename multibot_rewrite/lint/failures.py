@@ -26,8 +26,8 @@ from multibot_rewrite.base.model import (
 )
 from multibot_rewrite.base.outside import unrepeatable
 from multibot_rewrite.description.sources.packages import is_for_ros_1, package_of
-from multibot_rewrite.description.sources.read import XACRO, read_file
-from multibot_rewrite.lint.files.named import descriptions_below
+from multibot_rewrite.description.sources.read import XACRO
+from multibot_rewrite.lint.files.named import descriptions_below, text_of_file
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Subject
 
@@ -88,14 +88,7 @@ def _is_made_beside(path: str, name: str) -> bool:
         rb"<xacro:(?:macro|property|arg)\s[^<>]*name=[\"']%s[\"']" % re.escape(name).encode()
     )
     others = (it for it in descriptions_below(folder) if it != os.path.abspath(path))
-    return any(made.search(_text(it)) for it in others)
-
-
-def _text(path: str) -> bytes:
-    try:
-        return read_file(path)
-    except InputError:
-        return b""
+    return any(made.search(text_of_file(it)) for it in others)
 
 
 def crash(rule: Rule, subject: Subject, error: Exception) -> Finding:

@@ -11,7 +11,6 @@ import pytest
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.rules.convert import spans
-from multibot_rewrite.rules.description.structure.shared import first_names
 from multibot_rewrite.rules.settings import Settings
 
 A, LASER = '<link name="a"/>', '<link name="laser"/>'
@@ -242,12 +241,6 @@ def test_what_is_said_of_limits(joint: str, said: list[str]) -> None:
         f"{'' if text[it.column - 1] == '<' else '='}: {it.message}"
         for it in found
     ) == sorted(said)
-
-
-def test_of_many_names_eight_are_said() -> None:
-    eight = "'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'"
-    assert first_names("abcdefgh") == eight
-    assert first_names("abcdefghij") == f"{eight} and 2 more"
 
 
 @pytest.mark.parametrize(

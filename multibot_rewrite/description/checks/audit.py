@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator
 from itertools import chain, islice
 from operator import attrgetter
@@ -10,12 +11,12 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, locate
+from multibot_rewrite.base.loose_xml import DASHES, DEFAULT, LATE, slips
 from multibot_rewrite.base.markup import without_comments
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.releases import releases_with
 from multibot_rewrite.description.checks.hazards import hazards
-from multibot_rewrite.description.checks.loose import loosely_written
 from multibot_rewrite.description.checks.model_namespaces import ignored_namespaces, used_namespaces
 from multibot_rewrite.description.checks.problem import Problem, to_findings
 from multibot_rewrite.description.checks.references import (
@@ -30,7 +31,7 @@ from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.description.steps.document import Document
+from multibot_rewrite.description.steps.document import Document, tag_end
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
@@ -153,3 +154,46 @@ def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             message = f"{section.names[0]} does not read {tags} in ROS 2: nothing in it is renamed"
             hint = "delete what ROS 1 needed, or say it with <ros> and the names of ROS 2"
             yield Problem(host.element, message, None, hint, (), "MB904")
+
+
+CODE = "MB146"
+_READERS = "urdfdom and sdformat read it, but Python's XML parsers and xacro do not"
+_MENDS = {
+    DASHES: "write == for --",
+    LATE: "delete what is before <?xml",
+    DEFAULT: "delete xmlns=, or give it a prefix",
+}
+
+
+def loosely_written(document: Document) -> Iterator[Problem]:
+    """The first of each kind, at the element that is next, and of each prefix that nothing declares."""
+    if not document.is_mended:
+        return
+    source, starts = document.source, document.starts
+    seen = set()
+    for offset, what in slips(source):
+        if what not in seen:
+            seen.add(what)
+            element = document.elements[min(bisect_left(starts, offset), len(starts) - 1)]
+            line, _ = locate(source, offset)
+            hint = f"{_MENDS[what]}; {_READERS}"
+            yield Problem(element, f"{what} in line {line}", None, hint, (), CODE)
+    for prefix, uri in _undeclared(document):
+        found = next((it for it in document.elements if _uses(it, uri)), document.root)
+        message = f"the prefix {prefix!r} is not declared"
+        hint = f'declare it on the root element: xmlns:{prefix}="{uri}"; {_READERS}'
+        yield Problem(found, message, None, hint, (), CODE)
+
+
+def _undeclared(document: Document) -> Iterator[tuple[str, str]]:
+    """The prefixes that reading added to the root, with what they stand for."""
+    start = document.starts[0]
+    written = document.source[start : tag_end(document.source, start)]
+    for prefix, uri in document.root.nsmap.items():
+        if prefix and b"xmlns:" + prefix.encode() not in written:
+            yield prefix, uri
+
+
+def _uses(element: _Element, uri: str) -> bool:
+    names = (str(element.tag), *map(str, element.attrib))
+    return any(it.startswith(f"{{{uri}}}") for it in names)

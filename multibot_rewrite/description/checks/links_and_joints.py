@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TypeVar
 
 from lxml.etree import _Element
@@ -14,6 +14,12 @@ from multibot_rewrite.description.rewriters.text import kept_joints
 
 MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 WORLD = "world"
+
+TYPES = ("fixed", "revolute", "continuous", "prismatic", "floating", "planar")
+# The types with one position, which have an axis; the types that need a limit.
+ONE_AXIS = frozenset(("revolute", "continuous", "prismatic"))
+BOUNDED = frozenset(("revolute", "prismatic"))
+TOLERANCE = 1e-3
 
 
 class Inertial(NamedTuple):
@@ -213,3 +219,10 @@ def _not_of_a_tree(robot: Robot) -> dict[str, None]:
 
 def _ties(joint: Joint) -> bool:
     return bool(joint.parent) and bool(joint.child) and joint.parent != joint.child
+
+
+def joints_with(robot: Robot, tag: str) -> Iterator[tuple[Joint, _Element]]:
+    """The joints that have such an element."""
+    for joint in robot.joints:
+        if tag in joint.parts:
+            yield joint, joint.parts[tag]

@@ -14,16 +14,18 @@ from multibot_rewrite.description.checks.hazards import ALONE
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback.active import active_parts
 from multibot_rewrite.description.readback.meeting import (
+    CAMERA_INFO,
     NOT_TAKEN,
     advice,
     code_of,
     lost_rules,
     meetings,
+    parted,
     said,
     same_for_all,
+    undescribed,
 )
 from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC, RuntimeName
-from multibot_rewrite.description.readback.pairs import CAMERA_INFO, parted, undescribed
 from multibot_rewrite.description.readback.reading import Reading, read, read_tree
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.steps.apply import fill

@@ -7,9 +7,12 @@ The first part's file goes on: its declaration, name and attributes are those of
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from math import isfinite
 from operator import attrgetter
+
+from lxml import etree
+from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit, InputError, UsageError
@@ -25,6 +28,7 @@ from multibot_rewrite.description.joining.kept import (
     placed,
     section,
     sections,
+    was,
 )
 from multibot_rewrite.description.joining.part import (
     ZERO,
@@ -36,12 +40,11 @@ from multibot_rewrite.description.joining.part import (
 )
 from multibot_rewrite.description.joining.proof import prove
 from multibot_rewrite.description.joining.second_reading import Mounted
-from multibot_rewrite.description.joining.spaces import own_spaces
 from multibot_rewrite.description.joining.systems import OneSystem, one_system
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.collect import collect
-from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.document import Document, read_document, tag_end
 from multibot_rewrite.description.steps.spans import Spans
 
 JOINED = "the joined description"
@@ -150,3 +153,40 @@ def _check_link(at: str, part: ReadPart, robot: Robot) -> None:
         raise UsageError(f"{part.file}: name the link that it is fixed to with --at, as {some}")
     near = did_you_mean_one_of(at, robot.link) or f"it ends in {', '.join(ends[:_ENDS])}"
     raise UsageError(f"{part.file}: no part before it has a link {at!r}; {near}")
+
+
+def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list[Edit]:
+    """The edits that declare them; elements that the ``others`` leave out need none."""
+    return list(_edits(joined, spans, {it.start for it in others if it.start < it.end}))
+
+
+def _edits(joined: Document, spans: Spans, edited: Collection[int]) -> Iterator[Edit]:
+    lacking = _declared(spans.document) - _declared(joined)
+    for it in spans.document.root.iterchildren("*") if lacking else ():
+        used = sorted(_spaces(it) & {uri for _, uri in lacking})
+        start = spans.start_of(it)
+        if not used or start in edited:
+            continue
+        old = spans.text_of(it)
+        words = (b' xmlns:%s="%s"' % pair for pair in sorted(lacking) if pair[1] in used)
+        at = 1 + len(_name(old))
+        yield was(start, spans.end_of(it), old, old[:at] + b"".join(words) + old[at:])
+
+
+def _name(element: bytes) -> bytes:
+    return element[1:].split(b">", 1)[0].split(None, 1)[0].rstrip(b"/")
+
+
+def _declared(document: Document) -> set[tuple[bytes, bytes]]:
+    """Prefixes and namespaces that the root's start tag has itself."""
+    start = document.starts[0]
+    tag = document.source[start : tag_end(document.source, start)]
+    found = ((prefix, uri) for prefix, uri in document.root.nsmap.items() if prefix)
+    pairs = {(prefix.encode(), uri.encode()) for prefix, uri in found}
+    return {pair for pair in pairs if b"xmlns:%s" % pair[0] in tag}
+
+
+def _spaces(element: _Element) -> set[bytes]:
+    names = (name for it in element.iter("*") for name in (it.tag, *it.attrib))
+    found = (etree.QName(str(name)).namespace for name in names)
+    return {uri.encode() for uri in found if uri}

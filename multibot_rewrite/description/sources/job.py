@@ -227,8 +227,11 @@ def job_for(
     affixes = own_affixes(texts) if job.urdf and not twin else None
     if not affixes:
         return job
-    follow = _of_plain if len(set(words)) == 1 else _followed
-    return follow(job, plain, affixes)
+    if len(set(words)) > 1:
+        return _followed(job, plain, affixes)
+    # It knows nothing of the arguments: its names are those of the URDF without them, and become what
+    # the arguments make of these.
+    return job._replace(urdf=plain.urdf, naming=job.naming._replace(own=affixes))
 
 
 def _plain(
@@ -285,14 +288,8 @@ def _lacks(job: Job) -> bool:
     return any(not PARTS.isdisjoint(name.kinds) for name in found)
 
 
-def _of_plain(job: Job, plain: Job, affixes: OwnNames) -> Job:
-    """An SRDF that knows nothing of the arguments: its names are those of the URDF without them, and
-    become what the arguments make of these."""
-    return job._replace(urdf=plain.urdf, naming=job.naming._replace(own=affixes))
-
-
 def _followed(job: Job, plain: Job, affixes: OwnNames) -> Job:
-    """The same where a robot has several words: its SRDF as the arguments would have made it."""
+    """A robot with several words: its SRDF as the arguments would have made it."""
     inventory = collect(read_document(job.data, job.file), job.tree, plain.urdf_declarations)
     own = job.naming._replace(separators={}, own=affixes)
     edits = make_plan(inventory, own).edits

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.config import listed_files, type_name
 from multibot_rewrite.base.findings.codes import find_codes
@@ -14,7 +15,6 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.base.rosnames.names import check_robot_names
-from multibot_rewrite.rules.patterns import anchored, with_folders
 from multibot_rewrite.rules.settings import EVERY_FILE, TARGETS, ArgumentSet
 
 
@@ -211,3 +211,38 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
 }
 # Keys whose field has another name.
 FIELDS = {"per-file-ignores": "per_file", "xacro": "arguments"}
+
+
+def anchored(pattern: str, folder: str, where: str) -> tuple[str, ...]:
+    """A pattern as one or two of whole paths; without a slash it is a name in whatever folder."""
+    _check_pattern(pattern, where)
+    if os.path.isabs(pattern):
+        return (pattern,)
+    pattern = pattern.removeprefix("./")
+    tail = pattern.removeprefix("**/")
+    anywhere = tail != pattern or "/" not in tail.rstrip("/")
+    from glob import escape  # most configurations have no pattern
+
+    top = escape(folder).rstrip("/")
+    if not anywhere or tail.startswith("*"):
+        return (f"{top}/{tail}",)
+    return f"{top}/{tail}", f"{top}/*/{tail}"
+
+
+def _check_pattern(pattern: str, where: str) -> None:
+    if not pattern:
+        raise UsageError(f"{where}: a pattern is empty")
+    if pattern.startswith("!"):
+        raise UsageError(f"{where}: {pattern!r}: a pattern cannot take files back in with '!'")
+    if "}" in pattern.partition("{")[2]:
+        raise UsageError(f"{where}: {pattern!r}: write one pattern each instead of {{a,b}}")
+    if not all(it[1] for it in re.finditer(r"\[!?\]?[^\]]*(\]?)", pattern)):
+        raise UsageError(f"{where}: {pattern!r}: a bracket is not closed")
+    if ".." in pattern.split("/"):
+        raise UsageError(f"{where}: {pattern!r} leads out of the folder, write the whole path")
+
+
+def with_folders(patterns: Iterable[str]) -> Iterator[str]:
+    """A pattern that matches a folder is for everything in it."""
+    for it in patterns:
+        yield from (it, f"{it}/*") if not it.endswith("/") else (f"{it}*",)

@@ -9,12 +9,10 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.markup import without_comments
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file, real_path
 from multibot_rewrite.description.sources.known_arguments import KnownArguments, known_arguments
 from multibot_rewrite.description.sources.packages import package_folder, package_of
-from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.lint.files.named import descriptions_below
+from multibot_rewrite.lint.files.named import descriptions_below, text_of_file
 from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.rules.settings import Settings
 
@@ -59,7 +57,7 @@ def _includes_itself(real: str) -> bool:
 
 def _included_by(path: str) -> Iterator[str]:
     """The files that a file includes, where only packages are to be filled in."""
-    for name in _INCLUDE.findall(without_comments(_text(path))):
+    for name in _INCLUDE.findall(without_comments(text_of_file(path))):
         text = _PACKAGE.sub(
             lambda it: package_folder(it[1], path, ()), name.decode("utf-8", "replace")
         )
@@ -77,7 +75,7 @@ def _beside(paths: Sequence[str]) -> Iterator[str]:
 def known_elsewhere(paths: Sequence[str]) -> KnownArguments | None:
     """The arguments that any of several xacro files knows; None where there are not several."""
     files = list(filter(_is_read, paths))
-    return known_arguments(map(_text, files)) if len(files) > 1 else None
+    return known_arguments(map(text_of_file, files)) if len(files) > 1 else None
 
 
 def _is_read(path: str) -> bool:
@@ -102,14 +100,7 @@ def _asked_for(path: str) -> Iterator[str]:
 
 
 def _names(path: str) -> Iterable[str]:
-    return (name.decode("utf-8", "replace") for name in _INCLUDE.findall(_text(path)))
-
-
-def _text(path: str) -> bytes:
-    try:
-        return read_file(path)
-    except InputError:  # reported when it is linted
-        return b""
+    return (name.decode("utf-8", "replace") for name in _INCLUDE.findall(text_of_file(path)))
 
 
 def set_among(paths: Sequence[str], settings: Settings) -> Settings:

@@ -10,7 +10,7 @@ from multibot_rewrite.base.model import Change
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.library import Prepared
-from multibot_rewrite.description.reports.changes import list_changes
+from multibot_rewrite.description.steps.apply import list_changes
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.fleet.file.robot_spec import Sources
 from multibot_rewrite.fleet.fleet_plan import FleetPlan

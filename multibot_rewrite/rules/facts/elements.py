@@ -4,13 +4,17 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from lxml.etree import _Element
 
 from multibot_rewrite.description.steps.document import Document
 
 _ByTag = Mapping[str, Sequence[_Element]]
+# The parts of a <ros2_control> that have interfaces, and these.
+OWNERS = ("joint", "sensor", "gpio")
+COMMAND, STATE = "command_interface", "state_interface"
+STANDARD = ("position", "velocity", "effort", "acceleration")
 
 
 class Elements:
@@ -32,6 +36,11 @@ class Elements:
         """The same, only of the root's children."""
         return _of(self._tops, tags)
 
+    def owners(self) -> Iterator[_Element]:
+        """What has interfaces in every <ros2_control>: joints, sensors, gpios."""
+        for system in self.tops("ros2_control"):
+            yield from system.iterchildren(*OWNERS)
+
     def first(self, tag: str) -> Mapping[_Element | None, _Element]:
         """The first child of that tag, by its parent: for rules that ask every element for one."""
         found = self._first.get(tag)
@@ -52,3 +61,8 @@ def _by_tag(elements: Iterable[_Element]) -> _ByTag:
     for it in elements:
         found[it.tag].append(it)
     return found
+
+
+def name_of(element: _Element) -> str:
+    """The name of an element without the white space around it."""
+    return element.get("name", "").strip()

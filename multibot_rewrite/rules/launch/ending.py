@@ -13,6 +13,7 @@ from itertools import pairwise
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.rosnames import check_node_name
+from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.producers.launch.bridges import refused_rows
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.programs import programs
@@ -37,7 +38,7 @@ def ends(launched: Launched) -> Iterator[Finding]:
             yield at(ends, it.place, message, "write it with letters, digits and underscores")
         if f"{it.package}/{it.executable}" in programs().spawners:
             for flag, word in pairwise(it.arguments):
-                if flag in _NUMBERS and not _is_number(word):
+                if flag in _NUMBERS and number(word) is None:
                     message = f"{it.executable}: {flag} {word} is no number"
                     yield at(ends, it.place, message, "write a number")
     for node in launched.nodes:
@@ -61,11 +62,3 @@ def _described(it: Run) -> Iterator[Finding]:
     elif isinstance(text, str) and text and "<" not in text:
         message = f"{it.full_name}: robot_description is {text[:60]!r}, and no XML"
         yield at(ends, it.place, message, "give it the text of the file, not its path")
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True

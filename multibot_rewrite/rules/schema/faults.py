@@ -225,13 +225,14 @@ def _repeated(element: etree._Element, section: UrdfPart, count: Counter[str]) -
         if times < 2 or child is None or child.times not in ("once", "required"):
             continue
         first, *others = element.findall(tag)
-        other = next((it for it in others if _canonical(it) != _canonical(first)), None)
+        other = next((it for it in others if canonical(it) != canonical(first)), None)
         if other is not None:
             message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
             yield fault("repeated", other, None, message)
 
 
-def _canonical(element: etree._Element) -> bytes:
+def canonical(element: etree._Element) -> bytes:
+    """An element as all that mean the same are written."""
     return etree.tostring(element, method="c14n", with_tail=False)
 
 

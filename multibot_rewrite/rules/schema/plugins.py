@@ -105,16 +105,13 @@ def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Pro
         return
     if row.low is not None and (value < row.low or (row.is_open and value == row.low)):
         limit = f"has to be {'above' if row.is_open else 'at least'} {row.low:g}"
-        yield _out_of_range(child, f"{where} {limit}{_in(row.checked)}")
+        yield fault("range", child, "", f"{where} {limit}{_in(row.checked)}", "", WARNING)
     elif row.high is not None and value > row.high:
-        yield _out_of_range(child, f"{where} may be {row.high:g} at most{_in(row.checked)}")
+        message = f"{where} may be {row.high:g} at most{_in(row.checked)}"
+        yield fault("range", child, "", message, "", WARNING)
     elif row.unit == "rad" and abs(value) > TURN:
         hint = f"{value:g} degrees are {radians(value):.4g}"
         yield fault("degrees", child, "", f"{where} is more than a turn: it is in radians", hint)
-
-
-def _out_of_range(child: _Element, message: str) -> Problem:
-    return fault("range", child, "", message, "", WARNING)
 
 
 def _unread(

@@ -10,7 +10,7 @@ from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.markup import ATTRIBUTES
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.description.checks.loose import loosely_written
+from multibot_rewrite.description.checks.audit import loosely_written
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.subject import Subject
 

@@ -29,14 +29,12 @@ def path_of_one_machine(subject: Subject) -> Iterator[Problem]:
     """The first absolute path that is written out in the source, and how many there are."""
     found = [it for it in _with_scheme(subject, "file") if "$" not in it.name]
     starts = starts_of(subject, [it.element for it in found])
-    found = [it for it in found if _is_literal(subject, starts[it.element])]
+    found = [
+        it for it in found if is_fixed(subject, starts[it.element], "filename", constants=False)
+    ]
     if found:
         message = f"{found[0].name!r} is a path of one machine{and_more(len(found))}"
         yield problem(found[0], message, "write package://NAME/...")
-
-
-def _is_literal(subject: Subject, start: int) -> bool:
-    return is_fixed(subject, start, "filename", constants=False)
 
 
 @rule("MB705", "backslash-in-path", WARNING)

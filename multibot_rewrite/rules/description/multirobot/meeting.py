@@ -8,7 +8,7 @@ from functools import partial
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.findings.rule import URDF, Rule, rule
+from multibot_rewrite.base.findings.rule import URDF, Rule, declare
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.multirobot.shared import APART, AS_WRITTEN, TWO
@@ -56,6 +56,12 @@ def _left(known: Rule, naming: Naming = APART) -> Rule:
     return own._replace(level=WARNING, check=partial(_of_code, known.code))
 
 
+def _of_descriptions(code: str, name: str, naming: Naming) -> Rule:
+    """Return a rule that no running system is asked."""
+    options = {"robots": TWO, "naming": naming}
+    return declare(code, name, WARNING, partial(_of_code, code), options=options)
+
+
 shared_topic = _left(sharing.topic_of_several_robots)
 shared_node = _left(nodes.nodes_of_one_name)
 shared_frame = _left(transforms.robots_frames_collide)
@@ -63,27 +69,8 @@ shared_command = _left(commands.command_for_several_robots)
 shared_service = _left(names.service_of_two_nodes)
 controllers_apart = _left(way_checks.NOT_TAKEN, ODOMETRY_APART)
 
-sensor_names_collide = rule(
-    "MB425", "lookup-in-the-world", WARNING, options={"robots": TWO, "naming": AS_WRITTEN}
-)(partial(_of_code, "MB425"))
-
-lost_rule = rule("MB436", "lost-remap-rule", WARNING, options={"robots": TWO, "naming": IN_FRONT})(
-    partial(_of_code, "MB436")
-)
-
-same_text = rule(
-    "MB437", "same-text-for-all", WARNING, options={"robots": TWO, "naming": AS_WRITTEN}
-)(partial(_of_code, "MB437"))
-
-
-parted_topic = rule("MB438", "parted-topic", WARNING, options={"robots": TWO, "naming": APART})(
-    partial(_of_code, "MB438")
-)
-
-
-camera_info_elsewhere = rule(
-    "MB439",
-    "camera-info-elsewhere",
-    WARNING,
-    options={"robots": TWO, "naming": make_naming("postfix")},
-)(partial(_of_code, "MB439"))
+sensor_names_collide = _of_descriptions("MB425", "lookup-in-the-world", AS_WRITTEN)
+lost_rule = _of_descriptions("MB436", "lost-remap-rule", IN_FRONT)
+same_text = _of_descriptions("MB437", "same-text-for-all", AS_WRITTEN)
+parted_topic = _of_descriptions("MB438", "parted-topic", APART)
+camera_info_elsewhere = _of_descriptions("MB439", "camera-info-elsewhere", make_naming("postfix"))

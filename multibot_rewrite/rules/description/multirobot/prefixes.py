@@ -20,7 +20,6 @@ from multibot_rewrite.rules.description.multirobot.xacro_scopes import (
     parameters,
     prefixes,
     scopes,
-    without_substitutions,
     words_of,
 )
 from multibot_rewrite.rules.subject import Subject
@@ -41,7 +40,7 @@ def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
         for kind in ("link", "joint"):
             yield from _forgotten(scope, [it for it in scope.declared if it.element.tag == kind])
         stems = {
-            without_substitutions(it) for it in scope.declared if it.words & scope.prefix_names
+            SUBSTITUTIONS.sub("", it.text) for it in scope.declared if it.words & scope.prefix_names
         }
         bare = {it.text for it in scope.declared if not it.words}
         for it in scope.used if stems else ():

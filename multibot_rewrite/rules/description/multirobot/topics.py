@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from lxml.etree import _Element
-
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.model import Claim
@@ -43,16 +41,13 @@ def absolute_topic(subject: Subject) -> Iterator[Problem]:
         if name.strip("/") in subject.settings.naming.shared_topics | set(TF_TOPICS):
             continue
         # MB426 reports these.
-        if claim.site.form in REMAP_FORMS and wide and wide.intersection(_plugins_around(claim)):
+        above = claim.element.iterancestors("plugin") if claim.site.form in REMAP_FORMS else ()
+        if not wide.isdisjoint(above):
             continue
         if claim_is_fixed(subject, claim):
             message = f"{tag_of(claim)} {name!r} is absolute: a namespace does not move it"
             hint = f"{name[1:]!r} follows the robot's namespace"
             yield Problem(claim.element, message, claim.attribute, hint)
-
-
-def _plugins_around(claim: Claim) -> Iterator[_Element]:
-    return claim.element.iterancestors("plugin")
 
 
 def _target(claim: Claim) -> str:

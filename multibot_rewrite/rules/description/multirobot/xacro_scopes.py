@@ -121,11 +121,6 @@ def _names_in(text: str) -> Iterator[str]:
     yield "$"
 
 
-def without_substitutions(name: WrittenName) -> str:
-    """A name's own text: what is left without its prefix."""
-    return SUBSTITUTIONS.sub("", name.text)
-
-
 def _properties_by_name(root: _Element) -> Mapping[str, list[str]]:
     """Name -> the properties whose values use it."""
     users: defaultdict[str, list[str]] = defaultdict(list)

@@ -18,11 +18,10 @@ from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules import declaration
-from multibot_rewrite.rules.description.references.shared import (
+from multibot_rewrite.rules.facts.elements import (
     COMMAND,
     STATE,
     name_of,
-    owners,
 )
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
@@ -87,7 +86,9 @@ def _chosen(subject: Subject) -> tuple[str, ...]:
     if not subject.origins:
         return ()
     interfaces = {
-        it: owner for owner in owners(subject) for it in owner.iterchildren(COMMAND, STATE)
+        it: owner
+        for owner in subject.elements.owners()
+        for it in owner.iterchildren(COMMAND, STATE)
     }
     return tuple(
         f"{str(it.tag).removesuffix('_interface')} interface {name_of(interfaces[it])}/"

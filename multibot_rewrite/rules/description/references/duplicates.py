@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
-from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, locate
@@ -17,10 +16,11 @@ from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import repeated
 from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.rules.description.references.shared import (
+from multibot_rewrite.rules.facts.certain import since_jazzy
+from multibot_rewrite.rules.facts.elements import (
     name_of,
 )
-from multibot_rewrite.rules.facts.certain import since_jazzy
+from multibot_rewrite.rules.schema.faults import canonical
 from multibot_rewrite.rules.subject import Subject
 
 if TYPE_CHECKING:
@@ -143,13 +143,9 @@ def system_twice(subject: Subject) -> Iterator[Problem]:
     systems = [it for it in subject.elements.every("plugin") if "::" in it.get("name", "")]
     if len(systems) < 2:
         return
-    found = ((_scope(it), it.get("name"), _text(it)) for it in systems)
+    found = ((_scope(it), it.get("name"), canonical(it)) for it in systems)
     for it in _repeated(zip(found, systems, strict=True)):
         yield Problem(it, f"{it.get('name')} is loaded twice with the same parameters", "name")
-
-
-def _text(element: _Element) -> bytes:
-    return etree.tostring(element, method="c14n", with_tail=False)
 
 
 def _scope(plugin: _Element) -> object:

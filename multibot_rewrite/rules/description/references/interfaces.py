@@ -12,22 +12,21 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.references.shared import (
+from multibot_rewrite.rules.facts.certain import since_jazzy
+from multibot_rewrite.rules.facts.elements import (
     COMMAND,
     OWNERS,
     STANDARD,
     STATE,
     name_of,
-    owners,
 )
-from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
 
 @rule("MB231", "repeated-interface", ERROR)
 def repeated_interface(subject: Subject) -> Iterator[Problem]:
     """Interfaces of one component."""
-    for owner in owners(subject):
+    for owner in subject.elements.owners():
         seen: set[tuple[str, str]] = set()
         for it in owner.iterchildren(COMMAND, STATE):
             key = str(it.tag), name_of(it)
@@ -59,7 +58,7 @@ def interface_of_two_systems(subject: Subject) -> Iterator[Problem]:
 
 def misspelt_interfaces(subject: Subject) -> Iterator[Problem]:
     """Interfaces of joints."""
-    for owner in owners(subject):
+    for owner in subject.elements.owners():
         for it in owner.iterchildren(COMMAND, STATE) if owner.tag == "joint" else ():
             name = name_of(it)
             near = "" if name in STANDARD else _meant(name)

@@ -14,11 +14,10 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.description.checks.links_and_joints import Joint
+from multibot_rewrite.description.checks.links_and_joints import BOUNDED, Joint
 from multibot_rewrite.description.checks.numbers import number, value_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.description.structure.shared import BOUNDED
 from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.subject import Subject
 

@@ -10,14 +10,14 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.description.checks.links_and_joints import Joint
-from multibot_rewrite.description.checks.numbers import vector
-from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.structure.shared import (
+from multibot_rewrite.description.checks.links_and_joints import (
     ONE_AXIS,
     TOLERANCE,
+    Joint,
     joints_with,
 )
+from multibot_rewrite.description.checks.numbers import vector
+from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 

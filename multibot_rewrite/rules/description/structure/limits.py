@@ -11,16 +11,17 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
-from multibot_rewrite.description.checks.numbers import number, numbers, value_of
-from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.structure.shared import (
+from multibot_rewrite.description.checks.links_and_joints import (
     BOUNDED,
     ONE_AXIS,
     TOLERANCE,
     TYPES,
+    Joint,
+    Robot,
     joints_with,
 )
+from multibot_rewrite.description.checks.numbers import number, numbers, value_of
+from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.simulators import commanded
 from multibot_rewrite.rules.schema.versions import KNOWN, version_of

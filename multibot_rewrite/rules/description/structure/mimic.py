@@ -7,15 +7,15 @@ from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.description.checks.links_and_joints import Robot
-from multibot_rewrite.description.checks.numbers import value_of
-from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.structure.shared import (
+from multibot_rewrite.base.wording import SHOWN, shorten
+from multibot_rewrite.description.checks.links_and_joints import (
     ONE_AXIS,
     TYPES,
-    first_names,
+    Robot,
     joints_with,
 )
+from multibot_rewrite.description.checks.numbers import value_of
+from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.subject import Subject
 
 
@@ -28,7 +28,8 @@ def mimic_loop(subject: Subject) -> Iterator[Problem]:
     for loop in _loops(_leaders(subject.robot)):
         if len(loop) > 1:
             mimic = subject.robot.joint[loop[0]].parts["mimic"]
-            yield Problem(mimic, f"joints mimic each other in a loop: {first_names(loop)}", "joint")
+            names = shorten(map(repr, loop), SHOWN)
+            yield Problem(mimic, f"joints mimic each other in a loop: {names}", "joint")
 
 
 @rule("MB528", "mimic-chain", NOTE)

@@ -10,12 +10,14 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.description.checks.links_and_joints import is_tree, loops, reached, roots
-from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.structure.shared import (
-    SHOWN,
-    first_names,
+from multibot_rewrite.base.wording import SHOWN, shorten
+from multibot_rewrite.description.checks.links_and_joints import (
+    is_tree,
+    loops,
+    reached,
+    roots,
 )
+from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.certain import level_of_absence
 from multibot_rewrite.rules.subject import Subject
 
@@ -103,7 +105,7 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
     seen.update(it.child for it in robot.joints if it.child == it.parent)
     lost = [it for name, it in robot.link.items() if name not in seen]
     if lost:
-        names = first_names(it.name for it in lost)
+        names = shorten((repr(it.name) for it in lost), SHOWN)
         yield Problem(lost[0].element, f"not connected to the root: {names}", "name")
 
 
