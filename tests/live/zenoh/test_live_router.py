@@ -68,7 +68,7 @@ def test_a_fleet_as_planned(plan: Path, address: str, capsys: pytest.CaptureFixt
     with fleet(address, 1):
         assert check(plan, address, 1) == 0
     shown = capsys.readouterr()
-    assert (shown.out, "2 robots, 0 findings: as planned" in shown.err) == ("", True), shown.err
+    assert (shown.out, "2 robots, 1 node each: all known, all seen; 0 findings: as planned" in shown.err) == ("", True), shown.err
 
 
 def test_the_snapshot_is_complete_with_qos_and_hashes(address: str) -> None:
