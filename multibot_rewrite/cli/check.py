@@ -39,7 +39,7 @@ from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.spelling.plan_file import is_fleet, read_plan
-from multibot_rewrite.system.coverage import coverage
+from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import by_domain, side_by_side
 from multibot_rewrite.system.records import System, answering, doubts
 
@@ -219,9 +219,10 @@ def _watch(options: argparse.Namespace, plan: System, domains: Sequence[int] = (
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
 
-    def look(views: Mapping[int, System]) -> tuple[System, System, Sequence[Finding]]:
+    def look(views: Mapping[int, System]) -> tuple[System, Coverage, Sequence[Finding]]:
         graph = side_by_side(views)
-        return plan, graph, check_domains(plan, views) if domains else check(plan, graph)
+        found = check_domains(plan, views) if domains else check(plan, graph)
+        return graph, coverage(plan, graph), found
 
     last = follow(look, live.watched(options, _parameters(plan), domains))
     if last is None:
