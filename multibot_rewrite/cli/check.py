@@ -183,7 +183,8 @@ def conclude(
     of_graph = [it for it in (*before, *found) if it not in gaps]
     findings = [*of_graph, *gaps]
     held = coverage(plan, graph)
-    about = About([plan_name(options)], robot_words(plan), plan.release, held)
+    given = vars(options)
+    about = About([given.get("plan") or given["input"]], robot_words(plan), plan.release, held)
     failed = report_first(options, findings, about)
     caveats = doubts(graph)
     for caveat in caveats:
@@ -207,12 +208,6 @@ def _gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
     what = f"{plural(len(unsent), 'note')} about topics that no known node sends"
     note(options, f"note: {what}; --verbose shows them")
     return [it for it in found if it not in unsent]
-
-
-def plan_name(options: argparse.Namespace) -> str:
-    """The file that the plan comes from."""
-    given = vars(options)
-    return str(given.get("plan") or given["input"])
 
 
 def _watch(options: argparse.Namespace, plan: System, domains: Sequence[int] = ()) -> int:

@@ -3,14 +3,10 @@
 
 from __future__ import annotations
 
-import ast
-import json
 import re
 import shlex
 
 import pytest
-import yaml
-from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite.base.naming import make_naming
@@ -303,22 +299,6 @@ def test_ros_args_are_what_rcl_reads() -> None:
     assert "__node:=driver_robot2" in FORMS["ros-args"](table("L4"))
 
 
-def test_launch_form_is_plain_python() -> None:
-    text = FORMS["launch"](table("L1")).partition("NODES = ")[2]
-    nodes = ast.literal_eval(text)
-    assert nodes["robot2"]["robot_state_publisher"] == {
-        "namespace": "/robot2",
-        "name": "robot_state_publisher",
-        "remappings": [("/tf", "tf"), ("/tf_static", "tf_static")],
-    }
-
-
-def test_yaml_and_json_are_the_same_data() -> None:
-    found = table("L4")
-    assert json.loads(FORMS["json"](found)) == json.loads(json.dumps(as_data(found)))
-    assert yaml.safe_load(FORMS["yaml"](found)) == json.loads(FORMS["json"](found))
-
-
 def test_a_shared_node_keeps_its_namespace_and_name_to_the_letter() -> None:
     node = NodeFacts("/fleet/x_mux", "twist_mux", (), shared=True)
     (found, *_) = table("L1", (node,)).runs
@@ -329,13 +309,6 @@ def test_the_data_of_a_table_names_its_layout_and_each_robot() -> None:
     found = as_data(table("L4"))
     assert found["layout"] == "postfix"
     assert set(found["robots"]) >= {"robot1", "robot2"}  # type: ignore[call-overload]
-
-
-def test_gazebo_form_is_xml_a_plugin_takes() -> None:
-    blocks = etree.fromstring(f"<all>{FORMS['gazebo'](table('L1'))}</all>")
-    block = blocks.find("ros")
-    assert block is not None
-    assert (block.findtext("namespace"), block.findtext("remapping")) == ("/robot1", "/tf:=tf")
 
 
 @pytest.mark.parametrize(
