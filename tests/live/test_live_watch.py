@@ -96,7 +96,7 @@ def with_rates(plan: Path) -> Path:
 def test_a_fleet_that_comes_up_while_it_is_watched(plan: Path) -> None:
     own = domain(70)
     with watching(with_rates(plan), own, "--state") as watch:
-        assert "2 robots, 1 node each: all known, 0 of 2 seen; " in watch.until("nodes")
+        assert "2 robots, 1 node each: all known, 0 of 2 seen; " in watch.until("2 robots")
         with live_fleet.running(own, rated("robot1", 2), rated("robot2", 2)):
             watch.until("2 robots, 1 node each: all known, all seen; 0 findings: still changing")
             watch.until("2 robots, 1 node each: all known, all seen; 0 findings: as planned", 40)
@@ -118,7 +118,7 @@ def test_a_parameter_that_changes_is_seen_although_the_graph_does_not(plan: Path
         assert "/robot2" not in found
         first.send_signal(signal.SIGUSR1)
         watch.until("  - /robot1/drive: error: MG132", 60)
-        assert "as planned" in watch.until("nodes", 60)
+        assert "as planned" in watch.until("2 robots", 60)
         code, said = watch.end()
     assert code == 1, said
 
