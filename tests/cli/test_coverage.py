@@ -326,7 +326,7 @@ def test_robots_that_differ_are_named(robots: list[tuple[str, int, int]], text: 
 def test_what_is_no_node_of_a_robot_does_not_count() -> None:
     """Tools come and go; what a node makes for itself has a name of its own in each run."""
     plan = planned([("a", 1, 0)])
-    more = (Node("/a/rviz2", robot="a"), Node("/a/transform_listener_impl_*", robot="a"))
+    more = (Node("/a/rviz2", robot="a"), Node("/a/worker_*", robot="a"))
     twice = (*plan.nodes, *plan.nodes, *more)
     assert in_words(coverage(plan._replace(nodes=twice))) == "1 robot, 1 node: all known"
 
