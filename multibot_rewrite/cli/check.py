@@ -39,7 +39,7 @@ from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.spelling.plan_file import is_fleet, read_plan
-from multibot_rewrite.system.coverage import coverage
+from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import by_domain, side_by_side
 from multibot_rewrite.system.records import System, answering, doubts
 
@@ -183,7 +183,8 @@ def conclude(
     of_graph = [it for it in (*before, *found) if it not in gaps]
     findings = [*of_graph, *gaps]
     held = coverage(plan, graph)
-    about = About([plan_name(options)], robot_words(plan), plan.release, held)
+    given = vars(options)
+    about = About([given.get("plan") or given["input"]], robot_words(plan), plan.release, held)
     failed = report_first(options, findings, about)
     caveats = doubts(graph)
     for caveat in caveats:
@@ -209,19 +210,14 @@ def _gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
     return [it for it in found if it not in unsent]
 
 
-def plan_name(options: argparse.Namespace) -> str:
-    """The file that the plan comes from."""
-    given = vars(options)
-    return str(given.get("plan") or given["input"])
-
-
 def _watch(options: argparse.Namespace, plan: System, domains: Sequence[int] = ()) -> int:
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
 
-    def look(views: Mapping[int, System]) -> tuple[System, System, Sequence[Finding]]:
+    def look(views: Mapping[int, System]) -> tuple[System, Coverage, Sequence[Finding]]:
         graph = side_by_side(views)
-        return plan, graph, check_domains(plan, views) if domains else check(plan, graph)
+        found = check_domains(plan, views) if domains else check(plan, graph)
+        return graph, coverage(plan, graph), found
 
     last = follow(look, live.watched(options, _parameters(plan), domains))
     if last is None:

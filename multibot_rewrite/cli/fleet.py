@@ -9,7 +9,6 @@ from collections.abc import Iterable
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
-from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.cli.output import note
@@ -30,7 +29,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.records import launch_order
 
 # Options that name files to write.
-WRITTEN = ("output", "sros2", "save_snapshot", "report")
+WRITTEN = ("output", "save_snapshot", "report")
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
 _OF_FLEET_FILE = (
@@ -130,17 +129,8 @@ def _is_nodl(path: str) -> bool:
     return path == NO_DOCUMENTS or path.endswith(SUFFIXES) or os.path.isdir(path)
 
 
-def about(options: argparse.Namespace, made: Fleet) -> About:
-    """What the findings of a fleet are about."""
-    return About([options.input], made.words, made.table.release)
-
-
-def findings(options: argparse.Namespace, made: Fleet) -> list[Finding]:
-    """What is wrong with the table, as far as it is selected."""
-    return chosen(options, made.table.problems)
-
-
 def report_table(options: argparse.Namespace, made: Fleet) -> bool:
     """Report what is wrong with the table and open in the robots; does it fail the command?"""
-    found = (*findings(options, made), *chosen(options, made.gaps))
-    return report_beside(options, found, about(options, made))
+    found = chosen(options, (*made.table.problems, *made.gaps))
+    about = About([options.input], made.words, made.table.release)
+    return report_beside(options, found, about)

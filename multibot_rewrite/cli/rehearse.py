@@ -13,6 +13,7 @@ from multibot_rewrite.cli import fleet, live, pictures
 from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.declared.fleet import EVERY_WAY
 from multibot_rewrite.cli.output import note, shown, write_files
+from multibot_rewrite.cli.report import chosen
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleet.fleet import Fleet, expected
 from multibot_rewrite.live.rehearsal import (
@@ -41,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     made = fleet.build(options)
     # Nodes that stand in for others have none of their parameters.
-    plan, table = expected(made)._replace(parameters=()), fleet.findings(options, made)
+    plan, table = expected(made)._replace(parameters=()), chosen(options, made.table.problems)
     edges, added = _edges(made)
     nodes = [*stub_nodes(made.table, edges, _left_out(options))]
     seen, replaced = _played(options, plan, nodes)

@@ -30,6 +30,7 @@ from multibot_rewrite.live.watching import Outcome, Verdict, final, final_words,
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
 from multibot_rewrite.rules.system.planned_nodes import missing_robot
+from multibot_rewrite.system.coverage import Coverage
 from multibot_rewrite.system.domains import unnamed
 from multibot_rewrite.system.records import System, doubts
 from multibot_rewrite.system.tool_nodes import is_tool
@@ -179,7 +180,7 @@ def _looking(each: dict[int, Diagnosis]) -> Look:
     it is gone."""
     known: dict[str, set[str]] = {}
 
-    def look(views: Mapping[int, System]) -> tuple[System, System, Sequence[Finding]]:
+    def look(views: Mapping[int, System]) -> tuple[System, Coverage, Sequence[Finding]]:
         each.update({at: diagnose(it) for at, it in views.items()})
         seen = diagnose_domains(each) if len(each) > 1 else next(iter(each.values()))
         there = {it.name for it in seen.graph.nodes if not is_tool(it.name)}
@@ -188,7 +189,7 @@ def _looking(each: dict[int, Diagnosis]) -> Look:
                 known.setdefault(robot, set()).add(node)
         gone = [_gone(*it) for it in known.items() if there.isdisjoint(it[1])]
         lost = map(unnamed, gone) if len(each) > 1 else gone
-        return seen_plan(seen), seen.graph, (*seen.findings, *lost)
+        return seen.graph, seen.coverage, (*seen.findings, *lost)
 
     return look
 

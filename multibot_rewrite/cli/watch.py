@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from functools import partial
@@ -11,17 +12,19 @@ from functools import partial
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import print_lines
+from multibot_rewrite.cli.report import with_coverage
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.live.watching import WatchState, verdict_words, with_found
 from multibot_rewrite.rules.system.planned_nodes import missing_robot
+from multibot_rewrite.system.coverage import Coverage
 from multibot_rewrite.system.records import CHANGING, System
 
 # As many findings as a screen holds beside the robots.
 _SHOWN = 15
 Show = Callable[[WatchState], None]
-# What is seen, by domain, -> the plan of it, all of it as one graph, and what is found in it.
+# What is seen, by domain, -> all of it as one graph, how much of the robots it has, what is found.
 Views = Mapping[int, System]
-Look = Callable[[Views], tuple[System, System, Sequence[Finding]]]
+Look = Callable[[Views], tuple[System, Coverage, Sequence[Finding]]]
 
 
 def follow(
@@ -67,15 +70,19 @@ def _screen(planned: bool) -> Iterator[Show]:
 def _parts(planned: bool, state: WatchState) -> Iterator[str | Grid]:
     yield _headline(planned, state)
     yield ""
-    per_robot = {robot.robot: 0 for robot in state.robots}
-    for finding in state.findings:
-        per_robot[finding.robot] = per_robot.get(finding.robot, 0) + 1
+    findings, held = Counter(it.robot for it in state.findings), state.coverage
     rows = [
-        (it.robot, _of(it.nodes), _of(it.names), str(per_robot[it.robot])) for it in state.robots
+        (
+            it.robot,
+            f"{it.seen}/{it.nodes}" if held.compared else str(it.nodes),
+            str(findings[it.robot]),
+        )
+        for it in held.robots
+        if it.robot
     ]
     # Those with findings first: a screen does not hold a hundred.
-    rows.sort(key=lambda row: row[3] == "0")
-    yield Grid(("robot", "nodes", "names", "findings"), rows[:_SHOWN])
+    rows.sort(key=lambda row: row[2] == "0")
+    yield Grid(("robot", "nodes", "findings"), rows[:_SHOWN])
     yield from _more(len(rows), "robots")
     yield ""
     yield from map(
@@ -90,22 +97,11 @@ def _more(count: int, what: str) -> Iterator[str]:
 
 
 def _headline(planned: bool, state: WatchState) -> str:
-    """One line: how much is there, and what it comes to."""
-    nodes = _of(_sum(it.nodes for it in state.robots))
-    names = _of(_sum(it.names for it in state.robots))
+    """Return one line: how much is there, and what it comes to."""
     moving = state.graph.environment.settled == CHANGING
     words = verdict_words(state.verdict, state.findings, state.coverage, planned)
-    said = "still changing" if moving else words
     found = plural(len(state.findings), "finding")
     gone = [it.robot for it in state.findings if it.code == missing_robot.code]
-    without = f", without {shorten(gone)}" if gone else ""
-    return f"{nodes} nodes, {names} names{without}, {found}: {said}"
-
-
-def _sum(pairs: Iterator[tuple[int, int]]) -> tuple[int, int]:
-    seen, planned = zip((0, 0), *pairs, strict=True)
-    return sum(seen), sum(planned)
-
-
-def _of(pair: tuple[int, int]) -> str:
-    return f"{pair[0]}/{pair[1]}"
+    without = f"without {shorten(gone)}, " if gone else ""
+    verdict = f"{without}{found}: {'still changing' if moving else words}"
+    return with_coverage(state.coverage, verdict)

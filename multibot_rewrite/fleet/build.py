@@ -196,7 +196,7 @@ def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
 
 
 def _remappings(table: Table) -> str:
-    """The rules of every node, in the shape of ``multibot plan --form yaml``; the names that result
+    """The rules of every node, in the shape of ``multibot plan --form json``; the names that result
     are in the plan. Written as text: PyYAML takes longer than all the rest."""
     scalar = cache(quoted)
     robots: dict[str, list[str]] = {}

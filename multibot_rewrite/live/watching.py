@@ -9,8 +9,8 @@ from enum import IntEnum
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.check import ABSENCE
-from multibot_rewrite.system.coverage import Coverage, coverage
-from multibot_rewrite.system.records import CHANGING, System, doubts, nodes_by_robot, surely
+from multibot_rewrite.system.coverage import Coverage
+from multibot_rewrite.system.records import CHANGING, System, doubts
 
 
 class Verdict(IntEnum):
@@ -66,14 +66,6 @@ def verdict_words(
     return f"{words}, with notes on the plan" if gaps else words
 
 
-class Progress(NamedTuple):
-    """How much of a robot's plan is in the graph, each as (in the graph, planned)."""
-
-    robot: str
-    nodes: tuple[int, int]
-    names: tuple[int, int]
-
-
 class WatchState(NamedTuple):
     """One state of a watched graph, and how it differs from the state before.
 
@@ -86,7 +78,6 @@ class WatchState(NamedTuple):
     coverage: Coverage
     appeared: tuple[Finding, ...]
     solved: tuple[Finding, ...]
-    robots: tuple[Progress, ...]
     complete: bool
     verdict: Verdict
     worst: Verdict
@@ -101,7 +92,7 @@ def judge(found: Iterable[Finding], graph: System) -> Verdict:
 
 
 def with_found(
-    plan: System, graph: System, findings: Iterable[Finding], before: WatchState | None
+    graph: System, held: Coverage, findings: Iterable[Finding], before: WatchState | None
 ) -> WatchState:
     """The state of the graph in which these are the findings, after the state before.
 
@@ -109,17 +100,15 @@ def with_found(
     """
     found = tuple(findings)
     old = before.findings if before and before.complete else ()
-    robots = tuple(progress(plan, graph))
     absent = any(finding.code in ABSENCE for finding in found)
     complete = (before is not None and before.complete) or not absent
     verdict = judge(found, graph)
     return WatchState(
         graph,
         found,
-        coverage(plan, graph),
+        held,
         _not_in(old, found),
         _not_in(found, old),
-        robots,
         complete,
         verdict,
         max(before.worst if before else Verdict.PLANNED, _to_remember(found, graph, complete)),
@@ -158,20 +147,3 @@ def final_words(state: WatchState, planned: bool, gaps: Sequence[Finding] = ()) 
         return verdict_words(worst, state.findings, held, planned, gaps)
     now = verdict_words(state.verdict, state.findings, held, planned)
     return f"{now} now, but before: {verdict_words(worst, (), held, planned, gaps)}"
-
-
-def progress(plan: System, graph: System) -> list[Progress]:
-    """How much of each robot's plan is in the graph."""
-    nodes = {node.name for node in graph.nodes}
-    ends = {(end.node, end.kind, end.role, end.name) for end in graph.ends}
-    planned: dict[str, list[bool]] = {}
-    for end in surely(plan).ends:
-        seen = (end.node, end.kind, end.role, end.name) in ends
-        planned.setdefault(end.node, []).append(seen)
-    result, by_robot = [], nodes_by_robot(plan)
-    for robot in plan.robots:
-        own = by_robot[robot.name]
-        names = [seen for node in own for seen in planned.get(node, ())]
-        running = sum(node in nodes for node in own)
-        result.append(Progress(robot.name, (running, len(own)), (sum(names), len(names))))
-    return result

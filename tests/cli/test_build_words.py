@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from refusals import said
 
-from multibot_rewrite.cli import build, check, explain
+from multibot_rewrite.cli import build, explain
 from multibot_rewrite.fleet.manifest import OutputChanges
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
@@ -85,13 +85,6 @@ def test_what_is_taken_for_a_code() -> None:
     assert all(map(explain.are_codes, (["MG101"], ["mb2"], ["MB"], ["MB20X"], ["x,MB202"])))
     assert not any(map(explain.are_codes, ([], [""], ["M"], ["mimic"], ["libMB202.so"])))
     assert explain.is_name("undeclared-link") and not explain.is_name("camera")
-
-
-def test_the_file_of_a_plan() -> None:
-    assert check.plan_name(options(plan="p.yaml", input="i")) == "p.yaml"
-    assert (
-        check.plan_name(options(input="i")) == check.plan_name(options(plan=None, input="i")) == "i"
-    )
 
 
 def test_the_files_that_a_build_was_made_from(tmp_path: Path) -> None:

@@ -328,7 +328,7 @@ def test_a_caveat_is_a_note_or_makes_the_view_incomplete(
 def test_what_a_fleet_was_made_from_is_not_written_over(tmp_path: Path) -> None:
     read = str(tmp_path / "rover.xacro")
     fleet: Any = argparse.Namespace(read=[read])
-    for name in ("output", "sros2", "save_snapshot", "report"):
+    for name in ("output", "save_snapshot", "report"):
         with pytest.raises(UsageError) as caught:
             commands_of_fleets.check_unread(options(**{name: read}), fleet)
         option = f"--{name.replace('_', '-')}"

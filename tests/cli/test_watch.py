@@ -16,13 +16,15 @@ from multibot_rewrite.cli import live
 from multibot_rewrite.cli.multibot import main as multibot
 from multibot_rewrite.cli.watch import Views, follow
 from multibot_rewrite.live.watching import Verdict, WatchState, final
+from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.records import System
 
 MANY = 17
+HELD = "2 robots, 2 nodes each"
 
 
-def look(views: Views) -> tuple[System, System, Sequence[Finding]]:
-    return plan(), views[0], compare(plan(), views[0])
+def look(views: Views) -> tuple[System, Coverage, Sequence[Finding]]:
+    return views[0], coverage(plan(), views[0]), compare(plan(), views[0])
 
 
 def views(*graphs: System, ended: bool = False) -> Generator[Views, None, None]:
@@ -36,12 +38,13 @@ def test_lines_tell_what_came_and_went(capsys: pytest.CaptureFixture[str]) -> No
     state = follow(look, views(moving(half()), healthy(), clash(), healthy(), ended=True))
     assert state is not None and final(state) == Verdict.WRONG
     lines = [it.partition(" s  ")[2] for it in capsys.readouterr().out.splitlines()]
-    assert lines[0].startswith("2/4 nodes, 5/10 names, ") and lines[0].endswith(": still changing")
-    assert lines[1] == "4/4 nodes, 10/10 names, 0 findings: as planned"
+    assert lines[0].startswith(f"{HELD}: all known, 2 of 4 seen; without robot2, ")
+    assert lines[0].endswith(": still changing")
+    assert lines[1] == f"{HELD}: all known, all seen; 0 findings: as planned"
     signs = [it[:2] for it in lines[2:]]
-    assert signs == ["+ ", "4/", "- ", "4/"]
+    assert signs == ["+ ", "2 ", "- ", "2 "]
     assert "MG306" in lines[2] and lines[2].replace("+ ", "- ") == lines[4]
-    assert lines[3].endswith("10/10 names, 1 finding: not as planned")
+    assert lines[3] == f"{HELD}: all known, all seen; 1 finding: not as planned"
 
 
 def test_nothing_seen_is_no_state() -> None:
@@ -62,7 +65,7 @@ def shown(monkeypatch: pytest.MonkeyPatch, found: Sequence[Finding]) -> list[str
     monkeypatch.setenv("LINES", "60")
     monkeypatch.setenv("TERM", "dumb")
     monkeypatch.setattr(sys, "stdout", screen := Terminal())
-    state = follow(lambda it: (plan(), it[0], found), views(healthy()))
+    state = follow(lambda it: (it[0], coverage(plan(), it[0]), found), views(healthy()))
     assert isinstance(state, WatchState)
     return [it.rstrip() for it in screen.getvalue().splitlines()]
 
@@ -79,7 +82,7 @@ def test_a_screen_has_robots_with_findings_and_errors_first(
     lines = shown(monkeypatch, [*notes, finding(ERROR, MANY, "robot2")])
     assert any("18 findings: not as planned" in it for it in lines)
     robots = [it.split() for it in lines if it.split()[:1] in (["robot1"], ["robot2"])]
-    assert robots == [["robot2", "2/2", "5/5", "1"], ["robot1", "2/2", "5/5", "0"]]
+    assert robots == [["robot2", "2/2", "1"], ["robot1", "2/2", "0"]]
     told = [it for it in lines if "MG306" in it]
     assert len(told) == 15 and "error" in told[0] and f"message {MANY}" in told[0]
     assert "and 3 more findings" in lines
@@ -105,6 +108,6 @@ def test_a_robot_that_vanishes_is_named_and_the_last_line_agrees(
         monkeypatch.setattr(live, "watched", lambda _, domains, seen=graphs: views(*seen))
         assert multibot(["check", "--watch"]) == 1
         out, err = capsys.readouterr()
-        assert "robot2 is gone: none of its" in out and ", without robot2, " in out
+        assert "robot2 is gone: none of its" in out and "; without robot2, " in out
         assert told in (out if told == "error" else err)
         assert "0 findings: something is wrong" not in err

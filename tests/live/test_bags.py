@@ -202,7 +202,10 @@ def test_the_command(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, err = run(capsys, *check_, made / "faulty")
     assert code == 1
     assert "MG320 /scan is of no robot" in out and "MG102" in out
-    assert err == "multibot: 2 robots, 2 findings: not as planned\n"
+    assert (
+        err
+        == "multibot: 2 robots, 1 node each: all known, 0 of 2 seen; 2 findings: not as planned\n"
+    )
     assert run(capsys, *check_, made / "faulty", "--ignore", "MG320,MG102")[0] == 0
 
 

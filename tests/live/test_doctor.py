@@ -253,7 +253,7 @@ def faulty(code: str, level: str = "error") -> System:
 def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert multibot.main(["check", "--from", saved(tmp_path, nav())]) == 0
     out, err = capsys.readouterr()
-    assert out == "" and err.endswith("multibot: 0 findings: nothing wrong seen\n")
+    assert out == "" and err.endswith("; 0 findings: nothing wrong seen\n")
 
 
 @pytest.mark.slow

@@ -286,7 +286,7 @@ def test_without_a_plan_each_domain_is_judged_and_its_robot_held_against_the_oth
     healthy = {at: running(at, it) for at, it in zip((11, 12), spaces, strict=True)}
     assert main(["check", *saved(tmp_path, healthy)]) == 0
     shown = capsys.readouterr().err
-    assert "domain 11: " in shown and "0 findings: nothing wrong seen" in shown
+    assert "domain 11: " in shown and "; 0 findings: nothing wrong seen" in shown
     broken = {**healthy, 12: running(12, spaces[1], "lidar")}
     page = tmp_path / "page.html"
     words = ["check", *saved(tmp_path, broken), "--fail-on", "warning", "--report", str(page)]

@@ -181,7 +181,7 @@ def one_robot_killed(plan: Path, offset: int) -> Iterator[IO[str]]:
     own = domain(offset)
     with live_fleet.running(own, [node("robot1")], [node("robot2")]) as (one, _), ExitStack() as up:
         lines = up.enter_context(watching(plan, offset))
-        wait_for(lines, "2/2 nodes, 6/6 names")
+        wait_for(lines, "2 robots, 1 node each: all known, all seen; ")
         one.kill()
         up.enter_context(live_fleet.running(own, [node("robot1")]))
         yield lines
@@ -202,7 +202,7 @@ def test_after_its_lease_a_dead_node_is_gone(ros: None, plan: Path) -> None:
     with one_robot_killed(plan, 83) as lines:
         wait_for(lines, "+ /robot1/drive", "MG301")
         wait_for(lines, "- /robot1/drive", "MG301")
-        wait_for(lines, "2/2 nodes", "0 findings", "as planned")
+        wait_for(lines, "2 robots, 1 node each: all known, all seen; ", "0 findings", "as planned")
 
 
 @pytest.mark.deep

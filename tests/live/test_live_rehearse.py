@@ -56,7 +56,8 @@ def test_every_layout_holds(layout: str, tmp_path: Path) -> None:
 
 def assert_it_holds(done: subprocess.CompletedProcess[str], layout: str, file: Path) -> None:
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
-    assert "2 robots, 0 findings: as planned" in done.stderr
+    assert "2 robots, " in done.stderr
+    assert ": all known, all seen; 0 findings: as planned" in done.stderr
     graph = from_json(file.read_bytes(), "graph")
     # The tree is on the graph, too: from the map to every link of both robots.
     assert len({frame.child for frame in graph.edges}) == (9 if layout == "L1" else 18)
@@ -111,7 +112,7 @@ def test_many_robots_share_processes() -> None:
     names = [f"robot{at}" for at in range(1, 13)]
     done = rehearse(6, ROVER, *names, "--stack", "robot_state", "--layout", "L2")
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
-    assert "12 robots, 0 findings: as planned" in done.stderr
+    assert "12 robots, 8 nodes each: all known, all seen; 0 findings: as planned" in done.stderr
 
 
 def test_tf_is_its_own_type_where_it_is_installed(tf2: dict[str, str]) -> None:

@@ -96,14 +96,15 @@ def with_rates(plan: Path) -> Path:
 def test_a_fleet_that_comes_up_while_it_is_watched(plan: Path) -> None:
     own = domain(70)
     with watching(with_rates(plan), own, "--state") as watch:
-        assert "0/2 nodes, 0/6 names" in watch.until("nodes")
+        assert "2 robots, 1 node each: all known, 0 of 2 seen; " in watch.until("2 robots")
         with live_fleet.running(own, rated("robot1", 2), rated("robot2", 2)):
-            watch.until("2/2 nodes, 6/6 names, 0 findings: still changing")
-            watch.until("2/2 nodes, 6/6 names, 0 findings: as planned", 40)
+            watch.until("2 robots, 1 node each: all known, all seen; 0 findings: still changing")
+            watch.until("2 robots, 1 node each: all known, all seen; 0 findings: as planned", 40)
             code, said = watch.end()
     assert code == 0, said
+    held = "2 robots, 1 node each: all known, all seen"
     answered = "multibot: 2 of 2 nodes answered --state\n"
-    assert said == f"{answered}multibot: 2 robots, 0 findings: as planned\n"
+    assert said == f"{answered}multibot: {held}; 0 findings: as planned\n"
 
 
 @pytest.mark.deep
@@ -117,7 +118,7 @@ def test_a_parameter_that_changes_is_seen_although_the_graph_does_not(plan: Path
         assert "/robot2" not in found
         first.send_signal(signal.SIGUSR1)
         watch.until("  - /robot1/drive: error: MG132", 60)
-        assert "as planned" in watch.until("nodes", 60)
+        assert "as planned" in watch.until("2 robots", 60)
         code, said = watch.end()
     assert code == 1, said
 
@@ -129,7 +130,7 @@ def test_the_worst_is_remembered_after_it_went(plan: Path) -> None:
         watching(plan, own) as watch,
         live_fleet.running(own, [node("robot1")], [node("robot2")]),
     ):
-        watch.until("2/2 nodes, 6/6 names")
+        watch.until("2 robots, 1 node each: all known, all seen; ")
         with live_fleet.running(own, STRANGER):
             assert "error" in watch.until("  + /robot1/stranger: error: MG306 uses /robot2/odom")
         watch.until("  - /robot1/stranger: error: MG306 uses /robot2/odom")
@@ -144,7 +145,7 @@ def test_what_goes_away_is_missing_once_the_graph_is_quiet(plan: Path) -> None:
     own = domain(72)
     with watching(plan, own) as watch, live_fleet.running(own, [node("robot1")]):
         with live_fleet.running(own, [node("robot2")]):
-            watch.until("2/2 nodes, 6/6 names")
+            watch.until("2 robots, 1 node each: all known, all seen; ")
         watch.until("  + robot2: inconclusive: MG109")
         watch.until("  + robot2: error: MG109")
         code, _ = watch.end()
@@ -166,7 +167,7 @@ def test_a_terminal_has_a_screen(plan: Path) -> None:
         process.stderr.close()
         assert process.wait(20) == 0, said
     text = shown.decode()
-    assert "2/2 nodes, 6/6 names, 0 findings: as planned" in text
+    assert "2 robots, 1 node each: all known, all seen; 0 findings: as planned" in text
     assert "robot2" in text
     assert "1/1" in text
 
@@ -193,7 +194,7 @@ def test_robots_of_two_domains_are_watched_until_one_leaves(plan: Path) -> None:
         live_fleet.running(other, [{"name": "rviz2"}]),
     ):
         with live_fleet.running(other, [node("robot2")]):
-            watch.until("2/2 nodes, 6/6 names, 0 findings: as planned", 60)
+            watch.until("2 robots, 1 node each: all known, all seen; 0 findings: as planned", 60)
         assert f"in domain {other}" in watch.until("  + robot2: error: MG109", 60)
         code, said = watch.end()
     assert code == 1 and said.endswith(": not as planned\n")

@@ -103,7 +103,10 @@ def test_a_wrong_plan_in_json_is_one_line(
 def test_a_fleet_as_planned(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, err = held(plan, as_planned(plan), capsys)
     assert (code, out) == (0, "")
-    assert err == "multibot: 2 robots, 0 findings: as planned (ROS 2 lyrical)\n"
+    assert err == (
+        "multibot: 2 robots, 24 nodes each: all known, all seen; 0 findings: as planned"
+        " (ROS 2 lyrical)\n"
+    )
 
 
 @pytest.mark.more

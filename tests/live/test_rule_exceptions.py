@@ -14,6 +14,7 @@ from plans import planned as as_plan
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING
 from multibot_rewrite.live.watching import Verdict, WatchState, with_found
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.coverage import coverage
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, Edge, System
 
 TEXT, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"
@@ -233,7 +234,7 @@ def test_nothing_is_called_missing_in_an_incomplete_view(case: Case) -> None:
 
 
 def _state(plan: System, graph: System, before: WatchState | None) -> WatchState:
-    return with_found(plan, graph, check(plan, graph), before)
+    return with_found(graph, coverage(plan, graph), check(plan, graph), before)
 
 
 def test_a_frame_without_the_robots_name_may_still_come_while_a_fleet_starts() -> None:

@@ -5,21 +5,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import pytest
 from graph_cases import environment, moved
 from small_fleet import clash, half, healthy, moving, plan
 
-from multibot_rewrite.live.watching import Progress, Verdict, WatchState, final, with_found
+from multibot_rewrite.live.watching import Verdict, WatchState, final, with_found
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import Caveat, Node, System
+from multibot_rewrite.system.coverage import Coverage
+from multibot_rewrite.system.records import Caveat, System
+
+HELD = Coverage(())
 
 
 def watched(graphs: Iterable[System]) -> list[WatchState]:
     states: list[WatchState] = []
     for graph in graphs:
-        states.append(
-            with_found(plan(), graph, check(plan(), graph), states[-1] if states else None)
-        )
+        states.append(with_found(graph, HELD, check(plan(), graph), states[-1] if states else None))
     return states
 
 
@@ -74,19 +74,3 @@ def test_what_is_wrong_from_the_start_is_announced_when_all_has_come() -> None:
     assert {it.code for it in second.appeared} == {it.code for it in second.findings} == {"MG306"}
     # That robot2 was missing has never been said.
     assert second.solved == ()
-
-
-@pytest.mark.parametrize(
-    ("graph", "robot2"), [(healthy(), ((2, 2), (5, 5))), (half(), ((0, 2), (0, 5)))]
-)
-def test_how_much_of_a_robot_is_there(
-    graph: System, robot2: tuple[tuple[int, int], tuple[int, int]]
-) -> None:
-    (state,) = watched([graph])
-    assert state.robots == (Progress("robot1", (2, 2), (5, 5)), Progress("robot2", *robot2))
-
-
-def test_an_unplanned_node_is_not_counted() -> None:
-    graph = healthy()._replace(nodes=(*healthy().nodes, Node("/robot1/other", "")))
-    (state,) = watched([graph])
-    assert state.robots[0].nodes == (2, 2)

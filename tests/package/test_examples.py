@@ -216,4 +216,7 @@ def test_twenty_robots_are_as_planned(tmp_path: Path, tf2: dict[str, str]) -> No
     done = page_commands.reader(tmp_path, live_commands.domain(99), **tf2).run(
         "multibot rehearse twenty.yaml"
     )
-    assert (done.returncode, "20 robots, 0 findings: as planned" in done.stdout) == (0, True)
+    assert (
+        done.returncode,
+        "20 robots, 8 nodes each: all known, all seen; 0 findings: as planned" in done.stdout,
+    ) == (0, True)

@@ -305,5 +305,6 @@ def test_a_plan_and_a_snapshot_may_be_as_large_as_a_fleet(tmp_path: Path) -> Non
     )
     assert (run.returncode, run.stderr.decode()) == (
         0,
-        "multibot: 2 robots, 0 findings: as planned (ROS 2 jazzy)\n",
+        "multibot: 2 robots, 8 nodes each: all known, all seen; 0 findings: as planned (ROS 2"
+        " jazzy)\n",
     )

@@ -90,7 +90,8 @@ def test_controllers_in_gazebo_start_as_planned(
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
     launched = ["check-launch", str(out / "fleet.launch.py")]
     assert main([*launched, "--plan", str(out / "plan.yaml")]) == 0
-    assert "2 robots, 0 findings: as planned" in capsys.readouterr().err
+    err = capsys.readouterr().err
+    assert "multibot: 2 robots, " in err and "; 0 findings: as planned" in err
 
 
 def rovers(folder: Path, text: str) -> list[str]:

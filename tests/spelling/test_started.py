@@ -4,19 +4,18 @@
 from __future__ import annotations
 
 import argparse
-import ast
+import json
 import re
 import shlex
 
 import pytest
-import yaml
 from paths import ROBOTS
 
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table_formats import FORMS
-from multibot_rewrite.spelling.ways import arguments, started
+from multibot_rewrite.spelling.ways import arguments, launch_arguments, started
 
 GZ = str(ROBOTS / "rover_gz.urdf")
 
@@ -86,15 +85,13 @@ def test_a_host_is_started_with_the_rules_of_its_nodes_first() -> None:
 
 
 @pytest.mark.parametrize("release", ["humble", "lyrical"])
-def test_the_launch_form_has_each_key_once_and_what_is_started_alone(release: str) -> None:
-    module = ast.parse(FORMS["launch"](table(release, "gz_ros2_control")))
-    for found in (it for it in ast.walk(module) if isinstance(it, ast.Dict)):
-        keys = [ast.dump(key) for key in found.keys if key]
-        assert len(keys) == len(set(keys))
-    given = {it.targets[0].id: ast.literal_eval(it.value) for it in module.body}  # type: ignore[attr-defined]
-    assert set(given) == {"NODES", "SPAWNERS"}
-    assert set(given["NODES"]["robot2"]) == {"robot_state_publisher"}
-    spawner = given["SPAWNERS"]["robot2"]["diff_drive_controller"]
+def test_a_launch_file_gives_a_spawner_the_rules_of_its_controller(release: str) -> None:
+    given = {
+        it.node.node: launch_arguments(it)
+        for it in started(table(release, "gz_ros2_control"))
+        if it.node.robot == "robot2"
+    }
+    spawner = given["diff_drive_controller"]
     assert spawner["namespace"] == "/robot2"
     rules = ["--controller-ros-args", "-r /tf:=tf"] if release == "lyrical" else []
     assert spawner["arguments"] == ["diff_drive_controller", *rules]
@@ -102,7 +99,7 @@ def test_the_launch_form_has_each_key_once_and_what_is_started_alone(release: st
 
 @pytest.mark.more
 def test_the_data_says_where_each_rule_stands() -> None:
-    found = yaml.safe_load(FORMS["yaml"](table("lyrical", "gz_ros2_control", "nav2")))
+    found = json.loads(FORMS["json"](table("lyrical", "gz_ros2_control", "nav2")))
     assert found["distro"] == "lyrical"
     own = found["robots"]["robot1"]
     ways = {node: (it["way"], it["at"]) for node, it in own.items()}
@@ -123,6 +120,3 @@ def test_a_component_is_loaded_with_its_name_namespace_and_rules() -> None:
     assert found["amcl"][:4] == ["-n", "amcl", "--node-namespace", "/robot1"]
     assert found["amcl"][4:] == ["-r", "/tf:=tf", "-r", "/tf_static:=tf_static"]
     assert found["nav2_container"][:3] == ["--ros-args", "-r", "__ns:=/robot1"]
-    made = FORMS["launch"](table("lyrical", "nav2_composed"))
-    assert "\nCOMPONENTS = {" in made
-    assert "ComposableNode(**COMPONENTS[robot][node]" in made

@@ -3,10 +3,7 @@
 
 from __future__ import annotations
 
-import ast
 import json
-
-import yaml
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
@@ -70,72 +67,12 @@ def test_the_arguments_of_what_is_started() -> None:
     )
 
 
-def test_the_tables_for_a_launch_file() -> None:
-    text = FORMS["launch"](TABLE)
-    assert [line for line in text.splitlines() if line.startswith("#")] == [
-        "# ROS 2 jazzy",
-        "# Arguments of nodes, by robot and node: Node(**NODES[robot][node], package=..., ...)",
-        "# Arguments of components, by robot and node:"
-        " ComposableNode(**COMPONENTS[robot][node], package=..., ...)",
-        "# Arguments of spawners of controllers, by robot and node:"
-        " Node(**SPAWNERS[robot][node], ...)",
-    ]
-    found = {
-        it.targets[0].id: ast.literal_eval(it.value)  # type: ignore[attr-defined]
-        for it in ast.parse(text).body
-        if isinstance(it, ast.Assign)
-    }
-    place = {"namespace": "/a", "remappings": []}
-    rules = [("helper:/scan", "scan"), ("/tf", "tf"), ("/<x>", "x")]
-    assert found == {
-        "NODES": {
-            "all robots": {
-                "map_server": {"namespace": "/", "name": "map_server", "remappings": []}
-            },
-            "a": {
-                "driver": {**place, "name": "driver", "remappings": rules},
-                "box": {**place, "name": "box"},
-            },
-        },
-        "COMPONENTS": {
-            "a": {"server": {**place, "name": "server", "remappings": [("/map", "map")]}}
-        },
-        "SPAWNERS": {
-            "a": {
-                "arm": {
-                    "package": "controller_manager",
-                    "executable": "spawner",
-                    "namespace": "/a",
-                    "arguments": ["arm", "--controller-ros-args", "-r /joints:=joints"],
-                }
-            }
-        },
-    }
-
-
-def test_a_table_without_nodes_is_an_empty_table_of_a_launch_file() -> None:
-    text = FORMS["launch"](TABLE._replace(runs=()))
-    assert text.splitlines()[1:] == ["NODES = {", "}"]
+def test_a_table_without_nodes_has_no_lines() -> None:
     assert FORMS["ros-args"](TABLE._replace(runs=())) == ""
-
-
-def test_the_tags_of_a_plugin() -> None:
-    made = TABLE._replace(runs=(node("map", robot=""), node("x", "/<t>:=t"), node("y")))
-    assert FORMS["gazebo"](made) == (
-        "<!-- ROS 2 jazzy -->\n"
-        "<!-- a: x -->\n<ros>\n  <namespace>/a</namespace>\n"
-        "  <remapping>/&lt;t&gt;:=t</remapping>\n</ros>\n"
-        "<!-- a: y -->\n<ros>\n  <namespace>/a</namespace>\n</ros>\n"
-    )
-    shared = TABLE._replace(runs=(node("map", "/x:=y", robot=""),), release="")
-    assert FORMS["gazebo"](shared) == (
-        "<!-- all robots: map -->\n<ros>\n  <remapping>/x:=y</remapping>\n</ros>\n"
-    )
 
 
 def test_the_data_of_a_table() -> None:
     data = json.loads(FORMS["json"](TABLE))
-    assert yaml.safe_load(FORMS["yaml"](TABLE)) == data
     assert list(data) == ["layout", "distro", "robots", "names", "problems"]
     assert (data["layout"], data["distro"]) == ("tf-per-robot", "jazzy")
     assert {

@@ -66,7 +66,7 @@ def inconclusive() -> Scene:
 def not_closed() -> Scene:
     """The graph is as planned, the plan has an open end."""
     plan = nav2_graphs.nav2()
-    words = "as planned, but the plan has faults"
+    words = "nothing wrong seen, but the plan has faults"
     outcome = Outcome(Verdict.PLANNED, words)
     return make_scene(plan, nav2_graphs.healthy(plan), [OPEN_END], outcome)
 

@@ -188,8 +188,8 @@ SOURCE = OptionGroup("where the graph comes from", (FROM, *LIVE.options))
 FINDINGS_OUTPUT = output("write the findings there, not to standard output")
 
 LIVE_CODES = (
-    "0 as planned; 1 findings at the level of --fail-on; 2 wrong use or unreadable input;"
-    " 3 inconclusive: the view may be incomplete; 4 rclpy or its RMW, zenoh or rosbags is"
+    "0 as planned as far as known; 1 findings at the level of --fail-on; 2 wrong use or unreadable"
+    " input; 3 inconclusive: the view may be incomplete; 4 rclpy or its RMW, zenoh or rosbags is"
     " missing or does not start"
 )
 PICTURES = OptionGroup(
