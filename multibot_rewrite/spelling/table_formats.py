@@ -6,9 +6,12 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Callable, Iterator
+from math import inf
 
+from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.ways import (
+    COMPONENT,
     HOST,
     PLUGIN,
     PROCESS,
@@ -18,6 +21,7 @@ from multibot_rewrite.spelling.ways import (
     arguments,
     deliveries,
     key_of,
+    launch_arguments,
     rules_by_taker,
     started,
 )
@@ -37,7 +41,7 @@ def ros_args(table: Table) -> str:
 
 
 def _comment(table: Table) -> str:
-    """Return a line that says whose facts the table rests on, for shells."""
+    """A line that says whose facts the table rests on, for shells and Python."""
     return f"# ROS 2 {table.release}\n" if table.runs else ""
 
 
@@ -47,8 +51,45 @@ def _ros_args(it: Started) -> str:
     return f"# {it.node.robot or EVERY_ROBOT}: {it.node.node}{by}\n{line}\n"
 
 
+def launch(table: Table) -> str:
+    """Python for a launch file: robot -> node -> arguments, by what is started for the nodes."""
+    found = list(started(table))
+    return _comment(table) + "".join(_launch_table(found, *it) for it in _LAUNCH)
+
+
+_LAUNCH = (
+    (PROCESS, "NODES", "nodes", "Node", "package=..., "),
+    (COMPONENT, "COMPONENTS", "components", "ComposableNode", "package=..., "),
+    (SPAWNER, "SPAWNERS", "spawners of controllers", "Node", ""),
+)
+
+
+def _launch_table(found: list[Started], way: str, name: str, *words: str) -> str:
+    what, action, package = words
+    rows = [
+        f"# Arguments of {what}, by robot and node: {action}(**{name}[robot][node], {package}...)\n"
+    ]
+    rows.append(f"{name} = {{\n")
+    own = [it for it in found if it.way == way]
+    if not own and way != PROCESS:
+        return ""
+    for robot in dict.fromkeys(it.node.robot for it in own):
+        rows.append(f"    {(robot or EVERY_ROBOT)!r}: {{\n")
+        for it in own:
+            rows += _launch_row(it) if it.node.robot == robot else ()
+        rows.append("    },\n")
+    return "".join([*rows, "}\n"])
+
+
+def _launch_row(it: Started) -> Iterator[str]:
+    yield f"        {it.node.node!r}: {{\n"
+    for key, value in launch_arguments(it).items():
+        yield f"            {json.dumps(key)}: {value!r},\n"
+    yield "        },\n"
+
+
 def as_data(table: Table) -> dict[str, object]:
-    """Return the table as plain data, as in JSON."""
+    """The table as plain data, as in the YAML and JSON formats."""
     return {
         "layout": table.layout,
         "distro": table.release,
@@ -85,6 +126,30 @@ def as_json(table: Table) -> str:
     return json.dumps(as_data(table), indent=1) + "\n"
 
 
+def as_yaml(table: Table) -> str:
+    """YAML of ``as_data``."""
+    import yaml
+
+    return str(yaml.safe_dump(as_data(table), sort_keys=False, width=inf))
+
+
+def gazebo(table: Table) -> str:
+    """``<ros>`` blocks for Gazebo Classic and gz_ros2_control plugins, one for each node."""
+    blocks = [f"<!-- ROS 2 {table.release} -->\n"] * bool(table.release)
+    for node in table.runs:
+        rows = [f"  <namespace>{node.namespace.translate(ESCAPES)}</namespace>"] * (
+            node.namespace != "/"
+        )
+        rows += [
+            f"  <remapping>{f'{source}:={target}'.translate(ESCAPES)}</remapping>"
+            for source, target in node.rules
+        ]
+        if rows:
+            comment = f"<!-- {node.robot or EVERY_ROBOT}: {node.node} -->"
+            blocks.append("\n".join([comment, "<ros>", *rows, "</ros>"]) + "\n")
+    return "".join(blocks)
+
+
 def given_to(it: Delivery) -> str:
     """Where the rules of a node stand, for people."""
     if it.way == HOST:
@@ -112,5 +177,8 @@ def standing_by_robot(table: Table) -> Iterator[tuple[str, list[Delivery]]]:
 
 FORMS: dict[str, Callable[[Table], str]] = {
     "ros-args": ros_args,
+    "launch": launch,
+    "yaml": as_yaml,
     "json": as_json,
+    "gazebo": gazebo,
 }

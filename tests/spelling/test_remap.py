@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
+import ast
+import json
 import re
 import shlex
 
 import pytest
+import yaml
+from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite.base.naming import make_naming
@@ -18,7 +22,7 @@ from multibot_rewrite.fleet.checks.meeting import robots_meet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table, plugin_nodes
-from multibot_rewrite.spelling.table_formats import FORMS
+from multibot_rewrite.spelling.table_formats import FORMS, as_data
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -297,6 +301,29 @@ def test_ros_args_are_what_rcl_reads() -> None:
         "--ros-args", "-r", "__ns:=/robot1", "-r", "/tf:=tf", "-r", "/tf_static:=tf_static",
     ]  # fmt: skip
     assert "__node:=driver_robot2" in FORMS["ros-args"](table("L4"))
+
+
+def test_launch_form_is_plain_python() -> None:
+    text = FORMS["launch"](table("L1")).partition("NODES = ")[2]
+    nodes = ast.literal_eval(text)
+    assert nodes["robot2"]["robot_state_publisher"] == {
+        "namespace": "/robot2",
+        "name": "robot_state_publisher",
+        "remappings": [("/tf", "tf"), ("/tf_static", "tf_static")],
+    }
+
+
+def test_yaml_and_json_are_the_same_data() -> None:
+    found = table("L4")
+    assert json.loads(FORMS["json"](found)) == json.loads(json.dumps(as_data(found)))
+    assert yaml.safe_load(FORMS["yaml"](found)) == json.loads(FORMS["json"](found))
+
+
+def test_gazebo_form_is_xml_a_plugin_takes() -> None:
+    blocks = etree.fromstring(f"<all>{FORMS['gazebo'](table('L1'))}</all>")
+    block = blocks.find("ros")
+    assert block is not None
+    assert (block.findtext("namespace"), block.findtext("remapping")) == ("/robot1", "/tf:=tf")
 
 
 def test_a_shared_node_keeps_its_namespace_and_name_to_the_letter() -> None:

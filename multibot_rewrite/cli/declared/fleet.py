@@ -41,7 +41,7 @@ from multibot_rewrite.cli.options import (
 )
 
 # The plan, and besides those of ``spelling.table_formats``, which a help text does not import.
-PLAN_FORMS = ("plan", "table", "ros-args", "json", "bridge", "sros2")
+PLAN_FORMS = ("plan", "table", "ros-args", "launch", "yaml", "json", "gazebo", "bridge", "sros2")
 # Those of ``spelling.ways``.
 EVERY_WAY = "all"
 WAYS = ("process", "host", "component", "spawner", "plugin")
@@ -208,8 +208,9 @@ PLAN = Command(
             form(
                 PLAN_FORMS,
                 "plan: for multibot check; remap rules of each node: table, ros-args (lines for a"
-                " shell), json (for programs); bridge: topics for ros_gz_bridge; sros2: a policy with"
-                " an enclave for each robot",
+                " shell), launch (for launch_ros), gazebo (tags of plugins); yaml and json: the rules"
+                " for programs; bridge: topics for ros_gz_bridge; sros2: a policy with an enclave for"
+                " each robot",
             ),
         ),
         NAMING,
