@@ -14,11 +14,13 @@ import signal
 import socket
 import sys
 import tempfile
-from collections.abc import Mapping
-from contextlib import nullcontext
+from collections.abc import Iterator, Mapping
+from contextlib import nullcontext, suppress
 from time import monotonic
+from typing import Any
 
 from multibot_rewrite.base.bounded import load_json
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources import conversation
 from multibot_rewrite.description.sources.child.asking import asking
 from multibot_rewrite.description.sources.child.frames import (
@@ -33,7 +35,7 @@ from multibot_rewrite.description.sources.packages import package_of, sources_ar
 from multibot_rewrite.producers.launch.confined import NOT_FENCED, NotFencedError, confine
 from multibot_rewrite.producers.launch.door import is_there
 from multibot_rewrite.producers.launch.read import UnreadableError, read_graph
-from multibot_rewrite.producers.launch.records import LaunchOrder, orders_of
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, graph_of, orders_of
 from multibot_rewrite.producers.launch.relay import Relay, relayed
 from multibot_rewrite.producers.launch.source_packages import SOURCES, link_sources
 from multibot_rewrite.producers.launch.stand_in import is_stood_in, standing_in
@@ -53,9 +55,13 @@ def main() -> None:
     seconds, orders = orders_of(sys.stdin.read())
     linked: dict[object, str] = {}
     answers: list[object] = []
+    within: set[str] = set()
     end = monotonic() + _MOST_FILES * seconds
     with standing_in() if not is_there() else nullcontext():
         for at, order in enumerate(orders):
+            if os.path.realpath(order.file) in within:
+                answers.append({"graph": LaunchGraph()})
+                continue
             if monotonic() > end:
                 answers.append({"error": "those before it took too long"})
                 continue
@@ -68,7 +74,16 @@ def main() -> None:
             else:
                 os.symlink(f"{first}/{SOURCES}", f"{folder}/{SOURCES}")
             answers.append(_answer(order, folder, first, seconds))
+            if order.every:
+                within.update(_included(answers[-1]))
     sys.stdout.write(json.dumps(answers))
+
+
+def _included(answer: Any) -> Iterator[str]:
+    """The files that a launch file includes: what they start is known with it."""
+    with suppress(InputError, ValueError, TypeError, LookupError, AttributeError):
+        for it in graph_of(answer["graph"]).includes:
+            yield os.path.realpath(it.file)
 
 
 def _answer(order: LaunchOrder, folder: str, first: str, seconds: float) -> object:
