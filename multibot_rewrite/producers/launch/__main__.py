@@ -56,13 +56,13 @@ def main() -> None:
     linked: dict[object, str] = {}
     answers: list[object] = []
     within: set[str] = set()
-    end = monotonic() + _MOST_FILES * seconds
+    left = _MOST_FILES * seconds
     with standing_in() if not is_there() else nullcontext():
         for at, order in enumerate(orders):
             if os.path.realpath(order.file) in within:
                 answers.append({"graph": LaunchGraph()})
                 continue
-            if monotonic() > end:
+            if left <= 0:
                 answers.append({"error": "those before it took too long"})
                 continue
             folder = os.path.join(tempfile.gettempdir(), f"{at}")
@@ -73,9 +73,11 @@ def main() -> None:
                 link_sources(order.file, order.roots, folder)
             else:
                 os.symlink(f"{first}/{SOURCES}", f"{folder}/{SOURCES}")
-            answers.append(_answer(order, folder, first, seconds))
+            answer, spent = _answer(order, folder, first, seconds)
+            answers.append(answer)
+            left -= spent
             if order.every:
-                within.update(_included(answers[-1]))
+                within.update(_included(answer))
     sys.stdout.write(json.dumps(answers))
 
 
@@ -86,8 +88,9 @@ def _included(answer: Any) -> Iterator[str]:
             yield os.path.realpath(it.file)
 
 
-def _answer(order: LaunchOrder, folder: str, first: str, seconds: float) -> object:
-    """What a fork says of one launch file; ``first`` has the links to packages."""
+def _answer(order: LaunchOrder, folder: str, first: str, seconds: float) -> tuple[object, float]:
+    """What a fork says of one launch file, and the time that it took, of the processor where it did not
+    wait; ``first`` has the links to packages."""
     ours, theirs = socket.socketpair()
     pid = os.fork()
     if not pid:
@@ -99,16 +102,17 @@ def _answer(order: LaunchOrder, folder: str, first: str, seconds: float) -> obje
         finally:
             leave(0)
     theirs.close()
+    waited = 0.0
     try:
-        return _listened(ours, seconds)
+        answer = _listened(ours, seconds)
     except TimeoutError:
-        return {"error": f"reading it took more than {seconds:g} s; stopped"}
+        answer, waited = {"error": f"reading it took more than {seconds:g} s; stopped"}, seconds
     except (OSError, EOFError, GarbageError, ValueError, LookupError, TypeError):
-        return {"error": "its process ended before it was read"}
-    finally:
-        ours.close()
-        os.kill(pid, signal.SIGKILL)
-        os.waitpid(pid, 0)
+        answer = {"error": "its process ended before it was read"}
+    ours.close()
+    os.kill(pid, signal.SIGKILL)
+    _, _, used = os.wait4(pid, 0)
+    return answer, max(waited, used.ru_utime + used.ru_stime)
 
 
 def _listened(ours: socket.socket, seconds: float) -> object:
