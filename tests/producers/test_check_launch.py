@@ -343,7 +343,9 @@ def test_the_command_reports_and_compares(
     assert "should publish topic /robot1/tf" in capsys.readouterr().out
     assert code("plan", str(file), "as:=right", "--stack", "nav2") == 2
     assert "--stack" in capsys.readouterr().err
-    assert all(it.trusted for it in orders)  # type: ignore[attr-defined]
+    assert not any(it.trusted for it in orders)  # type: ignore[attr-defined]
+    assert code("check-launch", str(file), "as:=right", "--trust") == 0
+    assert orders[-1].trusted  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(

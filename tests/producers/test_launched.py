@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -18,14 +19,14 @@ from multibot_rewrite.producers.launch.launched import world_files, worlds
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
+    LaunchInclude,
     LaunchNote,
     LaunchOrder,
     ParameterText,
     graph_of,
     launch_order,
-    order_of,
     orders_in_words,
-    to_json,
+    orders_of,
 )
 from multibot_rewrite.system.records import Place
 
@@ -227,10 +228,13 @@ def test_what_an_event_starts_is_optional_and_a_spawner_is_no_node() -> None:
 
 def test_the_records_pass_between_processes() -> None:
     node = AMCL._replace(remappings=(("a", "b"),), parameters=(ParameterText("f", "x: 1"),))
-    graph = LaunchGraph((node._replace(arguments=("-d", "f")),), (LaunchNote(AT, "no"),))
-    assert graph_of(to_json(graph)) == graph
+    include = LaunchInclude(AT, "nav2_bringup/launch/a.launch.py", (("map", "m.yaml"),))
+    graph = LaunchGraph(
+        (node._replace(arguments=("-d", "f")),), (LaunchNote(AT, "no"),), includes=(include,)
+    )
+    assert graph_of(json.loads(json.dumps(graph))) == graph
     order = LaunchOrder("f", (("a", "b"),), ("src",), True)
-    assert order_of(to_json(order)) == order
+    assert orders_of(json.dumps([2.0, [order]])) == (2.0, [order])
 
 
 def test_an_order_is_what_follows_ros2_launch() -> None:
@@ -242,7 +246,7 @@ def test_an_order_is_what_follows_ros2_launch() -> None:
             launch_order(text)
 
 
-def test_a_launch_file_that_nobody_trusts_is_not_run(
+def test_a_launch_file_that_nobody_trusts_writes_nothing(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
     ran = tmp_path_factory.mktemp("ran") / "ran"
@@ -268,7 +272,7 @@ def test_the_nodes_are_all_known_where_only_a_parameter_file_is_not() -> None:
     assert sorted(it.code for it in found.findings) == ["MF821", "MF823"]
     assert "without what the file sets" in " ".join(it.hint for it in found.findings)
     graph = LaunchGraph((AMCL,), (note,))
-    assert graph_of(to_json(graph)) == graph
+    assert graph_of(json.loads(json.dumps(graph))) == graph
     assert graph.whole
 
 

@@ -167,11 +167,6 @@ def test_one_parameter_file_of_a_name_is_filled_in_where_nothing_is(tmp_path: Pa
     assert filled([robot], {"arm"}) == filled([], {"j"}) == {}
 
 
-def test_without_trust_a_parameter_file_stays(package: Path) -> None:
-    with_parameters(package, GIVEN)
-    assert str(package / "config/c.yaml") not in adopt(str(package)).after
-
-
 @pytest.mark.more
 def test_a_parameter_file_of_a_node_that_does_not_run_stays(package: Path) -> None:
     """Nothing proves what it is then; the argument is handed on all the same."""
@@ -240,13 +235,15 @@ def test_one_that_cannot_be_read_at_all_gets_it_and_is_not_proved(package: Path)
     assert any("not proved" in it.why for it in made.left if it.place == str(path))
 
 
-def test_without_trust_no_program_runs_and_it_is_said(package: Path) -> None:
-    path = package / "launch/a.launch.py"
-    path.write_text(f"{LAUNCH}\nraise SystemExit\n")
-    made = adopt(str(package))
-    assert str(path) in made.after
-    (why,) = [it.why for it in made.left if it.place == str(path)]
-    assert "which is proved with --trust alone" in why
+def test_a_launch_file_is_proved_behind_fences(package: Path) -> None:
+    """What it does besides is refused, and it is not proved; ``trust`` lets it."""
+    path, made = package / "launch/a.launch.py", package / "made"
+    path.write_text(f"open({str(made)!r}, 'w')\n{LAUNCH}")
+    found = adopt(str(package))
+    assert str(path) in found.after and not made.exists()
+    (why,) = [it.why for it in found.left if it.place == str(path)]
+    assert "not proved" in why and "--trust" in why
+    assert str(path) in adopt(str(package), trust=True).launches and made.exists()
 
 
 def test_a_plain_srdf_becomes_a_xacro_beside_it(package: Path) -> None:

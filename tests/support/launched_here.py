@@ -41,7 +41,7 @@ _CHANGED = (
 
 def read_here(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
     """From now on ``launch_graph`` asks no other process; ``folder`` gets its temporary files."""
-    monkeypatch.setattr(child, "read_launch_files", lambda orders: [_read(*orders, folder)])
+    monkeypatch.setattr(child, "read_launch_files", lambda orders, _: [_read(*orders, folder)])
 
 
 def _read(order: LaunchOrder, folder: Path) -> LaunchGraph | InputError:

@@ -27,6 +27,7 @@ from multibot_rewrite.system.tool_nodes import is_viewer
 
 # What is not plain.
 UNKNOWN = object()
+_OF_ALL = "/**"
 # For each launch file.
 _SECONDS = 10.0
 # What a build gives each node anyway, or what is of one machine.
@@ -117,6 +118,9 @@ def _read_all(launch: tuple[str, ...], times: tuple[object, ...]) -> list[Readin
     """Read launch files in one process; ``times`` tell their changes."""
     if not launch:
         return []
+    # What others name is read with them.
+    named = {one for one in launch if any(_names(it, one) for it in launch)}
+    launch = tuple(sorted(launch, key=lambda it: it in named))
     read = read_launch_files([LaunchOrder(it, every=True) for it in launch], _SECONDS)
     return [
         Reading(file, LaunchGraph(), _without(f"{it}", file))
@@ -124,6 +128,10 @@ def _read_all(launch: tuple[str, ...], times: tuple[object, ...]) -> list[Readin
         else Reading(file, it)
         for file, it in zip(launch, read, strict=True)
     ]
+
+
+def _names(launch: str, other: str) -> bool:
+    return launch != other and os.path.basename(other) in text_of(launch)
 
 
 def _without(message: str, file: str) -> str:
@@ -276,7 +284,9 @@ def _parameters(it: LaunchedNode) -> Iterator[tuple[str, Any]]:
     """The values that the launch file itself gives, UNKNOWN for those that only a run tells."""
     for given in (one for one in it.parameters if not (one.file or one.source)):
         sections = load_yaml(given.text, it.place.file)
-        for name, value in sections["/**"]["ros__parameters"].items():
+        # A file that the launch makes may have any.
+        own = sections.get(_OF_ALL) if isinstance(sections, dict) else None
+        for name, value in ((own or {}).get("ros__parameters") or {}).items():
             if name not in _USUAL and not name.startswith(_DESCRIPTION):
                 yield name, value
         if given.untold:

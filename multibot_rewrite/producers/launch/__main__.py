@@ -14,11 +14,13 @@ import signal
 import socket
 import sys
 import tempfile
-from collections.abc import Mapping
-from contextlib import nullcontext
+from collections.abc import Iterator, Mapping
+from contextlib import nullcontext, suppress
 from time import monotonic
+from typing import Any
 
 from multibot_rewrite.base.bounded import load_json
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources import conversation
 from multibot_rewrite.description.sources.child.asking import asking
 from multibot_rewrite.description.sources.child.frames import (
@@ -33,7 +35,7 @@ from multibot_rewrite.description.sources.packages import package_of, sources_ar
 from multibot_rewrite.producers.launch.confined import NOT_FENCED, NotFencedError, confine
 from multibot_rewrite.producers.launch.door import is_there
 from multibot_rewrite.producers.launch.read import UnreadableError, read_graph
-from multibot_rewrite.producers.launch.records import LaunchOrder, orders_of
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, graph_of, orders_of
 from multibot_rewrite.producers.launch.relay import Relay, relayed
 from multibot_rewrite.producers.launch.source_packages import SOURCES, link_sources
 from multibot_rewrite.producers.launch.stand_in import is_stood_in, standing_in
@@ -53,10 +55,14 @@ def main() -> None:
     seconds, orders = orders_of(sys.stdin.read())
     linked: dict[object, str] = {}
     answers: list[object] = []
-    end = monotonic() + _MOST_FILES * seconds
+    within: set[str] = set()
+    left = _MOST_FILES * seconds
     with standing_in() if not is_there() else nullcontext():
         for at, order in enumerate(orders):
-            if monotonic() > end:
+            if os.path.realpath(order.file) in within:
+                answers.append({"graph": LaunchGraph()})
+                continue
+            if left <= 0:
                 answers.append({"error": "those before it took too long"})
                 continue
             folder = os.path.join(tempfile.gettempdir(), f"{at}")
@@ -67,12 +73,24 @@ def main() -> None:
                 link_sources(order.file, order.roots, folder)
             else:
                 os.symlink(f"{first}/{SOURCES}", f"{folder}/{SOURCES}")
-            answers.append(_answer(order, folder, first, seconds))
+            answer, spent = _answer(order, folder, first, seconds)
+            answers.append(answer)
+            left -= spent
+            if order.every:
+                within.update(_included(answer))
     sys.stdout.write(json.dumps(answers))
 
 
-def _answer(order: LaunchOrder, folder: str, first: str, seconds: float) -> object:
-    """What a fork says of one launch file; ``first`` has the links to packages."""
+def _included(answer: Any) -> Iterator[str]:
+    """The files that a launch file includes: what they start is known with it."""
+    with suppress(InputError, ValueError, TypeError, LookupError, AttributeError):
+        for it in graph_of(answer["graph"]).includes:
+            yield os.path.realpath(it.file)
+
+
+def _answer(order: LaunchOrder, folder: str, first: str, seconds: float) -> tuple[object, float]:
+    """What a fork says of one launch file, and the time that it took, of the processor where it did not
+    wait; ``first`` has the links to packages."""
     ours, theirs = socket.socketpair()
     pid = os.fork()
     if not pid:
@@ -84,16 +102,17 @@ def _answer(order: LaunchOrder, folder: str, first: str, seconds: float) -> obje
         finally:
             leave(0)
     theirs.close()
+    waited = 0.0
     try:
-        return _listened(ours, seconds)
+        answer = _listened(ours, seconds)
     except TimeoutError:
-        return {"error": f"reading it took more than {seconds:g} s; stopped"}
+        answer, waited = {"error": f"reading it took more than {seconds:g} s; stopped"}, seconds
     except (OSError, EOFError, GarbageError, ValueError, LookupError, TypeError):
-        return {"error": "its process ended before it was read"}
-    finally:
-        ours.close()
-        os.kill(pid, signal.SIGKILL)
-        os.waitpid(pid, 0)
+        answer = {"error": "its process ended before it was read"}
+    ours.close()
+    os.kill(pid, signal.SIGKILL)
+    _, _, used = os.wait4(pid, 0)
+    return answer, max(waited, used.ru_utime + used.ru_stime)
 
 
 def _listened(ours: socket.socket, seconds: float) -> object:

@@ -24,7 +24,8 @@ class LaunchOrder(NamedTuple):
 
     ``roots`` are folders with the sources of packages that are not installed; ``trusted`` lifts the
     fences: a launch file is a program. ``package`` is that of the file where it was named by it.
-    ``every`` asks also for what the file starts with other arguments, whatever its conditions say.
+    ``every`` asks also for what the file starts with other arguments, whatever its conditions say; a
+    file that one of those before it includes starts nothing by itself then.
     """
 
     file: str

@@ -261,6 +261,20 @@ def test_what_cannot_be_read_of_a_launch_file_is_a_line(
     assert not (tmp_path / "b").exists()
 
 
+def test_launch_files_that_wait_are_not_all_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("multibot_rewrite.fleet.proposal.given_by_launch._SECONDS", 1.0)
+    paths = [str(tmp_path / f"{it}.launch.py") for it in "abcd"]
+    for it in paths:
+        Path(it).write_text("import time\ntime.sleep(99)\n")
+    whys = [why for _, _, why in not_read(readings(paths, "robot.urdf", ()))]
+    assert (
+        whys
+        == ["reading it took more than 1 s; stopped"] * 2 + ["those before it took too long"] * 2
+    )
+
+
 def test_a_program_of_a_launch_file_is_not_started(tmp_path: Path) -> None:
     """Its output is empty, and what the file starts besides is read."""
     made = tmp_path / "made"

@@ -22,8 +22,8 @@ CREATE_RULESET, _ADD_RULE, RESTRICT_SELF = 444, 445, 446
 _ASK_VERSION, _BENEATH = 1, 1
 # Bits of rights to files by the version of the interface that first has them all.
 _FILES = {1: 0x1FFF, 2: 0x3FFF, 3: 0x7FFF, 5: 0xFFFF}
-# Read a file, list a folder; write a file, change its length, remove and make files and folders.
-_READ, _WRITE = 0b1100, 0b100000110111110
+# Read a file, list a folder; write a file, change its length, remove, make and move files and folders.
+_READ, _WRITE = 0b1100, 0b110000110111110
 # What of it is said of a file.
 _OF_FILE = 0b100000000000110
 # Bind and connect of TCP; abstract sockets and signals of other processes.

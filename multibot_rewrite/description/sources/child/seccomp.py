@@ -66,11 +66,15 @@ _FILES = {
     # getuid getgid geteuid getegid getppid sched_getaffinity getdents64 clock_getres
     # clock_nanosleep mkdirat newfstatat unlinkat renameat readlinkat faccessat renameat2 statx
     # faccessat2
-    "x86_64": "4 5 6 17 18 19 20 21 32 35 63 74 75 77 78 79 80 82 83 84 87 89 98 99 100 102 104 107 108"
-    " 110 204 217 229 230 258 262 263 264 267 269 316 332 439",
+    "x86_64": (
+        "4 5 6 17 18 19 20 21 32 35 63 74 75 77 78 79 80 82 83 84 87 89 98 99",
+        "100 102 104 107 108 110 204 217 229 230 258 262 263 264 267 269 316 332 439",
+    ),
     # The same but for those that only older processors have.
-    "aarch64": "80 67 68 65 66 23 101 160 82 83 46 17 49 165 179 153 174 176 175 177 173 123 61 114 115"
-    " 34 79 35 38 78 48 276 291 439",
+    "aarch64": (
+        "80 67 68 65 66 23 101 160 82 83 46 17 49 165 179 153 174 176 175 177 173",
+        "123 61 114 115 34 79 35 38 78 48 276 291 439",
+    ),
 }
 # The number of the architecture; mmap and mprotect; openat; ioctl and fcntl.
 _KINDS: Mapping[str, tuple[int, tuple[int, int], int, tuple[int, int]]] = {
@@ -78,7 +82,9 @@ _KINDS: Mapping[str, tuple[int, tuple[int, int], int, tuple[int, int]]] = {
     "aarch64": (0xC00000B7, (222, 226), 56, (29, 25)),
 }
 MACHINES: Mapping[str, Machine] = {
-    name: Machine(audit, _listed(_NUMBERS[name]), memory, _listed(_FILES[name]), opens, asks)
+    name: Machine(
+        audit, _listed(_NUMBERS[name]), memory, _listed(" ".join(_FILES[name])), opens, asks
+    )
     for name, (audit, memory, opens, asks) in _KINDS.items()
 }
 

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a launch file can do behind its fences: each row is a line of Python that one has."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from paths import FIXTURES, ROOT
+
+from multibot_rewrite.description.sources.child import landlock
+from multibot_rewrite.producers.launch.child import read_launch_files
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
+
+# Before it HERE is its folder, OUT one of another package; DONE is what is there when it is done.
+ALLOWED = (
+    "__import__('tempfile').NamedTemporaryFile('w', delete=False).write('a')",
+    "__import__('tempfile').TemporaryDirectory().cleanup()",
+    "(lambda d: (os.makedirs(d + '/a'), open(d + '/a/b', 'w').close(),"
+    " shutil.move(d + '/a/b', d + '/c'), shutil.copy2(d + '/c', d + '/d'),"
+    " shutil.rmtree(d)))(tempfile.mkdtemp())",
+    "open(HERE + '/near.txt').read()", "os.listdir(HERE)", "open(os.devnull, 'w').write('a')",
+    "__import__('xml.dom.minidom').dom.minidom.parseString('<a/>')", "__import__('math').pi",
+    "__import__('random').random()", "__import__('uuid').uuid4()", "os.cpu_count()",
+    "__import__('datetime').datetime.now().astimezone()", "__import__('time').sleep(0.01)",
+    "__import__('socket').gethostname()", "os.environ['HOME']", "os.environ.get('NOBODY_HAS_IT')",
+    "os.chmod(OUT, 0o777)", "os.utime(OUT + '/far.txt')",
+)  # fmt: skip
+REFUSED = (
+    "open(HERE + '/made', 'w')", "open(HERE + '/near.txt', 'a')", "open(OUT + '/far.txt').read()",
+    "os.open(HERE + '/near.txt', os.O_RDONLY | os.O_TRUNC)", "os.remove(HERE + '/near.txt')",
+    "os.mkdir(HERE + '/made')", "os.rename(HERE + '/near.txt', HERE + '/made')",
+    "os.truncate(HERE + '/near.txt', 0)", "os.symlink(OUT, tempfile.gettempdir() + '/l')",
+    "os.link(OUT + '/far.txt', tempfile.gettempdir() + '/l')", "os.listdir(OUT)",
+    "open('/etc/passwd').read()", "os.listdir('/root')", "open('/proc/self/environ', 'rb').read()",
+    "__import__('socket').socket()", "__import__('socket').socketpair()", "os.fork()",
+    "os.execv('/bin/true', ['true'])", "os.posix_spawn('/bin/true', ['true'], {})",
+    "os.kill(os.getppid(), 0)", "os.kill(os.getpid(), 0)",
+    "__import__('fcntl').fcntl(0, __import__('fcntl').F_SETOWN, os.getppid())",
+    "os.environ['A_SECRET']", "os.environ.get('A_SECRET')", "os.getenv('A_SECRET')",
+    "ctypes.CDLL(None, use_errno=True).chmod(OUT.encode(), 0o700) and raised(ctypes.get_errno())",
+)  # fmt: skip
+FILE = """\
+import ctypes, os, shutil, tempfile
+from launch import LaunchDescription
+from launch_ros.actions import Node
+HERE, OUT = os.path.dirname(__file__), 'OUT_OF_IT'
+
+def raised(number):
+    raise PermissionError(number, "")
+
+def generate_launch_description():
+    nodes = [Node(package="p", executable="begun")]
+    for at, line in enumerate(LINES):
+        try:
+            eval(line)
+        except PermissionError:
+            nodes.append(Node(package="refused", executable=str(at)))
+        except BaseException as error:
+            nodes.append(Node(package=repr(error), executable=str(at)))
+    return LaunchDescription(nodes)
+"""
+
+
+@pytest.fixture
+def kept(tmp_path: Path) -> Path:
+    """A folder with a package, in which a launch file will be, and one that is none of its."""
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own/package.xml").write_text("<package><name>own</name></package>")
+    (tmp_path / "other").mkdir(mode=0o755)
+    (tmp_path / "own/near.txt").write_text("near")
+    (tmp_path / "other/far.txt").write_text("far")
+    return tmp_path
+
+
+def there(folder: Path) -> dict[str, tuple[int, int, bytes]]:
+    files = [it for it in folder.rglob("*") if it.suffix != ".py"]
+    return {
+        str(it): (it.stat().st_mode, it.stat().st_mtime_ns, b"" if it.is_dir() else it.read_bytes())
+        for it in files
+    }
+
+
+def read(file: Path, trust: bool = False) -> LaunchGraph:
+    (found,) = read_launch_files([LaunchOrder(str(file), trusted=trust)], 60.0)
+    assert isinstance(found, LaunchGraph), found
+    return found
+
+
+def test_what_a_launch_file_may_do(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All that is refused leaves everything as it was; all else is done."""
+    if not landlock.version():
+        pytest.skip("this kernel has no Landlock")
+    monkeypatch.setenv("A_SECRET", "x")
+    lines = (*ALLOWED, *REFUSED)
+    text = FILE.replace("OUT_OF_IT", str(kept / "other")).replace("LINES", repr(lines))
+    file = kept / "own/a.launch.py"
+    file.write_text(text)
+    before = there(kept)
+    nodes = {(it.package, it.executable) for it in read(file).nodes} - {("p", "begun")}
+    wrong = [
+        (who, lines[int(at)])
+        for who, at in nodes
+        if (who, int(at) < len(ALLOWED)) != ("refused", False)
+    ]
+    assert wrong == []
+    assert {lines[int(at)] for _, at in nodes} == {*REFUSED}
+    assert there(kept) == before
+
+
+ROBOT = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="n"
+ default="d"/><link name="$(arg n)"/><link name="${LINK}"/></robot>"""
+USES = """\
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+import os, subprocess
+file = os.path.join(os.path.dirname(__file__), "r.xacro")
+def generate_launch_description():
+    return LaunchDescription([Node(package="p", executable="e", parameters=[
+        {"a": Command(["xacro ", file, " n:=x"]),
+         "b": subprocess.check_output(["xacro", file], text=True)}])])
+"""
+
+
+@pytest.mark.parametrize(
+    "link", ["1 + 1", "__import__('os').system('true')", "open('/etc/passwd').read()"]
+)
+def test_xacro_of_a_launch_file_has_its_own_fences(link: str, kept: Path) -> None:
+    """Whatever the process of the launch file asks for: it is expanded by one with all of them."""
+    (kept / "own/r.xacro").write_text(ROBOT.replace("LINK", link))
+    (kept / "own/a.launch.py").write_text(USES)
+    found = read(kept / "own/a.launch.py")
+    texts = [it.text.replace("\\", "") for it in found.nodes[0].parameters]
+    if link == "1 + 1":
+        assert not found.notes
+        assert (
+            'name="x"' in texts[0]
+            and 'name="d"' in texts[1]
+            and all('name="2"' in it for it in texts)
+        )
+    else:
+        assert all("is not known" in it.message for it in found.notes) and len(found.notes) == 2
+        assert all("link" not in it for it in texts)
+
+
+def test_what_the_relay_starts_has_all_fences(kept: Path) -> None:
+    """A launch file that asks for a child without fences gets one with all."""
+    made = kept / "made"
+    hostile = (FIXTURES / "hostile/lambda_system.xacro").read_text()
+    robot = hostile.replace('name="target" default=""', f'name="target" default="{made}"')
+    (kept / "own/r.xacro").write_text(robot)
+    lines = "from multibot_rewrite.description.sources import expand, access\n" + USES.replace(
+        'Command(["xacro ", file, " n:=x"])',
+        "expand.expand(file, {}, None, access.TRUSTED).decode()",
+    )
+    (kept / "own/a.launch.py").write_text(lines)
+    (found,) = read_launch_files([LaunchOrder(str(kept / "own/a.launch.py"))], 60.0)
+    assert "refused: os.system" in str(found) and not made.exists()
+
+
+WITHOUT = """\
+import json, sys
+from multibot_rewrite.producers.launch.child import read_launch_files
+from multibot_rewrite.producers.launch.records import LaunchOrder
+def main():
+    orders = [LaunchOrder(sys.argv[1], trusted=it) for it in (False, True)]
+    print(*read_launch_files(orders, 60.0), sep="\\n")
+main()
+"""
+
+
+def test_without_fences_nothing_of_it_runs(kept: Path) -> None:
+    """It says what to do; ``trusted`` reads it all the same."""
+    wrapper = Path(__file__).parents[1] / "support/without_kernel_fences.py"
+    made = f"open({str(kept / 'made')!r}, 'x')\n"
+    (kept / "own/a.launch.py").write_text(made + FILE.replace("LINES", "[]"))
+    (kept / "asks.py").write_text(WITHOUT)
+    environ: Mapping[str, str] = {**os.environ, "PYTHONPATH": f"{kept}:{ROOT}"}
+    line = [sys.executable, str(wrapper), "asks", str(kept / "own/a.launch.py")]
+    done = subprocess.run(line, env=environ, capture_output=True, text=True, check=True)
+    first, second = done.stdout.splitlines()
+    assert "not both Landlock and seccomp" in first and "--trust" in first
+    assert second.startswith("LaunchGraph") and (kept / "made").exists()
