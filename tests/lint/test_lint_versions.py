@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 from urdfdom_cases import (
     CHECK,
-    DECLARED,
     INERTIA,
     JOINTS,
     LINKS,
@@ -87,16 +86,6 @@ def test_links_are_judged_as_urdfdom_does(case: str, version: str, tmp_path: Pat
     said = check_urdf(text, tmp_path)
     assert said.reads, "urdfdom drops what is in a link, and reads the rest"
     assert said.complains == bool(complaints(text, version))
-
-
-@needs_check
-@pytest.mark.parametrize("declared", DECLARED)
-def test_versions_are_read_as_urdfdom_reads_them(declared: str, tmp_path: Path) -> None:
-    text = robot(declared, turned('quat_xyzw="0 0 0 1"'))
-    said, found = check_urdf(text, tmp_path), codes(text)
-    assert said.reads == ("MB124" not in found)
-    if said.reads:
-        assert said.complains == ("MB128" in found)
 
 
 def test_a_valid_file_of_the_newest_version_has_no_finding() -> None:
