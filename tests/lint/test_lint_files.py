@@ -6,12 +6,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from lint_calls import Settings, fix, lint_data, lint_file, lint_files
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.lint.check import lint_data, lint_file
-from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.rules.settings import Settings
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ONE = Settings(select=("MB1",))

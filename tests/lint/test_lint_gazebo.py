@@ -12,11 +12,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from lint_calls import Settings, lint_data
 
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
-from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.rules.schema.described import chunks, described
-from multibot_rewrite.rules.settings import Settings
 
 NEW = Settings(select=("MB11", "MB120", "MB124", "MB125", "MB15", "MB16", "MB17"))
 LINK = (

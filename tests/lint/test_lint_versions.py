@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lint_calls import Settings, fix, lint_data
 from urdfdom_cases import (
     CHECK,
     INERTIA,
@@ -32,9 +33,6 @@ from multibot_rewrite.description.checks.rotation import (
     quaternion_of_rpy,
     rpy_of,
 )
-from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.rules.settings import Settings
 
 needs_check = pytest.mark.skipif(CHECK is None, reason="check_urdf is missing: pip install pin")
 needs_pin = pytest.mark.skipif(

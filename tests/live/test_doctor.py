@@ -8,6 +8,18 @@ from pathlib import Path
 
 import pytest
 from fault_changes import added, nav, shared_tf
+from graph_calls import (
+    GuessedRobot,
+    check,
+    diagnose,
+    from_json,
+    from_yaml,
+    guess_robots,
+    questions,
+    survey,
+    to_json,
+    with_answers,
+)
 from graph_cases import environment, qos
 from graph_faults import FAULTS
 from healthy_systems import (
@@ -24,14 +36,8 @@ from node_answers import told
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.live.diagnose import diagnose, survey
 from multibot_rewrite.producers.bags.recording import RECORDER
 from multibot_rewrite.producers.ros.voices import Voices
-from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.guess import GuessedRobot, guess_robots
-from multibot_rewrite.system.json import from_json, from_yaml, to_json
-from multibot_rewrite.system.parameters import with_answers
-from multibot_rewrite.system.questions import questions
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,
@@ -344,3 +350,16 @@ def test_whether_several_send_a_transform_is_kept_in_a_file() -> None:
     frame = Edge("base_link", "odom", "/tf", False, ("/ekf", "/driver"), True)
     graph = EMPTY._replace(edges=(frame, frame._replace(child="laser", several=False)))
     assert from_json(to_json(graph), "graph.json") == graph
+
+
+def test_a_recording_has_no_nodes_to_count() -> None:
+    recorded = System((), (), (), environment()._replace(rmw="rosbag2"))
+    said = "a recording, no name of a robot in them: one robot, or several that share all names"
+    assert [*survey(diagnose(recorded))] == [said]
+
+
+def test_the_layout_and_tf_topics_are_told() -> None:
+    said = list(survey(diagnose(nav2_with_tools("L1"))))
+    assert said[0] == "2 robots by their namespaces: robot1, robot2"
+    assert "tf-per-robot (L1" in said[1]
+    assert "tf on /robot1/tf: 3 nodes of robot1" in said

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from fault_changes import nav
+from graph_calls import Whose, diagnose, from_json, index, judge, to_json, with_answers
 from graph_cases import qos
 from graph_examples import read_system
 from node_answers import told
@@ -19,18 +20,13 @@ from open_faults import without_edge
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.ros.headers import (
     HeaderSamples,
     SensorTopic,
     pose_in,
     sensor_topics,
 )
-from multibot_rewrite.rules.check import judge
-from multibot_rewrite.system.index import index
-from multibot_rewrite.system.json import from_json, to_json
-from multibot_rewrite.system.ownership import Whose
-from multibot_rewrite.system.parameters import with_answers
+from multibot_rewrite.producers.zenoh.cdr import read_header_frame
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVICE,
@@ -415,3 +411,10 @@ def test_a_pose_stands_behind_the_frames_of_its_message(type_: str, frames: int)
     data = struct.pack("<ii", 1, 2) + struct.pack("<I4s", 4, b"map\0") * frames
     data += bytes(-len(data) % 8) + struct.pack("<7d", 1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
     assert pose_in(type_, b"\0\1\0\0" + data + bytes(36 * 8)) == (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"\x00\x01", serialized("lidar")[:18], b"\x00\x07" + b"\x00" * 40]
+)
+def test_what_is_no_header_has_no_frame(data: bytes) -> None:
+    assert read_header_frame(data) is None

@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import pytest
+from description_calls import NEWEST_LTS, make_naming, spelled
+from graph_calls import ABSENCE, RULES, check, name_ownership
 from graph_cases import (
     environment,
     global_tf,
@@ -20,14 +22,10 @@ from graph_cases import (
     without_node,
 )
 from plans import from_plugin, more, own, planned_end, told, without
-from small_fleet import LINKS, NODES, healthy, plan
+from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 
-from multibot_rewrite.base.naming import make_naming, spelled
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.rules.check import ABSENCE, RULES, check
 from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.system.ownership import name_ownership
 from multibot_rewrite.system.records import (
     MAY,
     PUBLISHES,
@@ -561,3 +559,33 @@ def test_services_that_a_twin_may_hide_are_not_missed() -> None:
     twins = (*graph.nodes, Node("/robot1/driver", "other"))
     assert "MG102" in codes(graph._replace(ends=left))
     assert codes(graph._replace(ends=left, nodes=twins)) == ["MG301"]
+
+
+def test_a_misspelled_name_is_found_by_similarity() -> None:
+    found = check(plan(), moved(healthy(), "/robot1/joint_states", "/robot1/joint_state", "driver"))
+    assert [f.code for f in found] == ["MG303"]
+    assert found[0].hint == (
+        "by the plan /robot1/driver should publish topic /robot1/joint_states, but does not: it "
+        "publishes /robot1/joint_state instead: is the name misspelled in a remap rule or parameter?"
+    )
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_a_sensors_own_frames_are_silent(layout: str) -> None:
+    frame, parent = (
+        ("laser_top", "laser") if layout == "L1" else ("laser_top/robot1", "laser/robot1")
+    )
+    assert check(plan(layout), with_frame(layout, frame, parent)) == []
+
+
+def test_bare_frames_of_two_robots_on_one_topic() -> None:
+    found = check(plan("L1"), global_tf(healthy("L1"), *ROBOTS))
+    assert [f.code for f in found] == ["MG402"]
+    assert sorted(found[0].names) == ["/tf", "base_link", "laser"]
+    assert "robot1 and robot2 send" in found[0].message
+    assert "/tf:=tf" in found[0].hint
+
+
+def test_an_unplanned_node_by_its_affix() -> None:
+    (found,) = check(plan("L4"), with_node(healthy("L4"), "/gripper_robot2"))
+    assert (found.code, found.robot) == ("MG108", "robot2")

@@ -16,25 +16,30 @@ from pathlib import Path
 import nav2_graphs
 import pytest
 from counted_steps import growth
+from graph_calls import to_json, to_yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import html
-from plans import own as nodes_of
-
-from multibot_rewrite.cli import multibot
-from multibot_rewrite.live.watching import Verdict
-from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
-from multibot_rewrite.pages.page import to_html
-from multibot_rewrite.pages.page_sections import only_common, without_common
-from multibot_rewrite.pages.scene import DrawnGroup, Scene, make_scene
-from multibot_rewrite.pages.states import (
+from page_calls import (
     FAULTY,
     MISSING,
     OK,
+    DrawnGroup,
+    Scene,
+    Verdict,
+    clipped,
+    columns,
+    make_scene,
+    only_common,
+    to_html,
+    visible,
+    without_common,
 )
-from multibot_rewrite.pages.svg import clipped, columns, visible
-from multibot_rewrite.spelling.plan_file import to_yaml
-from multibot_rewrite.system.json import to_json
+from plans import own as nodes_of
+
+from multibot_rewrite.cli import multibot
+from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
+from multibot_rewrite.pages.states import CLASH
 from multibot_rewrite.system.records import Edge, Node, System
 
 # What a page is made of.
@@ -434,3 +439,38 @@ def test_a_snapshot_with_unsafe_names_works_with_the_command(
     capsys.readouterr()
     tree = html.document_fromstring((files / "r.html").read_text())
     assert {element.tag for element in tree.iter()} <= TAGS
+
+
+ABSENT = "/robot2/bt_navigator"
+
+
+def test_faults_are_at_the_top() -> None:
+    plan = nav2_graphs.nav2()
+    scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
+    order = [name for name, _ in lay_out(without_common(group(scene, "robot1"))).names]
+    assert [name.name for name in order[:2]] == ["/cmd_vel", "/robot1/cmd_vel"]
+
+
+def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
+    plan = nav2_graphs.nav2()
+    scene = nav2_graphs.scene(plan, nav2_graphs.without_node(nav2_graphs.healthy(plan), ABSENT))
+    assert node_states(scene)[ABSENT] == MISSING
+    own = {e.name for e in plan.ends if e.node == ABSENT}
+    missing = {e.name for e in group(scene, "robot2").edges if e.state == MISSING}
+    assert missing == {name for name in own if "robot2" in name} | {"/tf", "/tf_static"}
+    shown = {
+        edge.name for edge in without_common(group(scene, "robot2")).edges if edge.state == MISSING
+    }
+    # Nobody misses the life cycle of a node that is not there.
+    assert shown == {name for name in missing if "/bt_navigator/" not in name and "tf" not in name}
+
+
+def test_a_frame_with_two_parents_is_red_below_both() -> None:
+    scene = with_frames(nav2_graphs.nav2(), Edge("imu_link/robot1", "map", "/tf", False, ()))
+    (first, second) = (
+        row for tree in scene.trees for row in tree.rows if row.frame == "imu_link/robot1"
+    )
+    assert (first.state, first.faults) == (CLASH, ("two parents",))
+    assert second.repeated and not first.repeated
+    red = [row.frame for tree in scene.trees for row in tree.rows if row.state == CLASH]
+    assert set(red) == {"imu_link/robot1"}

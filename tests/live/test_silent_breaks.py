@@ -369,3 +369,17 @@ READ = "as planned: /robot1/robot_state_publisher subscribes /robot1/joints {}\n
 def test_odometry_that_nobody_sends_is_the_cause(more: str, said_: str) -> None:
     """Of the robot itself: robot2's odometry is sent, and its frames are no cause."""
     assert said(LOOSE + more)["MG406"].startswith(said_)
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_the_description_of_robot1_in_both_publishers(layout: str) -> None:
+    """Its tree is sent twice, that of robot2 not at all, but for the odometry of its driver."""
+
+    def lost(frame: Edge) -> Edge | None:
+        mine = is_of("robot2", frame) and not frame.child.startswith("base_footprint")
+        return None if mine else frame
+
+    (finding,) = hints(layout, reframed(lost)(healthy(layout)), "MG208")
+    assert (finding.robot, finding.level) == ("robot2", ERROR)
+    publisher = named(layout, "robot_state_publisher")
+    assert finding.hint == f"has {publisher} the description of robot2, or that of another robot?"

@@ -4,12 +4,10 @@
 from __future__ import annotations
 
 import pytest
+from graph_calls import ALONE, Index, absences, index
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.rules.check import absences
 from multibot_rewrite.rules.system.unsent import open_ends
-from multibot_rewrite.system.index import Index, index
-from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import MAY, RUNS, End, Place, Sure, System
 
 IMU, SCAN = "sensor_msgs/msg/Imu", "sensor_msgs/msg/LaserScan"

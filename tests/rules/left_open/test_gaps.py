@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is open in a robot, asked of each step alone. What needs and gives what is said here by hand."""
+
+from __future__ import annotations
+
+from lxml import etree
+
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.knowledge.records import Claim
+from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.producers.evidence.hardware import exported
+from multibot_rewrite.producers.interfaces import control_system
+from multibot_rewrite.rules.system.interfaces import Missing, missing
+from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.system.records import Place
+
+SYSTEM = """<robot name="r">
+  <ros2_control name="a" type="system">
+    <joint name="wheel">
+      <command_interface name="velocity"/>
+      <state_interface name="position"/>
+    </joint>
+    <sensor name="imu"><state_interface name="orientation.x"/></sensor>
+    <gpio name="io"><command_interface name="led"/></gpio>
+    <other name="no"><command_interface name="led"/></other>
+  </ros2_control>
+</robot>"""
+
+
+FILE = Place("c.yaml", 3)
+DRIVE = load_nodes(NEWEST_LTS)["ekf_filter_node"]._replace(
+    claims=(Claim("command", "<joints>/velocity", ""), Claim("state", "<joints>/position", ""))
+)
+KNOWN = {"drive": DRIVE}
+
+
+def controller(*joints: str, name: str = "base", manager: str = "controller_manager") -> GivenNode:
+    values = {"joints": Given(list(joints), Place("c.yaml", 9))}
+    return GivenNode(name, "drive", "acme/Drive", values, FILE, manager)
+
+
+def lacking(*given: GivenNode, text: str = SYSTEM) -> list[Missing]:
+    exports = exported(etree.fromstring(text), "r.urdf")
+    return list(missing(control_system(given, KNOWN, exports).interfaces))
+
+
+def claimed(found: list[Missing]) -> list[tuple[str, str]]:
+    return [(it.kind, it.name) for one in found for it in one.claims]
+
+
+def test_a_controller_whose_joints_the_hardware_has() -> None:
+    assert lacking(controller("wheel")) == []
+
+
+def test_the_kind_of_an_interface_counts() -> None:
+    text = SYSTEM.replace("command_interface", "state_interface")
+    assert claimed(lacking(controller("wheel"), text=text)) == [("command", "wheel/velocity")]
+
+
+def test_interfaces_of_another_controller_are_there() -> None:
+    pid = controller("wheel", name="ns/pid")
+    assert lacking(pid, controller("pid/wheel")) == []
+    assert len(claimed(lacking(pid, controller("pi/wheel")))) == 2
