@@ -63,6 +63,7 @@ def test_a_frame_has_the_separator_of_a_link() -> None:
     assert make_naming(separators={"frame": "."}).separators["link"] == "/"
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -96,6 +97,7 @@ AFTER, BEFORE, L2, L1 = (
 )  # fmt: skip
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("naming", "kind", "text", "reached", "new"),
     [

@@ -5,19 +5,22 @@ from __future__ import annotations
 
 import pytest
 from beside import findings_of
+from companion_calls import (
+    NEWEST_LTS,
+    Context,
+    built_in,
+    fill_template,
+    make_context,
+    make_naming,
+    stack_of,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
-from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.template import fill_template
-from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.spelling.table import build_table
 
 LAYOUTS = ("L1", "L2", "L3", "L4")

@@ -5,15 +5,12 @@ from __future__ import annotations
 
 import pytest
 from beside import findings_of
+from companion_calls import NEWEST_LTS, Context, fill_template, make_context, make_naming
 from hypothesis import given
 from hypothesis import strategies as st
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.lua import OWN_FILES, rewrite_lua, tokens_of
-from multibot_rewrite.companions.template import fill_template
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 DECLARED = {"link": {"base_link": None, "imu_link": None}, "joint": {}}

@@ -9,6 +9,26 @@ from pathlib import Path
 import pytest
 import yaml
 from beside import findings_of
+from companion_calls import (
+    NAMESPACE_SLOT,
+    NEWEST_LTS,
+    Splice,
+    all_sections,
+    built_in,
+    built_in_nodes,
+    extend,
+    fill_template,
+    is_for,
+    load_known_nodes,
+    make_context,
+    make_naming,
+    make_template,
+    quoted,
+    raw_sections,
+    read_yaml,
+    rewrite_params,
+    stack_of,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 from made_params import (
@@ -27,18 +47,7 @@ from made_params import (
 from paths import ROOT
 
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.params.lacking_sections import all_sections
-from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.params.sections import is_for, raw_sections
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template, make_template
-from multibot_rewrite.companions.yaml_text import Splice, quoted, read_yaml
-from multibot_rewrite.knowledge.node_library import extend, stack_of
 from multibot_rewrite.knowledge.parameter_entries import KINDS
-from multibot_rewrite.knowledge.parameters import built_in_nodes, load_known_nodes
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.lint import catalogue
 
 INTERFACES = ("command_interfaces", "state_interfaces", "interfaces")
@@ -53,6 +62,7 @@ def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jaz
 # ---------------------------------------------------------------- sections
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("policy", "old", "new"),
     [
@@ -216,6 +226,7 @@ def test_a_repeated_key_is_rewritten_twice() -> None:
 # ---------------------------------------------------------------- names
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("policy", "node", "old", "new"),
     [
@@ -583,6 +594,7 @@ FRAMES = ("base_frame_id: base_link", "odom_frame_id: odom")
 POSITION = "/**/setpoint_position"
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("policy", "source", "found"),
     [
@@ -634,6 +646,7 @@ def test_all_that_is_said_of_a_file(policy: tuple[str, str], source: str, found:
     assert codes(made(source, policy)[1]) == found
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("policy", "source", "kept", "code"),
     [
@@ -665,6 +678,7 @@ def test_what_is_in_the_text_and_said_of_it(
     assert not code or code in codes(findings)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("node", "line", "code", "words"),
     [
@@ -984,6 +998,7 @@ def test_a_word_that_begins_the_names_is_told(word: str, told: bool) -> None:
     assert [it.line for it in findings_of(companion) if "begins" in it.message] == [3] * told
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("pattern", "full", "matches"),
     [

@@ -13,6 +13,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from companion_calls import (
+    NAMESPACE_SLOT,
+    NEWEST_LTS,
+    Context,
+    ParamSection,
+    YamlText,
+    built_in_nodes,
+    fill_template,
+    identify_sections,
+    make_context,
+    make_naming,
+    raw_sections,
+    read_yaml,
+    rewrite_params,
+)
 from params_corpus import (
     POLICIES,
     ROBOT,
@@ -28,18 +43,6 @@ from real_robots import spread
 
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.params.sections import (
-    ParamSection,
-    identify_sections,
-    raw_sections,
-)
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.knowledge.parameters import built_in_nodes
 
 INSTALL = "pip install ros-jazzy-rclpy ros-jazzy-rmw-fastrtps-cpp ros-jazzy-common-interfaces"
 pytestmark = [

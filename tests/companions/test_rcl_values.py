@@ -7,6 +7,7 @@ import json
 import math
 
 import pytest
+from companion_calls import YamlText, flattened, raw_sections, read_yaml
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.params.rcl_parameters import (
@@ -16,8 +17,6 @@ from multibot_rewrite.companions.params.rcl_parameters import (
     parameters_text,
     typed,
 )
-from multibot_rewrite.companions.params.sections import flattened, raw_sections
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 
 TRUE = ["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"]
 FALSE = ["N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"]

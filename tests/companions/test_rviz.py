@@ -168,6 +168,7 @@ ODOMETRY = "Class: rviz_default_plugins/Odometry\nTopic: /odom"
 FIXED_COVARIANCE = config(f"{ODOMETRY}\nCovariance:\n  Orientation:\n    Frame: Fixed")
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("how", "path", "value"),
     [

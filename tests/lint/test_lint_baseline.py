@@ -7,10 +7,10 @@ import json
 from pathlib import Path
 
 import pytest
+from lint_calls import Settings, lint_file
 
 from multibot_rewrite import UsageError
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.baseline import (
     FORMAT,
     Baseline,
@@ -18,7 +18,6 @@ from multibot_rewrite.lint.config.baseline import (
     beyond,
     read_baseline,
 )
-from multibot_rewrite.rules.settings import Settings
 
 
 def finding(

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from lint_calls import Settings, lint_data
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import (
@@ -21,9 +22,7 @@ from multibot_rewrite.base.model import (
     XACRO_FAILED,
     InputError,
 )
-from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.failures import breakdown, failure, lost, too_long
-from multibot_rewrite.rules.settings import Settings
 
 MADE = "a template, in which another program fills in what is missing"
 LACKS = InputError(

@@ -6,12 +6,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from lint_calls import Settings, fix, lint_data, lint_file, lint_files
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.lint.check import lint_data, lint_file
-from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.rules.settings import ArgumentSet, Settings
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ONE = Settings(select=("MB1",))
@@ -150,80 +147,6 @@ def test_a_substitution_is_no_wrong_number() -> None:
     assert codes(f'<robot name="r">{body}</robot>', "MB12", "MB105") == ["MB105", "MB120"]
 
 
-def failed(folder: Path, body: str, **beside: str) -> tuple[str, str, int, int, str, str]:
-    for name, text in beside.items():
-        (folder / f"{name}.xacro").write_text(text)
-    file = folder / "robot.urdf.xacro"
-    file.write_text(f'<robot name="r" {XACRO}>\n{body}\n<link name="last"/></robot>')
-    (found,) = lint_file(str(file), Settings(select=("MB10",)))
-    return found.code, Path(found.file).name, found.line, found.column, found.message, found.hint
-
-
-TWICE = (
-    '<xacro:macro name="leg" params="n">\n<link name="${n}"/>\n'
-    '<link name="${n + m}"/></xacro:macro>'
-)
-
-
-@pytest.mark.sample(1)
-@pytest.mark.parametrize(
-    ("body", "code", "place", "said", "hint"),
-    [
-        ('<link type="t"\n  name="$(arg side)_x"/>', "MB145", (3, 3), "side", "side:=VALUE"),
-        ('<link name="${nope}"/>', "MB103", (2, 7), "'nope' is not defined", "define it"),
-        ("<link name='a'><x>\n${1/0}</x></link>", "MB103", (2, 16), "division by zero", ""),
-        ("<xacro:leg n='a'/>", "MB103", (2, 1), "unknown macro name: xacro:leg", "include"),
-        (f"{TWICE}\n<xacro:leg n='a'/>", "MB103", (4, 7), "macro 'leg' that line 5", "define"),
-        (f"{TWICE}\n<xacro:leg/>", "MB103", (5, 1), "Undefined parameters [n]", "parameters"),
-        (f"{TWICE}\n<xacro:leg n='1'  o='2'/>", "MB103", (5, 19), "Invalid parameter", "params"),
-        ("<xacro:arg name='a'/>", "MB103", (2, 1), "missing attribute", "default"),
-        ("<xacro:if value='maybe'/>", "MB103", (2, 1), "not a boolean", "true"),
-        ("<xacro:insert_block name='b'/>", "MB103", (2, 1), 'Undefined block "b"', "*NAME"),
-        ("<xacro:include filename='nope.xacro'/>", "MB102", (2, 1), "No such file", "path"),
-        (
-            "<xacro:macro name='m'><xacro:m/></xacro:macro><xacro:m/>",
-            "MB103",
-            (2, 23),
-            "rec",
-            "back",
-        ),
-    ],
-)
-def test_a_failed_expansion_is_told_where_it_failed(
-    tmp_path: Path, body: str, code: str, place: tuple[int, int], said: str, hint: str
-) -> None:
-    found = failed(tmp_path, body)
-    assert (found[0], found[2:4]) == (code, place)
-    assert said in found[4]
-    assert hint in found[5]
-
-
-def test_a_failure_in_an_included_file_is_told_there(tmp_path: Path) -> None:
-    library = f"<robot {XACRO}>\n{TWICE}</robot>"
-    body = "<xacro:include filename='lib.xacro'/>\n<xacro:leg n='a'/>"
-    code, file, line, column, message, _ = failed(tmp_path, body, lib=library)
-    assert (code, file, line, column) == ("MB103", "lib.xacro", 4, 7)
-    assert "macro 'leg' that line 3 of robot.urdf.xacro calls" in message
-
-
-def test_broken_xml_in_an_included_file_is_told_there(tmp_path: Path) -> None:
-    found = failed(tmp_path, "<xacro:include filename='lib.xacro'/>", lib="<a>\n<b></a>")
-    assert found[:4] == ("MB103", "lib.xacro", 2, 6)
-
-
-def test_an_argument_that_is_given_is_not_missing(tmp_path: Path) -> None:
-    file = tmp_path / "r.urdf.xacro"
-    file.write_text(f'<robot name="r" {XACRO}><link name="$(arg side)"/></robot>')
-    given = ArgumentSet("*", (("side", "left"),))
-    assert lint_file(str(file), Settings(select=("MB1",), arguments=(given,))) == []
-
-
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
-    for path in (tmp_path / "nope.urdf", tmp_path / "nope.urdf.xacro", tmp_path):
-        (found,) = lint_file(str(path), ONE)
-        assert (found.code, found.line, found.file) == ("MB102", 1, str(path))
-
-
 def test_faults_of_an_expansion_are_told_in_the_source(tmp_path: Path) -> None:
     file = tmp_path / "r.urdf.xacro"
     body = '<xacro:macro name="m" params="n">\n<link name="${n}"><inertail/></link></xacro:macro>'
@@ -231,14 +154,6 @@ def test_faults_of_an_expansion_are_told_in_the_source(tmp_path: Path) -> None:
     found = lint_file(str(file), ONE)
     assert {(it.code, it.line, it.column) for it in found} == {("MB110", 2, 19)}
     assert all(it.calls and not it.edits for it in found)
-
-
-def test_worlds_are_told_one_by_one() -> None:
-    source = (
-        '<?xml version="1.0"?>\n<sdf version="1.9">\n<world name="w"/>\n<world name="v"/></sdf>'
-    )
-    found = lint_data("w.sdf", source.encode(), Settings(select=("MB109",), robots=("r1",)))
-    assert [it.line for it in found] == [3, 4]
 
 
 def test_a_namespace_is_told_where_it_is_declared() -> None:

@@ -7,15 +7,13 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from lint_calls import Settings, fix, lint_data
 from real_robots import spread
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit, ProofError
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.lint import fix as fixing
-from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.rules.settings import Settings
 
 SAMPLE = 120
 BOM = b"\xef\xbb\xbf"

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import jsonschema
 import pytest
+from lint_calls import RULES, ArgumentSet, Settings, lint_file, lint_files
 from lxml import etree
 from markdown_it import MarkdownIt
 from no_workers import lint_in_this_process
@@ -23,10 +24,6 @@ from multibot_rewrite.base.findings import formats
 from multibot_rewrite.base.findings.finding import ERROR, LEVELS, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.formats import FORMATS, Report, text
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.rules.settings import ArgumentSet, Settings
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 NASTY = ("<b>", '"', "|", "a\nb", "%0A", "::error::x", "é😀\u2028", "`*_[x](1)_*`", "\\|", "&amp;")

@@ -12,12 +12,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from lint_calls import Settings, lint_data
 
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
-from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.rules.schema.described import chunks, described
-from multibot_rewrite.rules.schema.sdf_values import misread
-from multibot_rewrite.rules.settings import Settings
 
 NEW = Settings(select=("MB11", "MB120", "MB124", "MB125", "MB15", "MB16", "MB17"))
 LINK = (
@@ -781,45 +779,6 @@ def test_models_of_sdf_are_read_as_well() -> None:
         '<sensor name="s" type="imu"><update_rate>x</update_rate></sensor></link></model></sdf>'
     )
     assert [it.code for it in lint_data("model.sdf", text.encode(), NEW)] == ["MB120"]
-
-
-# As libsdformat 12.3 reads them: Element::Get of the type; None is read as it stands.
-@pytest.mark.parametrize(
-    ("type_", "text", "fails"),
-    [
-        ("double", "1.5", None),
-        ("double", "abc", True),
-        ("double", "30 Hz", False),
-        ("double", "1 2", False),
-        ("double", "true", None),
-        ("double", "0x10", None),
-        ("double", ".5", None),
-        ("double", "-inf", None),
-        ("double", "1e999", True),
-        ("double", "\uff11", True),
-        ("int", "9" * 30, True),
-        ("int", "1.0", None),
-        ("int", "1.5", False),
-        ("unsigned_int", "-3", False),
-        ("unsigned_int", "-1", None),
-        ("bool", "True", None),
-        ("bool", "1.0", True),
-        ("bool", "yes", True),
-        ("vector3", "1 2 3", None),
-        ("vector3", "1 2 3 4", None),
-        ("vector3", "1, 2, 3", True),
-        ("vector3", "1 2", True),
-        ("pose", "0 0 0, 0 0 0", None),
-        ("pose", "0 0 0 0 0", True),
-        ("color", "1 0 0", None),
-        ("color", "2 0 0 1", True),
-        ("string", "anything", None),
-        ("double", "", None),
-    ],
-)
-def test_a_value_is_read_as_libsdformat_reads_it(type_: str, text: str, fails: bool | None) -> None:
-    found = misread(type_, text)
-    assert (found.fails if found else None) == fails
 
 
 def test_a_class_of_hardware_in_a_model_is_no_plugin_of_gazebo() -> None:

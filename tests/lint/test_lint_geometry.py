@@ -11,11 +11,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from lint_calls import RULES, Settings, lint_data
 from paths import ROBOTS
-
-from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.rules.settings import Settings
 
 ROVER = (ROBOTS / "rover_gz.urdf").read_text()
 ARM = (ROBOTS / "two_finger_arm.urdf").read_text()
@@ -30,7 +27,6 @@ LIDAR_AT, CAMERA_AT = 'xyz="0.1 0 0.12"', 'xyz="0.2 0 0.08"'
 RANGE = "<min>0.1</min><max>12</max>"
 OPTICAL = 'rpy="-1.5708 0 -1.5708"'
 CAMERA = "<camera>\n"
-STATE = '<state_interface name="position"/>'
 
 
 class Change(NamedTuple):

@@ -12,11 +12,10 @@ from pathlib import Path
 from struct import pack
 
 import pytest
+from lint_calls import Settings, lint_file
 
 from multibot_rewrite.description.checks.mesh_box import mesh_box
 from multibot_rewrite.description.sources import packages
-from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.rules.settings import Settings
 
 
 def manifest(folder: Path, name: str) -> Path:

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from lint_calls import Settings, lint_data, lint_file
 
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.lint.check import lint_data, lint_file
-from multibot_rewrite.rules.settings import Settings
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 DRIVE = '<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">{}</plugin></gazebo>'

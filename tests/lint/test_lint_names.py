@@ -4,10 +4,7 @@
 from __future__ import annotations
 
 import pytest
-
-from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.rules.settings import Settings
+from lint_calls import Settings, fix, lint_data
 
 MB3 = ("MB3",)
 

@@ -7,12 +7,10 @@ import random
 from pathlib import Path
 
 import pytest
+from lint_calls import RULES, Settings, lint_file
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
-from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.description.physics.inertia import eigenvalues
-from multibot_rewrite.rules.settings import Settings
 
 GROUP = Settings(select=("MB6", "MB115", "MB125"), ignore=("MB609", "MB610", "MB611"))
 WHOLE = Settings(select=("MB609", "MB610", "MB611"))

@@ -7,13 +7,11 @@ import shutil
 from pathlib import Path
 
 import pytest
+from lint_calls import ArgumentSet, Settings, lint_file, lint_files
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.files.named import descriptions_below, robot_name
 from multibot_rewrite.lint.files.pairing import described, named_urdfs
-from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.rules.settings import ArgumentSet, Settings
 
 SHAPE = "<collision><geometry><sphere radius='1'/></geometry></collision>"
 LINK = '<link name="{}">{}</link>'

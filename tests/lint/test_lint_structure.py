@@ -8,14 +8,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from lint_calls import RULES, Settings, lint_file
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.description.checks.links_and_joints import loops, read_robot
 from multibot_rewrite.description.checks.numbers import number, vector
-from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.rules.settings import Settings
 
 GROUP = Settings(select=("MB5", "MB115", "MB124", "MB125", "MB170"))
 BODY = '<visual><geometry><box size="1 1 1"/></geometry></visual>'

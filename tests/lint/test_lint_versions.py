@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lint_calls import Settings, fix, lint_data
 from urdfdom_cases import (
     CHECK,
-    DECLARED,
     INERTIA,
     JOINTS,
     LINKS,
@@ -33,9 +33,6 @@ from multibot_rewrite.description.checks.rotation import (
     quaternion_of_rpy,
     rpy_of,
 )
-from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.rules.settings import Settings
 
 needs_check = pytest.mark.skipif(CHECK is None, reason="check_urdf is missing: pip install pin")
 needs_pin = pytest.mark.skipif(
@@ -87,16 +84,6 @@ def test_links_are_judged_as_urdfdom_does(case: str, version: str, tmp_path: Pat
     said = check_urdf(text, tmp_path)
     assert said.reads, "urdfdom drops what is in a link, and reads the rest"
     assert said.complains == bool(complaints(text, version))
-
-
-@needs_check
-@pytest.mark.parametrize("declared", DECLARED)
-def test_versions_are_read_as_urdfdom_reads_them(declared: str, tmp_path: Path) -> None:
-    text = robot(declared, turned('quat_xyzw="0 0 0 1"'))
-    said, found = check_urdf(text, tmp_path), codes(text)
-    assert said.reads == ("MB124" not in found)
-    if said.reads:
-        assert said.complains == ("MB128" in found)
 
 
 def test_a_valid_file_of_the_newest_version_has_no_finding() -> None:

@@ -8,13 +8,12 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from lint_calls import ArgumentSet, Settings, lint_files
 from no_workers import lint_in_this_process
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.lint.files.included import included
-from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.rules.settings import ArgumentSet, Settings
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 TAKES_SIM = '<xacro:arg name="sim" default=""/>'

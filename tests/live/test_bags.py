@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from graph_calls import check, to_yaml
 
 pytest.importorskip("rosbags")
 
@@ -16,8 +17,6 @@ from made_bags import ROBOTS, SCAN, TEXT, TF, TWIST, Made, healthy, plan, write
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import RecordedTopic, Recording, as_snapshot, counted
-from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import to_yaml
 
 Topics = dict[str, Made]
 

@@ -8,38 +8,39 @@ from pathlib import Path
 
 import pytest
 from fault_changes import added, nav, shared_tf
-from graph_cases import environment, qos, sent
+from graph_calls import (
+    GuessedRobot,
+    check,
+    diagnose,
+    from_json,
+    from_yaml,
+    guess_robots,
+    questions,
+    survey,
+    to_json,
+    with_answers,
+)
+from graph_cases import environment, qos
 from graph_faults import FAULTS
 from healthy_systems import (
-    CLOCK,
     SCAN,
     SYSTEMS,
-    TF,
     TWIST,
     nav2_with_tools,
     plan,
-    simulated,
     single,
     started,
-    with_ends,
     with_node,
 )
 from node_answers import told
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.live.diagnose import diagnose, survey
 from multibot_rewrite.producers.bags.recording import RECORDER
 from multibot_rewrite.producers.ros.voices import Voices
-from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.guess import GuessedRobot, guess_robots
-from multibot_rewrite.system.json import from_json, from_yaml, to_json
-from multibot_rewrite.system.parameters import with_answers
-from multibot_rewrite.system.questions import questions
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,
-    SUBSCRIBES,
     Caveat,
     Edge,
     System,
@@ -102,13 +103,6 @@ def test_the_frames_of_robots_called_otherwise_than_their_namespace() -> None:
     assert seen.whose.robot("/fleet_manager") == ""
 
 
-def test_a_name_within_a_word_is_no_robots() -> None:
-    """``/robot11`` is not robot1's, nor is a topic that only contains the letters."""
-    graph = with_node(nav2_with_tools(), "/robot11_scanner", (PUBLISHES, "/myrobot1/scan", SCAN))
-    robot = diagnose(graph).whose.robot
-    assert (robot("/robot11_scanner"), robot("/myrobot1/scan")) == ("", "")
-
-
 # ---------------------------------------------------------------- close to a fault, and none
 
 
@@ -125,39 +119,12 @@ def test_one_robot_may_have_plain_frames_beside_robots_that_have_not() -> None:
     assert diagnose(graph._replace(edges=tuple(frames))).findings == ()
 
 
-def test_two_servers_that_take_turns_are_one_sender() -> None:
-    graph = nav2_with_tools()
-    for node in ("behavior_server", "docking_server"):
-        graph = with_ends(graph, f"/robot1/{node}", (PUBLISHES, "/robot1/cmd_vel", TWIST))
-    assert diagnose(graph).findings == ()
-
-
-def test_a_bag_that_is_played_to_a_viewer_alone_is_what_bags_are_for() -> None:
-    player = with_node(
-        EMPTY, "/rosbag2_player", (PUBLISHES, "/robot1/scan", SCAN), (PUBLISHES, "/tf", TF)
-    )
-    player = with_node(player, "/rviz2", (SUBSCRIBES, "/robot1/scan", SCAN))
-    assert diagnose(player).findings == ()
-
-
 def test_a_command_typed_under_a_wrong_name_is_an_error() -> None:
     """``ros2 topic pub /cmd_vel``: its node is hidden, and no viewer that sends when it is asked."""
     graph = with_node(nav2_with_tools(), "/_ros2cli_4711", (PUBLISHES, "/cmd_vel", TWIST))
     found = diagnose(graph).findings
     assert [(it.node, it.level) for it in found] == [("/_ros2cli_4711", "error")]
     assert "/robot1/cmd_vel" in str(found[0])
-
-
-def test_tools_on_another_clock_are_none_of_a_robot() -> None:
-    graph = with_ends(simulated("robot1"), "/rosbag2_recorder", (SUBSCRIBES, "/clock", CLOCK))
-    assert diagnose(graph).findings == ()
-
-
-@pytest.mark.more
-def test_a_dock_that_no_robot_owns_may_be_on_a_shared_tf() -> None:
-    graph = nav2_with_tools("L2")
-    dock = Edge("dock", "map", "/tf_static", True, ())
-    assert diagnose(sent(graph._replace(edges=(*graph.edges, dock)))).findings == ()
 
 
 def test_what_is_not_seen_may_be_missing_only_in_the_view() -> None:
@@ -186,13 +153,6 @@ def test_a_reader_that_hears_one_of_two_publishers_is_warned() -> None:
     assert {(it.code, it.level) for it in found} == {("MG307", "warning"), ("MG325", "warning")}
     refused = [it for it in found if it.code == "MG307"]
     assert all("no message of /robot1/rear_lidar ever arrives" in it.hint for it in refused)
-
-
-def test_the_layout_and_tf_topics_are_told() -> None:
-    said = list(survey(diagnose(nav2_with_tools("L1"))))
-    assert said[0] == "2 robots by their namespaces: robot1, robot2"
-    assert "tf-per-robot (L1" in said[1]
-    assert "tf on /robot1/tf: 3 nodes of robot1" in said
 
 
 NO_LAYOUT = "layout: none of those known: neither tf topics nor frames have the robot's name"
@@ -229,12 +189,6 @@ def test_who_sends_on_a_tf_topic_is_told() -> None:
         "tf on /b/tf",
         "tf on /a/tf: 1 node of robot1",
     ]
-
-
-def test_a_recording_has_no_nodes_to_count() -> None:
-    recorded = System((), (), (), environment()._replace(rmw="rosbag2"))
-    said = "a recording, no name of a robot in them: one robot, or several that share all names"
-    assert [*survey(diagnose(recorded))] == [said]
 
 
 # ---------------------------------------------------------------- the command
@@ -276,12 +230,6 @@ def test_an_incomplete_view_is_inconclusive(tmp_path: Path) -> None:
     doubt = Caveat("not-settled", True, "still changing")
     graph = nav()._replace(environment=environment(doubt))
     assert multibot.main(["check", "--from", saved(tmp_path, graph)]) == 3
-
-
-def test_a_graph_without_robots_is_inconclusive(tmp_path: Path) -> None:
-    graph = with_node(EMPTY, "/_ros2cli_4711")
-    assert multibot.main(["check", "--from", saved(tmp_path, graph)]) == 3
-    assert multibot.main(["check", "--from", saved(tmp_path, EMPTY)]) == 3
 
 
 @pytest.mark.more
@@ -402,3 +350,16 @@ def test_whether_several_send_a_transform_is_kept_in_a_file() -> None:
     frame = Edge("base_link", "odom", "/tf", False, ("/ekf", "/driver"), True)
     graph = EMPTY._replace(edges=(frame, frame._replace(child="laser", several=False)))
     assert from_json(to_json(graph), "graph.json") == graph
+
+
+def test_a_recording_has_no_nodes_to_count() -> None:
+    recorded = System((), (), (), environment()._replace(rmw="rosbag2"))
+    said = "a recording, no name of a robot in them: one robot, or several that share all names"
+    assert [*survey(diagnose(recorded))] == [said]
+
+
+def test_the_layout_and_tf_topics_are_told() -> None:
+    said = list(survey(diagnose(nav2_with_tools("L1"))))
+    assert said[0] == "2 robots by their namespaces: robot1, robot2"
+    assert "tf-per-robot (L1" in said[1]
+    assert "tf on /robot1/tf: 3 nodes of robot1" in said

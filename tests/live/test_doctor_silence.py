@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import pytest
 from fault_changes import CHANGE_STATE, added, both
+from graph_calls import diagnose, guess_robots, seen_plan
 from graph_cases import environment, sent
 from healthy_systems import (
     CLOCK,
@@ -22,9 +23,6 @@ from healthy_systems import (
     nav2_with_tools,
 )
 
-from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.live.seen_plan import seen_plan
-from multibot_rewrite.system.guess import guess_robots
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Edge, Node, System
 
 IMU = "sensor_msgs/msg/Imu"

@@ -9,14 +9,13 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from graph_calls import check, read_plan
 from graph_examples import read_example
 from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.enclaves import to_policy
-from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.system.records import System
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")

@@ -10,17 +10,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from fault_changes import nav, shared_tf
+from fault_changes import nav
+from graph_calls import Whose, diagnose, from_json, index, judge, to_json, with_answers
 from graph_cases import qos
-from graph_examples import read_example, read_system
-from healthy_systems import SYSTEMS, plan
+from graph_examples import read_system
 from node_answers import told
 from open_faults import without_edge
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.ros.headers import (
     HeaderSamples,
     SensorTopic,
@@ -28,12 +27,6 @@ from multibot_rewrite.producers.ros.headers import (
     sensor_topics,
 )
 from multibot_rewrite.producers.zenoh.cdr import read_header_frame
-from multibot_rewrite.rules.check import check, judge
-from multibot_rewrite.system.index import index
-from multibot_rewrite.system.json import from_json, to_json
-from multibot_rewrite.system.merging import Look, merged
-from multibot_rewrite.system.ownership import Whose
-from multibot_rewrite.system.parameters import with_answers
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVICE,
@@ -44,7 +37,6 @@ from multibot_rewrite.system.records import (
     Node,
     System,
     answering,
-    clocks,
 )
 
 SCAN, JOINTS = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/JointState"
@@ -93,15 +85,6 @@ def test_a_map_that_nothing_joins_with_its_robot_is_one_finding() -> None:
     assert [it.code for it in diagnose(with_map).findings] == ["MG415"]
 
 
-def test_a_camera_has_several_topics_and_one_finding() -> None:
-    (it,) = found(
-        "frame_id camera_link on /robot1/image", "frame_id camera_link on /robot1/camera_info"
-    )
-    assert (it.code, it.level, it.robot, it.node) == ("MG412", ERROR, "robot1", "/robot1/camera")
-    assert "set the frame of /robot1/camera to robot1/camera_link" in it.hint
-    assert "/robot1/camera_info, /robot1/image" in it.message or "/robot1/image, " in it.message
-
-
 def test_another_robots_frame_is_named_with_both() -> None:
     (it,) = found("frame_id robot2/camera_link on /robot1/image")
     assert (it.code, it.robot) == ("MG411", "robot1")
@@ -112,41 +95,6 @@ def test_a_name_like_none_is_a_warning() -> None:
     (it,) = found("frame_id thermal on /robot1/image")
     assert (it.code, it.level) == ("MG412", WARNING)
     assert "send a transform for it" in it.hint
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        "frame_id robot1/camera_link on /robot1/image",
-        "frame_id /robot1/camera_link on /robot1/image",
-        "frame_id map on /robot1/goal",
-        # A follower's goal is in the frame of the robot in front.
-        "frame_id robot2/camera_link on /robot1/goal",
-        # Nobody publishes it any more.
-        "frame_id camera_link on /robot1/gone",
-    ],
-)
-def test_healthy_headers(line: str) -> None:
-    assert found(line) == []
-
-
-def test_an_empty_frame_and_no_tf_say_nothing() -> None:
-    assert codes(TWO_ROBOTS, "/robot1/image", "") == []
-    without_tf = "".join(it for it in TWO_ROBOTS.splitlines(True) if "transform" not in it)
-    assert codes(without_tf, "/robot1/image", "x") == []
-
-
-@pytest.mark.sample(1)
-@pytest.mark.parametrize("name", SYSTEMS)
-def test_systems_whose_headers_are_right(name: str) -> None:
-    """Every sensor topic in a frame of its robot's tree: a leaf, where there is one."""
-    graph = SYSTEMS[name]()
-    seen = diagnose(graph).whose
-    own = {seen.frame_robot(it.child): it.child for it in graph.edges}
-    topics = [it.name for it in sensor_topics(graph.ends)]
-    names = [Heard(it, own[seen.robot(it)]) for it in topics if seen.robot(it) in own]
-    findings = diagnose(graph._replace(heard=tuple(names))).findings
-    assert [str(it) for it in findings] == []
 
 
 # Messages with a std_msgs/Header that says where they were measured, and some whose word is none of tf:
@@ -228,44 +176,7 @@ def test_a_robots_tf_topic_is_its_own_whoever_sends_there() -> None:
     assert codes(text, "/robot1/scan", "lidar") == ["MG412"]
 
 
-@pytest.mark.more
-def test_check_says_it_as_well() -> None:
-    """With a plan, whether tf is shared or each robot's own; the topic itself is planned."""
-    bare = heard(shared_tf(), "/robot1/scan", "base_link")
-    assert "MG412" in {it.code for it in check(plan(("nav2",), "L2"), bare)}
-    graph = nav()
-    frames = sorted({it.child for it in graph.edges if "robot1" in it.topic})
-    right = heard(graph, "/robot1/scan", frames[0])
-    assert {it.code for it in check(plan(("nav2",), "L1"), right)} <= {"MG108"}
-    other = heard(graph, "/robot1/scan", "no_such_frame")
-    assert "MG412" in {it.code for it in check(plan(("nav2",), "L1"), other)}
-
-
-def test_with_a_plan_the_example_is_found() -> None:
-    """The topic is as planned, and its header is not."""
-    text = """\
-planned: frames of robot1 on /tf: robot1/base_link, robot1/lidar_link
-running: transform robot1/base_link -> robot1/lidar_link on /tf
-as planned: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
-running: frame_id lidar_link on /robot1/scan
-"""
-    assert [it.code for it in check(*read_example(text))] == ["MG412"]
-
-
 # ---------------------------------------------------------------- what is received
-
-
-@pytest.mark.parametrize("mark", [b"\x00\x01", b"\x00\x00"])
-def test_the_frame_of_a_serialized_message(mark: bytes) -> None:
-    assert read_header_frame(serialized("robot1/größe", mark)) == "robot1/größe"
-    assert read_header_frame(serialized("", mark)) == ""
-
-
-@pytest.mark.parametrize(
-    "data", [b"", b"\x00\x01", serialized("lidar")[:18], b"\x00\x07" + b"\x00" * 40]
-)
-def test_what_is_no_header_has_no_frame(data: bytes) -> None:
-    assert read_header_frame(data) is None
 
 
 def end(topic: str, type_: str = SCAN, node: str = "/a") -> End:
@@ -440,18 +351,6 @@ def test_wrong_records_are_said_with_their_place(text: str, said: str) -> None:
     assert said in str(raised.value)
 
 
-def test_looks_from_two_machines_are_joined() -> None:
-    there = nav()._replace(nodes=(Node("/m"), Node("/n")))
-    first = there._replace(heard=(Heard("/b", "x"), Heard("/a", "x")))
-    second = there._replace(heard=(Heard("/a", "x"), Heard("/a", "y")))
-    first = with_answers(first, [told("/n", sim_time=True), told("/m", "active")])
-    second = with_answers(second, [told("/n", "inactive")])
-    both = merged([Look("1", first), Look("2", second)])
-    assert [it[:2] for it in both.heard] == [("/a", "x"), ("/a", "y"), ("/b", "x")]
-    assert [(it.name, it.lifecycle) for it in both.nodes] == [("/m", "active"), ("/n", "inactive")]
-    assert clocks(both) == {"/n": True}
-
-
 def test_the_table_shows_what_was_heard_and_answered(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -512,3 +411,10 @@ def test_a_pose_stands_behind_the_frames_of_its_message(type_: str, frames: int)
     data = struct.pack("<ii", 1, 2) + struct.pack("<I4s", 4, b"map\0") * frames
     data += bytes(-len(data) % 8) + struct.pack("<7d", 1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
     assert pose_in(type_, b"\0\1\0\0" + data + bytes(36 * 8)) == (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"\x00\x01", serialized("lidar")[:18], b"\x00\x07" + b"\x00" * 40]
+)
+def test_what_is_no_header_has_no_frame(data: bytes) -> None:
+    assert read_header_frame(data) is None

@@ -8,7 +8,7 @@ from graph_cases import healthy, read_plan
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.system.records import Caveat, System
+from multibot_rewrite.system.records import System
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")
 
@@ -38,29 +38,3 @@ def test_a_robot_without_joint_states(layout: str) -> None:
     assert finding.level == "error"
     assert "left_wheel" in finding.message
     assert "right_wheel" in finding.message
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_a_robot_whose_publisher_has_another_description(layout: str) -> None:
-    """None of its frames comes, though its nodes run."""
-    (finding,) = found(layout, without(healthy(layout), layout, ()))
-    assert finding.robot == "robot2"
-    assert "description of robot2, or that of another robot" in finding.hint
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_nothing_is_said_where_tf_was_not_looked_at(layout: str) -> None:
-    assert found(layout, healthy(layout)._replace(edges=())) == []
-
-
-def test_in_an_incomplete_view_it_is_inconclusive() -> None:
-    graph = without(healthy("both"), "both", ("left_wheel",))
-    caveat = Caveat("not-settled", True, "the graph changed")
-    seen = graph._replace(environment=graph.environment._replace(caveats=(caveat,)))
-    assert [it.level for it in found("both", seen)] == ["inconclusive"]
-
-
-def test_a_sender_that_is_missing_is_the_finding() -> None:
-    graph = without(healthy("both"), "both", ())
-    nodes = tuple(it for it in graph.nodes if it.name != "/robot2/robot_state_publisher")
-    assert found("both", graph._replace(nodes=nodes)) == []

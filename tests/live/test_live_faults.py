@@ -18,15 +18,11 @@ import live_fleet
 import live_graphs
 import pytest
 import tf2_build
+from description_calls import NEWEST_LTS, builtin_tree, collect, edges_in, read_document
 from paths import ROOT
 from plans import own
 
-from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.library import rewrite
-from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.steps.collect import collect
-from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.spelling.transforms import edges_in
 from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SUBSCRIBES, System
 

@@ -23,12 +23,6 @@ def join(*looks: System) -> System:
     return merged([Look(f"{name}.json", it) for name, it in zip("abcd", looks, strict=False)])
 
 
-def test_each_robot_seen_from_its_own_machine() -> None:
-    both = join(look(node("robot1", ONE)), look(node("robot2", TWO)))
-    assert both.nodes == (node("robot1", ONE), node("robot2", TWO))
-    assert both.environment.participants == 2
-
-
 def test_one_look_is_left_as_it_is() -> None:
     alone = look(node("robot1"), range="SUBNET")
     assert join(alone) is alone
@@ -67,12 +61,6 @@ def test_the_look_that_knows_more_of_an_endpoint_counts() -> None:
         assert join(first, second).ends == (full,)
 
 
-def test_a_node_may_subscribe_twice() -> None:
-    twice = (end("robot1", "/robot1/odom", ONE),) * 2
-    seen = look(node("robot1", ONE), ends=twice)
-    assert join(seen, seen).ends == twice
-
-
 def test_frames_are_joined_with_all_their_publishers() -> None:
     def heard(static: bool, *publishers: str) -> System:
         frame = Edge("base", "odom", "/tf", static, publishers)
@@ -80,17 +68,6 @@ def test_frames_are_joined_with_all_their_publishers() -> None:
 
     (frame,) = join(heard(False, "/robot1/drive"), heard(True, "/robot2/drive")).edges
     assert frame == Edge("base", "odom", "/tf", True, ("/robot1/drive", "/robot2/drive"))
-
-
-def test_transforms_are_in_the_order_of_their_topics_and_names() -> None:
-    edges = [
-        Edge("c", "b", "/tf", False, ()),
-        Edge("b", "a", "/tf", False, (), several=True, rate=2.0),
-        Edge("z", "y", "/a/tf", False, (), rate=3.0),
-    ]
-    slow = edges[1]._replace(several=False, rate=1.0)
-    both = join(look()._replace(edges=edges[:1]), look()._replace(edges=(*edges[1:], slow)))
-    assert both.edges == (edges[2], edges[1], edges[0])
 
 
 def test_what_was_around_the_looks_is_that_of_all() -> None:

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
 import itertools
 import os
 import random
@@ -18,37 +16,32 @@ from pathlib import Path
 import nav2_graphs
 import pytest
 from counted_steps import growth
+from graph_calls import to_json, to_yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import html
-from plans import own as nodes_of
-from plans import told
-
-from multibot_rewrite.base.findings.finding import INCONCLUSIVE
-from multibot_rewrite.cli import multibot
-from multibot_rewrite.live.watching import Verdict
-from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
-from multibot_rewrite.pages.page import to_html
-from multibot_rewrite.pages.page_sections import only_common, without_common
-from multibot_rewrite.pages.scene import DrawnGroup, Scene, make_scene
-from multibot_rewrite.pages.states import (
-    CLASH,
-    CROSS_TALK,
+from page_calls import (
     FAULTY,
-    LEAK,
     MISSING,
     OK,
-    UNEXPECTED,
+    DrawnGroup,
+    Scene,
+    Verdict,
+    clipped,
+    columns,
+    make_scene,
+    only_common,
+    to_html,
+    visible,
+    without_common,
 )
-from multibot_rewrite.pages.svg import clipped, columns, visible
-from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.spelling.plan_file import to_yaml
-from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.records import MAY, PUBLISHES, Caveat, Edge, Node, System, surely
+from plans import own as nodes_of
 
-LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
-CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")
-ABSENT = "/robot2/bt_navigator"
+from multibot_rewrite.cli import multibot
+from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
+from multibot_rewrite.pages.states import CLASH
+from multibot_rewrite.system.records import Edge, Node, System
+
 # What a page is made of.
 TAGS = frozenset(
     re.findall(
@@ -112,105 +105,6 @@ def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
         assert drawn == set(nodes_of(plan, robot.name))
 
 
-@pytest.mark.more
-@pytest.mark.sample(1)
-@pytest.mark.parametrize("layout", nav2_graphs.LAYOUTS)
-def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> None:
-    plan = nav2_graphs.nav2(layout)
-    own = next(w for w in plan.ends if "collision_monitor" in w.node and "scan" in w.code_name)
-    scene = nav2_graphs.scene(
-        plan, nav2_graphs.moved(nav2_graphs.healthy(plan), own.name, "/scan", own.node)
-    )
-    assert states(scene, "robot1")["/scan"] == {LEAK}
-    assert states(scene, "")["/scan"] == {LEAK}
-    assert "/scan" not in states(scene, "robot2")
-    assert node_states(scene)[own.node] == LEAK
-    assert [(r.source, r.target, r.names) for r in scene.crossings] == [
-        ("robot1", "", ("subscribes /scan",))
-    ]
-
-
-@pytest.mark.more
-@pytest.mark.sample(1)
-@pytest.mark.parametrize(
-    ("layout", "topics"),
-    [
-        ("L2", ["/tf and /tf_static"]),
-        ("L4", [f"/tf/robot{n} and /tf_static/robot{n}" for n in "12"]),
-    ],
-)
-def test_a_tree_is_told_with_its_two_topics(layout: str, topics: list[str]) -> None:
-    plan = nav2_graphs.nav2(layout)
-    (section,) = page(nav2_graphs.scene(plan, nav2_graphs.healthy(plan))).xpath(
-        "//section[@id='tf']"
-    )
-    assert [it.text_content() for it in section.xpath("h3")] == topics
-
-
-@pytest.mark.more
-def test_what_is_missing_in_place_of_a_leak_is_drawn() -> None:
-    plan = nav2_graphs.nav2()
-    scene = nav2_graphs.scene(plan, nav2_graphs.moved(nav2_graphs.healthy(plan), *LEAKY))
-    assert states(scene, "robot1")["/robot1/cmd_vel"] == {OK, LEAK, MISSING}
-    assert node_states(scene)["/robot1/collision_monitor"] == LEAK
-
-
-@pytest.mark.more
-def test_cross_talk_is_red_in_both_groups_and_an_arrow_in_the_overview() -> None:
-    plan = nav2_graphs.nav2()
-    scene = nav2_graphs.scene(plan, nav2_graphs.moved(nav2_graphs.healthy(plan), *CROSSED))
-    assert CROSS_TALK in states(scene, "robot1")["/robot1/scan"]
-    assert states(scene, "robot2")["/robot1/scan"] == {CROSS_TALK}
-    assert scene.crossings == (("robot2", "", "robot1", CROSS_TALK, ("subscribes /robot1/scan",)),)
-    drawing = pick(page(scene), "svg", "overview")[0]
-    assert len(pick(drawing, "path", "reach bad")) == 1
-    assert [tile.get("class") for tile in pick(drawing, "g", "tile")] == ["tile bad", "tile bad"]
-
-
-def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
-    plan = nav2_graphs.nav2()
-    scene = nav2_graphs.scene(plan, nav2_graphs.without_node(nav2_graphs.healthy(plan), ABSENT))
-    assert node_states(scene)[ABSENT] == MISSING
-    own = {e.name for e in surely(plan).ends if e.node == ABSENT}
-    missing = {e.name for e in group(scene, "robot2").edges if e.state == MISSING}
-    assert missing == {name for name in own if "robot2" in name} | {"/tf", "/tf_static"}
-    shown = {
-        edge.name for edge in without_common(group(scene, "robot2")).edges if edge.state == MISSING
-    }
-    # Nobody misses the life cycle of a node that is not there.
-    assert shown == {name for name in missing if "/bt_navigator/" not in name and "tf" not in name}
-
-
-def test_a_silent_robot_is_drawn_as_missing_whole() -> None:
-    plan = nav2_graphs.fleet(2, 4)
-    graph = nav2_graphs.without_node(nav2_graphs.healthy(plan), "/robot1/driver")
-    scene = nav2_graphs.scene(plan, nav2_graphs.without_node(graph, "/robot1/planner"))
-    assert {node.state for node in group(scene, "robot1").nodes} == {MISSING}
-    assert {edge.state for edge in group(scene, "robot1").edges} == {MISSING}
-
-
-def test_what_a_plan_leaves_open_is_not_drawn_as_missing() -> None:
-    plan = nav2_graphs.nav2()
-    loose = told(plan, "/robot1/amcl", sure=MAY)
-    scene = nav2_graphs.scene(
-        loose, nav2_graphs.without_node(nav2_graphs.healthy(plan), "/robot1/amcl")
-    )
-    assert "/robot1/amcl" not in node_states(scene)
-    assert FAULTY.isdisjoint(edge.state for edge in group(scene, "robot1").edges)
-
-
-def test_an_unplanned_node_and_an_unplanned_topic() -> None:
-    plan = nav2_graphs.nav2()
-    graph = nav2_graphs.with_end(nav2_graphs.healthy(plan), "/robot1/gripper", "/robot1/grip")
-    scene = nav2_graphs.scene(
-        plan, nav2_graphs.with_end(graph, "/robot1/amcl", "/robot1/debug", PUBLISHES)
-    )
-    assert node_states(scene)["/robot1/gripper"] == UNEXPECTED
-    assert states(scene, "robot1")["/robot1/grip"] == {UNEXPECTED}
-    assert states(scene, "robot1")["/robot1/debug"] == {UNEXPECTED}
-    assert node_states(scene)["/robot1/amcl"] == OK
-
-
 def test_a_tool_with_nothing_of_its_own_is_put_away_and_an_unknown_node_is_not() -> None:
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.healthy(plan)
@@ -222,57 +116,6 @@ def test_a_tool_with_nothing_of_its_own_is_put_away_and_an_unknown_node_is_not()
     light = {n.name for one in scene.groups for n in without_common(one).nodes}
     more = {n.name for one in scene.groups for n in only_common(one).nodes}
     assert "/robot1/gripper" in light and "/rqt_gui" not in light and "/rqt_gui" in more
-
-
-def test_a_clash_of_types_marks_all_ends() -> None:
-    plan = nav2_graphs.nav2()
-    graph = nav2_graphs.healthy(plan)
-    end = next(e for e in graph.ends if e.name == "/robot1/odom" and e.role == PUBLISHES)
-    other = end._replace(type="std_msgs/msg/String", node="/robot1/amcl")
-    scene = nav2_graphs.scene(plan, graph._replace(ends=(*graph.ends, other)))
-    assert states(scene, "robot1")["/robot1/odom"] == {CLASH}
-    (name,) = (n for n in group(scene, "robot1").names if n.name == "/robot1/odom")
-    assert len(name.types) == 2
-
-
-def test_two_nodes_of_one_name_clash() -> None:
-    plan = nav2_graphs.nav2()
-    graph = nav2_graphs.healthy(plan)
-    twin = graph._replace(nodes=(*graph.nodes, Node("/robot1/amcl", "other")))
-    assert node_states(nav2_graphs.scene(plan, twin))["/robot1/amcl"] == CLASH
-
-
-def test_a_node_started_without_its_namespace_is_a_leak() -> None:
-    plan = nav2_graphs.fleet(2, 2)
-    graph = nav2_graphs.healthy(plan)
-    lost = graph._replace(
-        nodes=tuple(n._replace(name=n.name.replace("/robot1/d", "/d")) for n in graph.nodes),
-        ends=tuple(e._replace(node=e.node.replace("/robot1/d", "/d")) for e in graph.ends),
-    )
-    found = node_states(nav2_graphs.scene(plan, lost))
-    assert (found["/driver"], found["/robot1/driver"]) == (LEAK, MISSING)
-
-
-def test_among_what_is_shared_a_robot_is_one_box() -> None:
-    plan = nav2_graphs.nav2()
-    shared = group(nav2_graphs.scene(plan, nav2_graphs.healthy(plan)), "")
-    assert {node.name for node in shared.nodes} == {"robot1", "robot2"}
-    assert all(node.is_robot for node in shared.nodes)
-    assert {name.name for name in shared.names} >= {"/rosout", "/diagnostics", "/tf"}
-
-
-def test_in_an_incomplete_view_the_verdict_is_open() -> None:
-    plan = nav2_graphs.nav2()
-    graph = nav2_graphs.without_node(nav2_graphs.healthy(plan), ABSENT)
-    cut = nav2_graphs.environment(
-        Caveat("participant-limit", True, "the view may be cut off at 32")
-    )
-    scene = nav2_graphs.scene(plan, graph._replace(environment=cut))
-    assert scene.outcome.verdict == Verdict.INCONCLUSIVE
-    assert {finding.level for finding in scene.findings} == {INCONCLUSIVE}
-    header = pick(page(scene), "header")[0].text_content()
-    assert "inconclusive, the view may be incomplete" in header
-    assert "the view may be cut off at 32" in header
 
 
 def test_the_light_picture_and_the_rest_are_the_whole() -> None:
@@ -322,13 +165,6 @@ def assert_apart(places: list[float], gap: float) -> None:
     assert all(b - a >= gap - 0.01 for a, b in itertools.pairwise(order))
 
 
-def test_faults_are_at_the_top() -> None:
-    plan = nav2_graphs.nav2()
-    scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
-    order = [name for name, _ in lay_out(without_common(group(scene, "robot1"))).names]
-    assert [name.name for name in order[:2]] == ["/cmd_vel", "/robot1/cmd_vel"]
-
-
 def test_the_order_leaves_fewer_crossings_than_the_alphabet() -> None:
     plan = nav2_graphs.nav2()
     one = without_common(group(nav2_graphs.scene(plan, nav2_graphs.healthy(plan)), "robot1"))
@@ -351,63 +187,9 @@ def crossings(edges: list[tuple[float, float]]) -> int:
 # ---------------------------------------------------------------- tf
 
 
-@pytest.mark.more
-def test_each_robot_has_its_own_tree_below_a_shared_root() -> None:
-    plan = nav2_graphs.nav2("L2")
-    trees = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)).trees
-    assert [(tree.topic, tree.robot, tree.rows[0].frame) for tree in trees] == [
-        ("/tf", "robot1", "map"),
-        ("/tf", "robot2", "map"),
-    ]
-    assert {row.robot for row in trees[1].rows[1:]} == {"robot2"}
-
-
-@pytest.mark.more
-def test_a_tf_topic_a_robot_is_a_tree_a_robot() -> None:
-    plan = nav2_graphs.nav2("L1")
-    trees = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)).trees
-    assert [tree.topic for tree in trees] == ["/robot1/tf", "/robot2/tf"]
-    assert {row.robot for row in trees[0].rows} == {"robot1"}
-    assert [row.static for row in trees[0].rows[:3]] == [False, False, True]
-
-
 def with_frames(plan: System, *more: Edge) -> Scene:
     graph = nav2_graphs.healthy(plan)
     return nav2_graphs.scene(plan, graph._replace(edges=(*graph.edges, *more)))
-
-
-def test_a_frame_with_two_parents_is_red_below_both() -> None:
-    scene = with_frames(nav2_graphs.nav2(), Edge("imu_link/robot1", "map", "/tf", False, ()))
-    (first, second) = (
-        row for tree in scene.trees for row in tree.rows if row.frame == "imu_link/robot1"
-    )
-    assert (first.state, first.faults) == (CLASH, ("two parents",))
-    assert second.repeated and not first.repeated
-    red = [row.frame for tree in scene.trees for row in tree.rows if row.state == CLASH]
-    assert set(red) == {"imu_link/robot1"}
-
-
-def test_bare_frames_are_red_on_one_robots_topic_only() -> None:
-    scene = with_frames(nav2_graphs.nav2("L1"), Edge("imu_link", "map", "/robot1/tf", False, ()))
-    red = {t.topic for t in scene.trees for row in t.rows if row.state == CLASH}
-    assert red == {"/robot1/tf"}
-
-
-def test_a_declared_frame_that_was_not_heard() -> None:
-    plan = nav2_graphs.nav2()
-    graph = nav2_graphs.healthy(plan)
-    last = plan.robots[1].frames[-1]
-    silent = graph._replace(edges=tuple(f for f in graph.edges if f.child != last))
-    unheard = nav2_graphs.scene(plan, silent).trees[-1]
-    assert (unheard.received, unheard.robot) == (False, "robot2")
-    assert [(row.frame, row.state) for row in unheard.rows] == [(last, MISSING)]
-
-
-def test_without_any_tf_no_frame_is_called_missing() -> None:
-    plan = nav2_graphs.nav2()
-    scene = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)._replace(edges=()))
-    assert scene.trees == ()
-    assert "No tf messages were received" in section(page(scene), "tf").text_content()
 
 
 @pytest.mark.slow
@@ -436,20 +218,6 @@ def test_the_page_is_one_file_that_asks_for_nothing() -> None:
             assert name != "href" or value.startswith("#"), value
     assert "http:" not in text and "https:" not in text and "@import" not in text
     assert set(re.findall(r"url\((.)", text)) <= {"#"}
-
-
-def test_the_policy_allows_only_the_own_script_and_style() -> None:
-    tree = page(nav2_graphs.scene(swarm(), nav2_graphs.healthy(swarm())))
-    (policy,) = (it for it in tree.iter("meta") if it.get("http-equiv"))
-    rules = dict(rule.split(None, 1) for rule in policy.get("content").split("; "))
-    for rule in ("default-src", "base-uri", "form-action"):
-        assert rules.pop(rule) == "'none'"
-    assert set(rules) == {"script-src", "style-src"}
-    for tag, rule in (("script", "script-src"), ("style", "style-src")):
-        (element,) = pick(tree, tag)
-        digest = base64.b64encode(hashlib.sha256(element.text.encode()).digest()).decode()
-        assert rules[rule] == f"'sha256-{digest}'"
-    assert len(pick(tree, "script")[0].text.splitlines()) < 160
 
 
 @pytest.mark.slow
@@ -488,61 +256,6 @@ def test_every_finding_is_listed_and_links_to_what_it_is_about() -> None:
     assert by_code["MG401"] == "lidar_link/robot1"
 
 
-@pytest.mark.more
-def test_a_code_leads_to_what_it_means() -> None:
-    plan = nav2_graphs.nav2()
-    scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
-    tree = page(scene)
-    links = {a.text: a.get("href")[1:] for a in pick(tree, "a", "rule")}
-    assert set(links) == {finding.code for finding in scene.findings}
-    for code, id_ in links.items():
-        folded, rule = section(tree, id_), RULES[code]
-        assert (folded.tag, folded.get("open")) == ("details", None)
-        text = folded.text_content()
-        words = (code, rule.name, rule.what, f"Why: {rule.why}", f"Fix: {rule.fix}")
-        assert all(part.replace("`", "") in text for part in words)
-    assert len(pick(section(tree, "rules"), "details")) == len(links)
-    assert pick(section(tree, "rule-MG401"), "code")[0].text == "publish_tf: false"
-
-
-def test_a_page_without_findings_explains_nothing() -> None:
-    plan = nav2_graphs.nav2()
-    assert "rules" not in page(nav2_graphs.scene(plan, nav2_graphs.healthy(plan))).xpath("//@id")
-
-
-def test_a_fault_of_twenty_robots_is_one_row() -> None:
-    plan = nav2_graphs.fleet(20, 4)
-    graph = nav2_graphs.healthy(plan)
-    for robot in plan.robots:
-        graph = nav2_graphs.moved(graph, f"/{robot.name}/topic1", "/topic1", "driver")
-    scene = nav2_graphs.scene(plan, graph)
-    assert Counter(it.code for it in scene.findings) == {"MG303": 20}
-    rows = pick(page(scene), "details", "finding")
-    assert [pick(row, "a", "rule")[0].text for row in rows] == ["MG303"]
-    for row in rows:
-        (who,) = pick(row, "b", "who")
-        assert who.text == "robot1, robot2, robot3 and 17 more"
-        assert who.get("title").split(", ") == list(scene.robots)
-        assert row.get("data-robot").split() == [str(at) for at in range(20)]
-    (hits,) = (len(row.get("data-hits").split()) for row in rows)
-    # Of each robot two nodes and the name that is missing, and the one in its place.
-    assert hits == 61
-
-
-@pytest.mark.more
-def test_a_small_fleet_is_open_and_the_healthy_of_a_large_one_are_folded() -> None:
-    small = page(
-        nav2_graphs.scene(nav2_graphs.fleet(2, 4), nav2_graphs.healthy(nav2_graphs.fleet(2, 4)))
-    )
-    assert {one.get("open") for one in section(small, "graph").iter("details")} == {""}
-    plan = swarm()
-    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot7/topic1", "/topic1")
-    tree = page(nav2_graphs.scene(plan, graph))
-    assert unfolded(tree) == ["g6", "shared"]
-    (away,) = (it for it in tree.iter("b") if it.text == "29 more robots without findings")
-    assert len(list(away.getparent().getparent().iter("details"))) == 30
-
-
 def unfolded(tree: html.HtmlElement) -> list[str]:
     """The ids of the groups that are open."""
     there = section(tree, "graph").iter("details")
@@ -578,16 +291,6 @@ def test_a_plan_without_robots_is_drawn() -> None:
     empty = System(layout="L2")
     scene = nav2_graphs.scene(empty, System((), (), (), nav2_graphs.environment()))
     assert pick(page(scene), "header") and not pick(page(scene), "svg", "overview")
-
-
-def test_the_environment_is_shown() -> None:
-    plan = nav2_graphs.nav2()
-    around = nav2_graphs.environment(Caveat("range-word", False, "a word that is no range"))
-    around = around._replace(static_peers=("10.0.0.1", "10.0.0.2"), discovery_server="h:11811")
-    scene = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)._replace(environment=around))
-    text = section(page(scene), "environment").text_content()
-    for word in ("SUBNET", "10.0.0.1 10.0.0.2", "rmw_fastrtps_cpp", "h:11811", "3.5 s", "no range"):
-        assert word in text
 
 
 # ---------------------------------------------------------------- the same bytes
@@ -673,11 +376,6 @@ def test_a_clipped_text_fits_and_keeps_its_ends(text: str, room: int) -> None:
     assert shown.isprintable()
 
 
-def test_a_name_is_clipped_in_its_middle() -> None:
-    assert clipped("/robot1/a_very_long_name/costmap", 20) == "/robot1/a…me/costmap"
-    assert visible("a\nb\x1b\u202e\ud800é機") == "a\\nb\\x1b\\u202e\\ud800é機"
-
-
 # ---------------------------------------------------------------- the command
 
 
@@ -741,3 +439,38 @@ def test_a_snapshot_with_unsafe_names_works_with_the_command(
     capsys.readouterr()
     tree = html.document_fromstring((files / "r.html").read_text())
     assert {element.tag for element in tree.iter()} <= TAGS
+
+
+ABSENT = "/robot2/bt_navigator"
+
+
+def test_faults_are_at_the_top() -> None:
+    plan = nav2_graphs.nav2()
+    scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
+    order = [name for name, _ in lay_out(without_common(group(scene, "robot1"))).names]
+    assert [name.name for name in order[:2]] == ["/cmd_vel", "/robot1/cmd_vel"]
+
+
+def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
+    plan = nav2_graphs.nav2()
+    scene = nav2_graphs.scene(plan, nav2_graphs.without_node(nav2_graphs.healthy(plan), ABSENT))
+    assert node_states(scene)[ABSENT] == MISSING
+    own = {e.name for e in plan.ends if e.node == ABSENT}
+    missing = {e.name for e in group(scene, "robot2").edges if e.state == MISSING}
+    assert missing == {name for name in own if "robot2" in name} | {"/tf", "/tf_static"}
+    shown = {
+        edge.name for edge in without_common(group(scene, "robot2")).edges if edge.state == MISSING
+    }
+    # Nobody misses the life cycle of a node that is not there.
+    assert shown == {name for name in missing if "/bt_navigator/" not in name and "tf" not in name}
+
+
+def test_a_frame_with_two_parents_is_red_below_both() -> None:
+    scene = with_frames(nav2_graphs.nav2(), Edge("imu_link/robot1", "map", "/tf", False, ()))
+    (first, second) = (
+        row for tree in scene.trees for row in tree.rows if row.frame == "imu_link/robot1"
+    )
+    assert (first.state, first.faults) == (CLASH, ("two parents",))
+    assert second.repeated and not first.repeated
+    red = [row.frame for tree in scene.trees for row in tree.rows if row.state == CLASH]
+    assert set(red) == {"imu_link/robot1"}

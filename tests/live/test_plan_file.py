@@ -4,14 +4,12 @@
 from __future__ import annotations
 
 import pytest
+from graph_calls import check, read_plan, to_json, to_yaml
 from graph_cases import environment, qos
 from plans import own, planned_end
 
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
-from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import End, Node, System, Topic, alternatives
 
 PLAN = """\

@@ -11,8 +11,21 @@ import nav2_graphs
 import pytest
 import report_pages
 from fault_changes import Fault
+from graph_calls import side_by_side, to_json, to_yaml
 from graph_faults import FAULTS
 from lxml import html
+from page_calls import (
+    BRIDGE,
+    CLASH,
+    MISSING,
+    OK,
+    UNEXPECTED,
+    Scene,
+    ids_of,
+    make_ids,
+    robots_of,
+    to_html,
+)
 from paths import ROOT
 from report_pages import FIRST, SECOND
 
@@ -21,13 +34,6 @@ from multibot_rewrite.cli import multibot
 from multibot_rewrite.cli.pictures import snippets
 from multibot_rewrite.lint.catalogue import rules
 from multibot_rewrite.live.rehearsal import with_substitutes
-from multibot_rewrite.pages.page import to_html
-from multibot_rewrite.pages.page_sections import ids_of, make_ids
-from multibot_rewrite.pages.scene import BRIDGE, Scene
-from multibot_rewrite.pages.states import CLASH, MISSING, OK, UNEXPECTED, robots_of
-from multibot_rewrite.rules.check import side_by_side
-from multibot_rewrite.spelling.plan_file import to_yaml
-from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import ACTION, SERVES, End, Node
 
 GRAPHS = ROOT / "fixtures" / "graphs"

@@ -3,13 +3,9 @@
 
 from __future__ import annotations
 
+from description_calls import NEWEST_LTS, Inventory, builtin_tree, collect, edges_in, read_document
 from paths import FIXTURES
 
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.steps.collect import Inventory, collect
-from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.spelling.transforms import edges_in
 from multibot_rewrite.system.records import edge_of
 
 JOINT = '<joint name="j" type="fixed"><parent>{}</parent><child>tool</child></joint>'

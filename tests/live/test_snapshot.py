@@ -38,10 +38,7 @@ from multibot_rewrite.producers.ros.queries import TopicQueries, with_topic_deta
 from multibot_rewrite.producers.ros.request import Request, from_text, to_text
 from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
 from multibot_rewrite.system.environment import (
-    participants,
-    setting_caveats,
     settings,
-    view_caveats,
 )
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (
@@ -50,7 +47,6 @@ from multibot_rewrite.system.records import (
     QUIET,
     RUNS,
     TIMEOUT,
-    UNKNOWN_NODE,
     Caveat,
     Edge,
     End,
@@ -67,7 +63,6 @@ HARMLESS = Caveat("frames-not-read", False, "tf2_msgs is not there")
 AROUND = Environment(
     7, "LOCALHOST", ("10.0.0.1",), "rmw_fastrtps_cpp", "", False, 2, QUIET, 3.61, (HARMLESS,)
 )
-CALM = settings({})
 
 
 def end(node: str, name: str, role: str = "publishes", **more: Any) -> End:
@@ -96,11 +91,6 @@ SNAPSHOT = System(
 
 def test_a_snapshot_survives_the_file() -> None:
     assert from_json(to_json(SNAPSHOT), "graph.json") == SNAPSHOT
-
-
-def test_an_empty_snapshot_survives_the_file() -> None:
-    empty = System((), (), (), AROUND._replace(caveats=(), static_peers=()))
-    assert from_json(to_json(empty), "graph.json") == empty
 
 
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
@@ -226,118 +216,18 @@ def test_only_what_hides_something_makes_a_view_incomplete() -> None:
 # --- the environment
 
 
-@pytest.mark.parametrize(
-    ("word", "domain"),
-    [("", 0), ("0", 0), ("232", 232), (" 7", 7), ("+7", 7), ("0x1f", 31), ("010", 8)],
-)
-def test_a_domain_is_read_as_rcl_reads_it(word: str, domain: int) -> None:
-    assert settings({"ROS_DOMAIN_ID": word}).domain == domain
-
-
 @pytest.mark.parametrize("word", ["abc", "-1", "1.5", "233", "0x", "08", "7 ", "99999999999"])
 def test_a_wrong_domain_is_reported_before_rcl_exits(word: str) -> None:
     with pytest.raises(UsageError, match=r"ROS_DOMAIN_ID.*give 0 to 232"):
         settings({"ROS_DOMAIN_ID": word})
 
 
-@pytest.mark.parametrize(
-    ("environ", "range_"),
-    [
-        ({}, "SUBNET"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, "OFF"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "subnet"}, "LOCALHOST"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_LOCALHOST_ONLY": "1"}, "LOCALHOST"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_LOCALHOST_ONLY": "0"}, "SUBNET"),
-    ],
-)
-def test_the_range_is_read_as_rcl_reads_it(environ: dict[str, str], range_: str) -> None:
-    assert settings(environ).range == range_
-
-
-def test_peers_and_server_are_read() -> None:
-    environ = {
-        "ROS_STATIC_PEERS": "10.0.0.1;;10.0.0.2",
-        "ROS_DISCOVERY_SERVER": "10.0.0.3:11811",
-        "ROS_SUPER_CLIENT": "TRUE",
-    }
-    asked = settings(environ)
-    assert asked.static_peers == ("10.0.0.1", "10.0.0.2")
-    assert (asked.discovery_server, asked.super_client) == ("10.0.0.3:11811", True)
-
-
-@pytest.mark.parametrize(
-    ("environ", "codes"),
-    [
-        ({}, []),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, []),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "local"}, ["range-word"]),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, ["range-off"]),
-        ({"ROS_LOCALHOST_ONLY": "1"}, ["localhost-only"]),
-        ({"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}, []),
-        ({"RMW_IMPLEMENTATION": "rmw_cyclone"}, ["rmw-word"]),
-        ({"ROS_DISCOVERY_SERVER": "a:1"}, ["no-super-client"]),
-        ({"ROS_DISCOVERY_SERVER": "a:1", "ROS_SUPER_CLIENT": "FALSE"}, ["no-super-client"]),
-        ({"ROS_DISCOVERY_SERVER": "a:1", "ROS_SUPER_CLIENT": "TRUE"}, []),
-    ],
-)
-def test_problems_in_settings_are_caveats(environ: dict[str, str], codes: list[str]) -> None:
-    caveats = list(setting_caveats(environ))
-    assert [caveat.code for caveat in caveats] == codes
-    assert all("\n" not in caveat.message for caveat in caveats)
-
-
 # --- is the view whole?
-
-
-def codes_of(
-    nodes: list[str], ends: list[End], why: str = QUIET, **environ: str
-) -> list[tuple[str, bool]]:
-    records = [Node(name, "") for name in nodes]
-    found = view_caveats(records, ends, settings(environ), why)
-    return [(caveat.code, caveat.incomplete) for caveat in found]
 
 
 def fleet(count: int) -> tuple[list[str], list[End]]:
     nodes = [f"/robot{number}/drive" for number in range(count)]
     return nodes, [end(node, "/heartbeat", process=f"{at:024x}") for at, node in enumerate(nodes)]
-
-
-def test_a_whole_view_has_no_caveat() -> None:
-    assert codes_of(*fleet(3)) == []
-
-
-def test_32_participants_under_localhost_may_be_all_that_can_be_seen() -> None:
-    local = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-    assert codes_of(*fleet(31), **local) == []
-    assert codes_of(*fleet(32), **local) == [("participant-limit", True)]
-    assert codes_of(*fleet(32)) == []
-    assert codes_of(*fleet(32), **local, ROS_DISCOVERY_SERVER="a:1") == []
-
-
-def test_the_participants_are_counted_once() -> None:
-    ends = [end("/a", "/x", process="1"), end("/b", "/y", process="1"), end("/c", "/y")]
-    assert participants(ends) == 1
-
-
-def test_nodes_without_endpoints_are_an_unfinished_view() -> None:
-    assert codes_of(["/a", "/b"], [end("/a", "/x")]) == [("nodes-without-endpoints", True)]
-
-
-def test_endpoints_without_a_known_node_are_an_unfinished_view() -> None:
-    ends = [end("/a", "/x"), end(f"/{UNKNOWN_NODE}", "/y")]
-    assert codes_of(["/a"], ends) == [("node-name-unknown", True)]
-
-
-def test_timeout_nothing_seen_and_same_names_are_caveats() -> None:
-    assert codes_of([], []) == [("nothing-seen", True)]
-    assert codes_of(["/a"], [end("/a", "/x")], TIMEOUT) == [("not-settled", True)]
-    assert codes_of(["/a", "/a"], [end("/a", "/x")]) == [("same-name", False)]
-
-
-def test_expected_nodes_that_are_absent_are_named() -> None:
-    (caveat,) = view_caveats([Node("/a", "")], [end("/a", "/x")], CALM, QUIET, ["/a", "/b", "/x"])
-    assert (caveat.code, caveat.incomplete) == ("expected-not-seen", True)
-    assert "/b;" in caveat.message
 
 
 def test_every_caveat_is_documented() -> None:

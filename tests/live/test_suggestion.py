@@ -9,11 +9,10 @@ import graph_cases
 import pytest
 import small_fleet
 import yaml
+from graph_calls import GuessedRobot, diagnose
 
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.suggestion import suggestion
-from multibot_rewrite.system.guess import GuessedRobot
 from multibot_rewrite.system.records import System
 
 # Child -> parent and type; wheels turn, and what is below the world is not the robot's.

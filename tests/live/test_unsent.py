@@ -4,13 +4,10 @@
 from __future__ import annotations
 
 import pytest
+from graph_calls import ALONE, Index, absences, index
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.rules.check import absences
-from multibot_rewrite.rules.system.matching import types_differ
 from multibot_rewrite.rules.system.unsent import open_ends
-from multibot_rewrite.system.index import Index, index
-from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import MAY, RUNS, End, Place, Sure, System
 
 IMU, SCAN = "sensor_msgs/msg/Imu", "sensor_msgs/msg/LaserScan"
@@ -43,12 +40,6 @@ def meant(*ends: End) -> list[str]:
 def test_what_nothing_sends_is_a_note() -> None:
     (found,) = told()
     assert (found.code, found.level, found.names) == ("MG316", "note", ("/r/imu/data",))
-
-
-def test_what_is_sent_closes_it_whoever_may_send_it() -> None:
-    sent = end("bridge", "publishes", "/r/imu/data")
-    assert told(sent) == []
-    assert told(sent._replace(sure=MAY)) == []
 
 
 def test_another_reader_or_another_kind_closes_nothing() -> None:
@@ -110,30 +101,3 @@ def test_what_people_send_is_open_for_nobody() -> None:
 def test_an_end_on_a_condition_or_of_unknown_code_needs_nothing() -> None:
     assert open_ends(seen(READS._replace(sure=MAY))) == []
     assert open_ends(seen(READS._replace(code_name=""))) == []
-
-
-CMD = end("n", "subscribes", "/cmd", "a/msg/A")
-SENDS = CMD._replace(node="/m", role="publishes", type="a/msg/B")
-
-
-def differ(*ends: End) -> list[Finding]:
-    assert types_differ.check
-    return list(types_differ.check(seen(*ends)))
-
-
-def test_a_topic_of_another_type() -> None:
-    (found,) = differ(CMD, SENDS)
-    assert (found.node, found.names, found.file) == ("/n", ("/cmd",), "bridge.yaml")
-    assert "a/msg/A" in found.message
-    assert "a/msg/B" in found.message
-
-
-def test_types_that_may_be_the_same() -> None:
-    assert differ(CMD._replace(also=("a/msg/B",)), SENDS) == []
-    assert differ(CMD, SENDS._replace(also=("a/msg/A",))) == []
-
-
-@pytest.mark.parametrize("type_", ["", "a/msg/A"])
-def test_a_sender_that_nobody_hears_beside_one_that_is_heard(type_: str) -> None:
-    (found,) = differ(CMD, SENDS, SENDS._replace(node="/k", type=type_))
-    assert (found.code, found.node) == ("MG306", "/m")

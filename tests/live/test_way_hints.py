@@ -4,15 +4,12 @@
 from __future__ import annotations
 
 import pytest
+from graph_calls import from_yaml, index, to_yaml, whose_by_plan
 from paths import ROBOTS
 from plans import planned_end
 
 from multibot_rewrite.fleet.fleet import expected, make_fleet
 from multibot_rewrite.rules.system.causes import how_to_remap, why_other_name
-from multibot_rewrite.spelling.plan_file import to_yaml
-from multibot_rewrite.system.index import index
-from multibot_rewrite.system.json import from_yaml
-from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import System
 
 GZ = str(ROBOTS / "rover_gz.urdf")

@@ -6,22 +6,31 @@ from __future__ import annotations
 import re
 
 import pytest
-
-from multibot_rewrite.live.watching import Outcome, Verdict
-from multibot_rewrite.pages.drawings import graphs, trees
-from multibot_rewrite.pages.overview import Tile, overview
-from multibot_rewrite.pages.page_sections import make_ids, make_sections, only_common
-from multibot_rewrite.pages.scene import (
+from page_calls import (
+    CLASH,
+    LEAK,
+    MISSING,
+    OK,
+    UNEXPECTED,
     Crossing,
     DrawnEdge,
     DrawnGroup,
     DrawnName,
     DrawnNode,
+    FrameRow,
+    FrameTree,
+    Outcome,
     Scene,
+    Verdict,
+    group_svg,
+    make_ids,
+    make_sections,
+    only_common,
+    tree_svg,
 )
-from multibot_rewrite.pages.states import CLASH, LEAK, MISSING, OK, UNEXPECTED
-from multibot_rewrite.pages.svg import group_svg, tree_svg
-from multibot_rewrite.pages.tf_tree_rows import FrameRow, FrameTree
+
+from multibot_rewrite.pages.drawings import graphs, trees
+from multibot_rewrite.pages.overview import Tile, overview
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Environment
 
 

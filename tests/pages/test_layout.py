@@ -3,9 +3,19 @@
 
 from __future__ import annotations
 
+from page_calls import (
+    CLASH,
+    LEAK,
+    MISSING,
+    OK,
+    UNEXPECTED,
+    DrawnEdge,
+    DrawnGroup,
+    DrawnName,
+    DrawnNode,
+)
+
 from multibot_rewrite.pages.layout import lay_out
-from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName, DrawnNode
-from multibot_rewrite.pages.states import CLASH, LEAK, MISSING, OK, UNEXPECTED
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 Column = list[tuple[str, float]]

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import re
 
+from page_calls import CROSS_TALK, LEAK, OK, Crossing
+
 from multibot_rewrite.pages.overview import Tile, overview
-from multibot_rewrite.pages.scene import Crossing
-from multibot_rewrite.pages.states import CROSS_TALK, LEAK, OK
 
 R1, R2 = Tile("r1", "r1", "2 nodes", "#g0", "good"), Tile("r2", "r2", "1 error", "#g1", "bad")
 TALK = Crossing("r2", "", "r1", CROSS_TALK, ("subscribes /r1/scan",))

@@ -4,11 +4,23 @@
 from __future__ import annotations
 
 import pytest
-
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, Finding
-from multibot_rewrite.live.watching import Outcome, Verdict
-from multibot_rewrite.pages.page import to_html
-from multibot_rewrite.pages.page_sections import (
+from page_calls import (
+    CLASH,
+    LEAK,
+    MISSING,
+    OK,
+    UNEXPECTED,
+    DrawnEdge,
+    DrawnGroup,
+    DrawnName,
+    DrawnNode,
+    FindingRow,
+    FrameRow,
+    FrameTree,
+    Outcome,
+    Scene,
+    Targets,
+    Verdict,
     concerns_of,
     has_faults,
     ids_in,
@@ -16,22 +28,15 @@ from multibot_rewrite.pages.page_sections import (
     link_to,
     look_of,
     make_ids,
+    make_scene,
     make_sections,
     only_common,
     summarize,
+    to_html,
     without_common,
 )
-from multibot_rewrite.pages.scene import (
-    DrawnEdge,
-    DrawnGroup,
-    DrawnName,
-    DrawnNode,
-    FindingRow,
-    Scene,
-    make_scene,
-)
-from multibot_rewrite.pages.states import CLASH, LEAK, MISSING, OK, UNEXPECTED, Targets
-from multibot_rewrite.pages.tf_tree_rows import FrameRow, FrameTree
+
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, Finding
 from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,

@@ -4,36 +4,36 @@
 from __future__ import annotations
 
 import pytest
-
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.live.watching import Outcome, Verdict
-from multibot_rewrite.pages.scene import (
+from page_calls import (
     BRIDGE,
-    Crossing,
-    DrawnEdge,
-    DrawnGroup,
-    DrawnName,
-    DrawnNode,
-    Scene,
-    combined_state,
-    make_scene,
-)
-from multibot_rewrite.pages.states import (
     CLASH,
     CROSS_TALK,
     LEAK,
     MISSING,
     OK,
     UNEXPECTED,
+    Crossing,
+    DrawnEdge,
+    DrawnGroup,
+    DrawnName,
+    DrawnNode,
+    FrameRow,
+    FrameTree,
+    Outcome,
+    Scene,
     Targets,
+    Verdict,
+    combined_state,
     find_targets,
+    make_scene,
     make_states,
     merged,
     robots_of,
     words_of,
     worst,
 )
-from multibot_rewrite.pages.tf_tree_rows import FrameRow, FrameTree
+
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.check import side_by_side
 from multibot_rewrite.system.records import (
     ACTION,

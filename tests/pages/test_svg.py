@@ -4,12 +4,27 @@
 from __future__ import annotations
 
 import pytest
+from page_calls import (
+    CLASH,
+    LEAK,
+    MISSING,
+    OK,
+    DrawnEdge,
+    DrawnGroup,
+    DrawnName,
+    DrawnNode,
+    FrameRow,
+    FrameTree,
+    Ids,
+    clipped,
+    columns,
+    group_svg,
+    safe,
+    tooltip,
+    tree_svg,
+)
 
 from multibot_rewrite.pages import svg
-from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName, DrawnNode
-from multibot_rewrite.pages.states import CLASH, LEAK, MISSING, OK
-from multibot_rewrite.pages.svg import Ids, clipped, columns, group_svg, safe, tooltip, tree_svg
-from multibot_rewrite.pages.tf_tree_rows import FrameRow, FrameTree
 from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 IDS = Ids(

@@ -12,6 +12,16 @@ import pytest
 from built_faults import BUILT, OUT, fleet, in_a_build, read_back
 from fault_changes import Fault
 from fault_sources import NODES, SOURCES, recording, written
+from graph_calls import (
+    ABSENCE,
+    check,
+    diagnose,
+    from_yaml,
+    guess_robots,
+    seen_plan,
+    to_json,
+    to_yaml,
+)
 from graph_faults import FAULTS, MORE_NEEDS, NEEDS, needed
 from graph_faults_page import LACKS, PLANS, cell, lines, planned_cell
 from healthy_systems import OF_EACH_RELEASE, SYSTEMS, plan, slam_with_filters, started
@@ -21,13 +31,7 @@ from vendor_graphs import RELEASES, VENDORS
 
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.producers.bags.recording import RecordedTopic, as_snapshot
-from multibot_rewrite.rules.check import ABSENCE, check
-from multibot_rewrite.spelling.plan_file import to_yaml
-from multibot_rewrite.system.guess import guess_robots
-from multibot_rewrite.system.json import from_yaml, to_json
 
 NAMED = {it.name: it for it in FAULTS}
 

@@ -7,12 +7,10 @@ Of ``rules/system``: what asks a plan.
 from __future__ import annotations
 
 import pytest
+from graph_calls import beside, check, index, whose_by_plan
 from graph_examples import read_example
 
-from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.system.tf_causes import silent_topics
-from multibot_rewrite.system.index import beside, index
-from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import Edge
 
 TWIST, TEXT = "geometry_msgs/msg/Twist", "std_msgs/msg/String"

@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import pytest
+from graph_calls import GuessedRobot, diagnose, guess_robots, seen_plan, whose_by_guess
 
-from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.system.environment import setting_caveats
-from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVICE,

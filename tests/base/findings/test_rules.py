@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import Any, cast
 
 import pytest
+from lint_calls import Settings, fix
 from paths import FIXTURES, ROOT
 from rule_examples import WITHOUT_FILE, found, is_built, whole
 
 from multibot_rewrite.base.findings.finding import LEVELS
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.lint import catalogue
-from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.rules.settings import Settings
 
 RULES = catalogue.rules()
 # No text makes them: a fault of the lint, and a file that takes too long. Other tests raise them.

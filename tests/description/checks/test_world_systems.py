@@ -4,12 +4,10 @@
 from __future__ import annotations
 
 import pytest
+from description_calls import builtin_tree, collect, read_document
 
 from multibot_rewrite.description.checks.hazards import world_systems
 from multibot_rewrite.description.library import rewrite
-from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.steps.collect import collect
-from multibot_rewrite.description.steps.document import read_document
 
 ROBOT = '<robot name="rover"><link name="base_link"/><gazebo>{}</gazebo></robot>'
 SENSORS = '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>'

@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 import pytest
+from description_calls import NEWEST_LTS, LostRule, builtin_tree, lost_rules, read
 
 from multibot_rewrite import rewrite
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.readback.meeting import LostRule, lost_rules
-from multibot_rewrite.description.readback.reading import read
-from multibot_rewrite.description.rewriters.tree import builtin_tree
 
 PLUGIN = (
     '<robot name="r"><link name="a"/><gazebo><plugin name="{}" filename="libgazebo_ros_{}.so">'

@@ -4,10 +4,7 @@
 from __future__ import annotations
 
 import pytest
-
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.description.readback.meeting import advice, meetings, said, same_for_all
-from multibot_rewrite.description.readback.nodes import RuntimeName
+from description_calls import RuntimeName, advice, make_naming, meetings, said, same_for_all
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 

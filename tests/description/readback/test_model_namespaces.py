@@ -11,13 +11,9 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
+from description_calls import BELOW, LAYOUTS, TOPIC, load_vocabulary, make_naming, meetings, read
 
 from multibot_rewrite import rewrite, rewrite_all
-from multibot_rewrite.base.naming import LAYOUTS, make_naming
-from multibot_rewrite.description.readback.meeting import meetings
-from multibot_rewrite.description.readback.nodes import BELOW, TOPIC
-from multibot_rewrite.description.readback.reading import read
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 
 DRIVE = '<plugin filename="gz-sim-diff-drive-system" name="d"><topic>{}</topic></plugin>'
 RELEASED = ("humble", "jazzy", "kilted", "lyrical")

@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import pytest
+from description_calls import load_vocabulary, read
 
 from multibot_rewrite import ProofError, rewrite
-from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters import insert
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 
 DRIVE = '<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">{}</plugin>'
 ODOMETRY = (

@@ -4,12 +4,8 @@
 from __future__ import annotations
 
 import pytest
+from description_calls import NEWEST_LTS, Reading, load_vocabulary, read, wheels_in
 from lxml.etree import fromstring
-
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.readback.nodes import wheels_in
-from multibot_rewrite.description.readback.reading import Reading, read
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 
 
 def reading(inside: str, root: str = "robot", release: str = NEWEST_LTS) -> Reading:

@@ -4,15 +4,11 @@
 from __future__ import annotations
 
 import pytest
+from description_calls import NEWEST_LTS, load_vocabulary, make_naming, meetings, read, same_for_all
 from paths import FIXTURES
 from proof_faults import Fault, read_faults
 
 from multibot_rewrite import rewrite
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.readback.meeting import meetings, same_for_all
-from multibot_rewrite.description.readback.reading import read
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 
 RUNNING = b"""\
 <robot name="rover">

@@ -7,10 +7,10 @@ import json
 from pathlib import Path
 
 import pytest
+from description_calls import NEWEST_LTS, builtin_tree
 from paths import FIXTURES
 
 from multibot_rewrite import InputError, rewrite_all
-from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.reports import xacro_arguments
 from multibot_rewrite.description.reports.xacro_arguments import (
@@ -19,7 +19,6 @@ from multibot_rewrite.description.reports.xacro_arguments import (
     XacroArguments,
     find_arguments,
 )
-from multibot_rewrite.description.rewriters.tree import builtin_tree
 
 XACROS = FIXTURES / "xacros"
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'

@@ -13,12 +13,10 @@ from pathlib import Path
 
 import pytest
 from case_files import read_case
+from description_calls import NEWEST_LTS, builtin_tree, load_vocabulary
 from paths import FIXTURES
 
 from multibot_rewrite import VocabularyError, rewrite, strip
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.description.rewriters.vocabulary.installed import (
     advice,
     announcing,

@@ -15,15 +15,12 @@ from types import FrameType
 from typing import Any
 
 import pytest
+from description_calls import NEWEST_LTS, Template, Vocabulary, library, make_naming
 
 from multibot_rewrite import VocabularyError
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.rewriters import tree as trees
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, library
-from multibot_rewrite.description.steps.apply import Template
 
 FILES = (trees.__file__, library.__file__)
 # What a rover needs of the vocabulary: a section in a section, a block, a chosen plugin, a keep.

@@ -7,16 +7,16 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-
-from multibot_rewrite import VocabularyError, rewrite
-from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.rewriters.vocabulary import (
+from description_calls import (
+    NEWEST_LTS,
     TYPES,
     VocabularySection,
+    builtin_tree,
     check_vocabulary,
     load_vocabulary,
 )
+
+from multibot_rewrite import VocabularyError, rewrite
 
 HEAD = "[plugin mine]\nabout: a test\n"
 NEW_PLUGIN = """\

@@ -6,11 +6,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from description_calls import RELEASES, builtin_tree, load_vocabulary
 
 from multibot_rewrite.base.model import VocabularyError
-from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 
 TEXT = """
 [block shared]

@@ -12,6 +12,16 @@ from typing import cast
 
 import pytest
 from case_files import Case, all_cases
+from description_calls import (
+    NEWEST_LTS,
+    Policy,
+    Template,
+    builtin_tree,
+    cut,
+    declarations,
+    fill,
+    make_naming,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from paths import ROBOTS
@@ -20,13 +30,7 @@ from proof_faults import SOURCES
 from random_robots import LAYOUTS, Robot, random_robots
 
 from multibot_rewrite import ProofError, RewriteRefused, rewrite, rewrite_all
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.policy import Policy
-from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.steps.apply import Template, cut, fill
-from multibot_rewrite.description.steps.collect import declarations
 
 # Words of a case that are not of its naming.
 NO_POLICY = ("again", "file", "urdf", "distro")

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Files beside a description as tests rewrite them: who is meant, and the text for a robot.
+
+Where each of them stands in the package is known here alone.
+"""
+
+from __future__ import annotations
+
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.params.lacking_sections import all_sections
+from multibot_rewrite.companions.params.rewrite import rewrite_params
+from multibot_rewrite.companions.params.sections import (
+    ParamSection,
+    flattened,
+    identify_sections,
+    is_for,
+    raw_sections,
+)
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template, make_template
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, quoted, read_yaml
+from multibot_rewrite.knowledge.node_library import extend, stack_of
+from multibot_rewrite.knowledge.parameters import built_in_nodes, load_known_nodes
+from multibot_rewrite.knowledge.stacks import built_in
+
+__all__ = [
+    "NAMESPACE_SLOT",
+    "NEWEST_LTS",
+    "Context",
+    "ParamSection",
+    "Splice",
+    "YamlText",
+    "all_sections",
+    "built_in",
+    "built_in_nodes",
+    "extend",
+    "fill_template",
+    "flattened",
+    "identify_sections",
+    "is_for",
+    "load_known_nodes",
+    "make_context",
+    "make_naming",
+    "make_template",
+    "quoted",
+    "raw_sections",
+    "read_yaml",
+    "rewrite_params",
+    "stack_of",
+]  # fmt: skip
