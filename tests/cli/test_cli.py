@@ -519,7 +519,6 @@ def test_missing_streams(
     assert result.err.count("\n") == bool(said)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "code", "told"),
     [

@@ -192,12 +192,6 @@ def test_what_no_rule_reaches_is_said_and_gets_no_rule() -> None:
     ]
 
 
-def test_a_name_made_at_run_time_follows_a_namespace_and_nothing_else() -> None:
-    maker = NodeFacts("maker", "maker", (Endpoint(TOPIC, PUBLISHES, "<camera>/image"),))
-    assert table("L2", (maker,)).problems == ()
-    assert [problem.code for problem in table("L4", (maker,)).problems] == ["MR101"]
-
-
 def test_what_the_stack_renames_itself_is_led_where_the_stack_wants_it() -> None:
     endpoint = Endpoint(TOPIC, PUBLISHES, "cmd_vel", remapped="cmd_vel_nav")
     nodes = (NodeFacts("controller_server", "nav2_controller", (endpoint,)),)

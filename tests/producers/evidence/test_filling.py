@@ -131,7 +131,9 @@ CONTROLLERS = """\
 
 def test_controllers_are_those_that_the_files_declare() -> None:
     found = nodes_of(
-        load_stack("ros2_control", "jazzy"), given_in(CONTROLLERS, file="c.yaml"), load_nodes("jazzy")
+        load_stack("ros2_control", "jazzy"),
+        given_in(CONTROLLERS, file="c.yaml"),
+        load_nodes("jazzy"),
     )
     by_name = {it.name: it for it in found.nodes}
     assert "diff_drive_controller" not in by_name
