@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 import yaml
 from beside import findings_of
-from fleet_folder import planned_fleet
 from paths import CORPUS
 
 from multibot_rewrite.base.model import InputError
@@ -22,9 +21,9 @@ from multibot_rewrite.base.rosnames import check_full_name, check_topic_name
 from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleet.file.robot_spec import Pose
-from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.launch.starts import Start, shell_line
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.launch.starts import shell_line
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.bridge_outputs import fill_bridge, merge_bridges
 from multibot_rewrite.fleet.robots import start_poses
@@ -223,7 +222,7 @@ def test_topics_of_a_model_of_sdf_follow_it_too(
     side = "postfix" if layout == "L4" else "prefix"
     robots = "robots:\n- {name: r1}\n- {name: r2, namespace: two, model: second}\n"
     Path("fleet.yaml").write_text(f"layout: {layout}\naffix: {side}\ndescription: x1.sdf\n{robots}")
-    plan = planned_fleet("fleet.yaml")
+    plan = plan_fleet(read_fleet("fleet.yaml", "", {}))
     made = plan.fleet
     carried, _ = generated_bridge(made.inventories, made.naming, made.models)
     found = [it.gz for it in carried if it.gz.startswith("/model/")]
@@ -330,11 +329,10 @@ def fleet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
         (tmp_path / "fleet.yaml").write_text(
             f"layout: {layout}\naffix: {side}\nstack: {stack}\n{more}"
             "robots:\n"
-            "  - {name: r1, description: rover.urdf,"
-            " pose: {x: 1.0, y: -0.5, z: 0.25, roll: 0.1, pitch: 0.2, yaw: 1.57}}\n"
+            "  - {name: r1, description: rover.urdf, pose: {x: 1.0, y: -0.5, yaw: 1.57}}\n"
             "  - {name: r2, description: rover.urdf, namespace: two, model: second}\n"
         )
-        return planned_fleet("fleet.yaml")
+        return plan_fleet(read_fleet("fleet.yaml", "", {}))
 
     return make
 
@@ -356,7 +354,7 @@ def test_a_pose_is_a_static_transform(
     assert len(found.transforms) == 1 and not found.findings
     words = shlex.split(shell_line(found.transforms[0].start))
     assert words[:4] == ["ros2", "run", "tf2_ros", "static_transform_publisher"]
-    assert words[4:16] == shlex.split("--x 1.0 --y -0.5 --z 0.25 --roll 0.1 --pitch 0.2 --yaw 1.57")
+    assert words[4:16] == shlex.split("--x 1.0 --y -0.5 --z 0.0 --roll 0.0 --pitch 0.0 --yaw 1.57")
     assert words[16:20] == ["--frame-id", "map", "--child-frame-id", child]
     assert words[20:] == ["--ros-args", *(text for rule in rules for text in ("-r", rule))]
 
@@ -392,7 +390,7 @@ def test_no_second_parent_beside_a_localisation(
         assert it.values == {
             "set_initial_pose": True,
             **{"initial_pose.x": 1.0, "initial_pose.y": -0.5},
-            **{"initial_pose.z": 0.25, "initial_pose.yaw": 1.57},
+            **{"initial_pose.z": 0.0, "initial_pose.yaw": 1.57},
         }
 
 
@@ -426,10 +424,14 @@ def test_spawning_in_gz(fleet: Any) -> None:
     first, second = spawn.spawns(fleet("L2"))[0]
     assert spawn.gz_arguments(first) == [
         *("-name", "r1", "-topic", "/r1/robot_description"),
-        *("-x", "1.0", "-y", "-0.5", "-z", "0.25", "-R", "0.1", "-P", "0.2", "-Y", "1.57"),
+        *("-x", "1.0", "-y", "-0.5", "-z", "0.0", "-R", "0.0", "-P", "0.0", "-Y", "1.57"),
         "-allow_renaming=false",
     ]
     assert spawn.gz_arguments(second)[:4] == ["-name", "second", "-topic", "/two/robot_description"]
+
+
+def test_a_flag_that_is_on_or_off_has_no_value_of_its_own(fleet: Any) -> None:
+    assert "false" not in spawn.gz_arguments(spawn.spawns(fleet("L2"))[0][0])
 
 
 def test_the_postfix_layout_has_a_topic_for_each_description(fleet: Any) -> None:
@@ -557,38 +559,3 @@ def test_a_listener_that_takes_no_stamp_decides(fleet: Any) -> None:
         teleop.teleops(fleet("L2", stack, more="nodes: own.yaml\n"))[0] for stack in ("own", "half")
     )
     assert (both.stamped, half.stamped) == (False, True)
-
-
-POSE = Pose(1.0, -2.0, 0.5, 0.1, 0.2, 1.5)
-FLAGS = ["-x", "1.0", "-y", "-2.0", "-z", "0.5", "-R", "0.1", "-P", "0.2", "-Y", "1.5"]
-SPAWNED = spawn.Spawn("r1", "rover1", "/r1/robot_description", POSE, "r1")
-
-
-@pytest.mark.parametrize(
-    ("it", "source"),
-    [
-        (SPAWNED, ["-topic", "/r1/robot_description"]),
-        (SPAWNED._replace(file="r.sdf"), ["-file", "r.sdf"]),
-        (SPAWNED._replace(file="r.sdf", text="<sdf/>"), ["-string", "<sdf/>"]),
-    ],
-)
-def test_what_follows_a_spawner(it: spawn.Spawn, source: list[str]) -> None:
-    """ros_gz_sim create.cpp (gflags), gazebo_ros spawn_entity.py."""
-    gz = ["-name", "rover1", *source, *FLAGS, "-allow_renaming=false"]
-    classic = ["-entity", "rover1", *source, *FLAGS, "-robot_namespace", "/r1"]
-    assert spawn.gz_arguments(it) == gz and spawn.classic_arguments(it) == classic
-    assert spawn.classic_arguments(it._replace(namespace="")) == classic[:-2]
-    assert spawn.spawner(it, False) == Start("ros_gz_sim", "create", arguments=tuple(gz))
-    assert spawn.spawner(it, True) == Start(
-        "gazebo_ros", "spawn_entity.py", arguments=tuple(classic)
-    )
-
-
-@pytest.mark.parametrize(
-    ("name", "it_is"),
-    [("odom_frame", True), ("odom_frame_id", True), ("odometry_frame_name", True),
-     ("base.odom_frame", True),
-     ("my_odom_frame", True), ("myodom_frame", False), ("odom_frames", False), ("odom", False)],
-)  # fmt: skip
-def test_what_drivers_call_their_odometry_frame(name: str, it_is: bool) -> None:
-    assert bool(start_poses.ODOMETRY_FRAME.search(name)) is it_is
