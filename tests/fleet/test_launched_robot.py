@@ -6,7 +6,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fleet_folder import planned_fleet
 from named_ends import named_ends
 from plans import sends
 from rule_examples import DESCRIPTION
@@ -18,6 +17,7 @@ from multibot_rewrite.fleet.file.fleet_file import (
     read_fleet,
 )
 from multibot_rewrite.fleet.fleet import Fleet, expected
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.system.records import Place
 
 MODEL = """\
@@ -41,7 +41,7 @@ robots:
 
 
 def fleet_of(folder: Path, text: str = FLEET) -> Fleet:
-    return planned_fleet(written(folder, text)).fleet
+    return plan_fleet(read_fleet(written(folder, text), "", {})).fleet
 
 
 def written(folder: Path, text: str = FLEET) -> str:
@@ -95,7 +95,7 @@ def test_a_launch_file_that_a_fleet_names_needs_trust(tmp_path: Path) -> None:
     (tmp_path / "a.launch.py").write_text("")
     file = written(tmp_path, FLEET.replace("system_model.yaml", "a.launch.py"))
     with pytest.raises(InputError, match="--trust"):
-        planned_fleet(file)
+        plan_fleet(read_fleet(file, "", {}))
 
 
 def test_the_command_takes_a_launch_file_beside_robots(
@@ -133,7 +133,7 @@ def test_the_plan_has_what_a_static_transform_publisher_sends(
         for name, words in (("dock", "odom, dock"), ("laser", "robot1/base_link, laser"))
     )
     (tmp_path / "system_model.yaml").write_text(model)
-    sent = sends(expected(planned_fleet(file).fleet))
+    sent = sends(expected(plan_fleet(read_fleet(file, "", {})).fleet))
     where = [next(sent[it] for it in sent if "robot1" in it and w in it) for w in ("dock", "laser")]
     assert where == [moved, other]
 
@@ -146,6 +146,6 @@ def test_the_state_publisher_of_a_dock_does_not_send_the_robot(tmp_path: Path) -
         for it in ("dock_publisher", "robot_state_publisher")
     )
     (tmp_path / "system_model.yaml").write_text(MODEL + more)
-    edges = planned_fleet(file).fleet.edges
+    edges = plan_fleet(read_fleet(file, "", {})).fleet.edges
     assert edges["robot1", "robot_state_publisher"]
     assert edges["robot1", "dock_publisher"] == []

@@ -14,6 +14,7 @@ from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, names_its_package
 from multibot_rewrite.fleet.proposal.companions import srdf_of
+from multibot_rewrite.fleet.proposal.given_by_launch import readings, started_elsewhere
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.searching import Found, search, text_of
 
@@ -127,6 +128,29 @@ def test_an_rviz_config_of_the_robots_packages_goes_first(tmp_path: Path) -> Non
     (tmp_path / "car_description/car.urdf").write_text(robot("car", "wheel"))
     (tmp_path / "car_bringup/up.launch.py").write_text("x = 'car.urdf'\n")
     assert taken(tmp_path)["companions"]["rviz"] == "car_bringup/car.rviz"
+
+
+STARTED = """
+Node(package='imu_tools', executable='imu_node', name='imu', remappings=[('/imu', '/imu/raw')])
+Node(package='own', executable='twist.py')
+Node(package='own', executable='twist.py')
+Node(package='robot_localization', executable='ekf_node')
+Node(package='robot_state_publisher', executable='robot_state_publisher')
+Node(package='rviz2', executable='rviz2')
+ComposableNode(package='pcl', plugin='pcl::Filter')
+Node(package='own', executable=unknown)
+"""
+
+
+def test_nodes_that_only_launch_files_start_are_named(tmp_path: Path) -> None:
+    file = tmp_path / "a.launch.py"
+    file.write_text(STARTED)
+    read = readings([str(file)], "car.urdf", ("car.urdf",))
+    found = started_elsewhere(read, ["robot_localization"], "jazzy")
+    assert [text for _, _, text in found] == [
+        "imu (imu_tools imu_node): /imu:=/imu/raw", "twist.py (own)", "pcl::Filter (pcl)",
+    ]  # fmt: skip
+    assert {path for path, _, _ in found} == {str(file)} and found[0][1] == 2
 
 
 def test_the_fleet_file_names_them(tmp_path: Path) -> None:
