@@ -305,6 +305,8 @@ nodes:
     assert [it.name for it in node.endpoints] == ["new"]
     # It is started as before.
     assert (node.programs, node.component) == (("drive", "other/run"), "acme::Driver")
+    said = more.replace("package: acme\n", "package: acme\n    programs: [own]\n", 1)
+    assert extend(LIBRARY, said, "m.yaml").nodes["costmap/driver"].programs == ("own",)
     assert [(it.path, it.kind) for it in own.params] == [
         ("map_frame", "frame"),
         ("other", "topic"),
@@ -326,6 +328,8 @@ nodes:
     [
         ("nodes: {a: {releases: jazy}}", "release 'jazy' is not known; did you mean 'jazzy'"),
         ("nodes: {a: {releases: jazzy jazzy}}", "'jazzy jazzy' names no releases; write jazzy,"),
+        ("nodes: {a: {releases: <=jazzy+}}", "releases '<=jazzy+' names no releases; write jazzy,"),
+        ("nodes: {a: {releases: jazzy 1.3}}", "releases 'jazzy 1.3' names no releases"),
         ("nodes: {a: {source: here}}", "source 'here' names no place; write OWNER/NAME@TAG PATH"),
         ("nodes: {a: {source: a/b@c}}", "source 'a/b@c' names no place"),
         ("nodes: {a: {source: 'a/b@c d:x'}}", "source 'a/b@c d:x' names no place"),

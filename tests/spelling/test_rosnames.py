@@ -196,6 +196,8 @@ def test_every_part_is_where_the_rule_puts_it(text: str) -> None:
         ("{node}/scan", "/ns", "/ns/node/scan"),
         ("/{node}/scan", "/ns", "/node/scan"),
         ("{ns}/scan", "/ns", "/ns/scan"),
+        ("{node}/scan", "ns", "/ns/node/scan"),
+        ("{ns}/scan", "ns", "/ns/scan"),
         ("/all{namespace}/{node}", "/ns", "/all/ns/node"),
         ("{ns}/scan", "/", "//scan"),
         ("~/{other}", "/ns", "/ns/node/{other}"),
@@ -370,10 +372,3 @@ def test_a_name_that_leads_nowhere(name: str, message: str) -> None:
     with pytest.raises(UsageError) as caught:
         resolve_name(name, "topic", "n", "/r", rules("far:=/" + "a" * 250))
     assert message in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("name", "full"), [("{node}/x", "/ns/n/x"), ("{ns}/x", "/ns/x"), ("/a/{node}", "/a/n")]
-)
-def test_words_in_braces_are_filled_in(name: str, full: str) -> None:
-    assert expand(name, "ns", "n") == full
