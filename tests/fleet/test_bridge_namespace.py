@@ -95,10 +95,7 @@ def test_a_row_follows_the_word_that_a_system_makes_its_topic_of(
     files = {it.path: it.data for it in outputs.files}
     joint = "fin" if layout == "L1" else "fin_robot2"
     made = [it["gz_topic_name"] for it in yaml.safe_load(files["robot2/bridge.yaml"])]
-    assert made[:2] == [
-        f"/model/rov_robot2/joint/{joint}/cmd_thrust",
-        "/model/robot2/odometry",
-    ]
+    assert made[:2] == [f"/model/rov_robot2/joint/{joint}/cmd_thrust", "/model/robot2/odometry"]
     assert b"<namespace>rov_robot2</namespace>" in files["robot2/rov.urdf"]
 
 

@@ -24,10 +24,7 @@ from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
 from multibot_rewrite.system.domains import by_domain, domain_of
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.records import (
-    PUBLISHES,
-    SUBSCRIBES,
-)
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 FLEET = f"""\
 layout: {{layout}}
@@ -204,10 +201,7 @@ def test_the_adapter_of_free_fleet_finds_each_robot(layout: str, tmp_path: Path)
         assert told.get("robot_frame", "base_footprint") in there.frames
 
 
-ALLOWED = {
-    "publishers": ("tf", "battery_state"),
-    "action_servers": ("navigate_to_pose",),
-}
+ALLOWED = {"publishers": ("tf", "battery_state"), "action_servers": ("navigate_to_pose",)}
 
 
 @pytest.mark.more
@@ -366,10 +360,7 @@ def test_one_name_in_two_domains_is_no_clash(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
 def test_check_launch_reads_the_files_of_domain_bridge(
-    layout: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each side of a bridge is a node in its domain, with the topics of the file. Robots may be called
     as topics and parts of nodes are, one may be in the domain of all robots."""

@@ -21,10 +21,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.joining.from_file import _KEYS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_data import schema
-from multibot_rewrite.fleet.file.fleet_file import (
-    input_files,
-    read_fleet,
-)
+from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
 
 ARM = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">

@@ -22,10 +22,7 @@ import yaml
 from fleet_folder import planned_fleet
 from lxml import etree
 from vendor_arm_pages import text_of
-from vendor_sources import (
-    VARIABLE,
-    installed_sources,
-)
+from vendor_sources import VARIABLE, installed_sources
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.description.sources.whole import read_whole

@@ -16,12 +16,7 @@ from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import (
-    built_in,
-    load_nodes,
-    load_stack,
-    user_stack,
-)
+from multibot_rewrite.knowledge.stacks import built_in, load_nodes, load_stack, user_stack
 from multibot_rewrite.system.records import SERVICE, TOPIC
 
 WANTED = {

@@ -278,8 +278,7 @@ def test_nodes_that_hardware_makes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("layout", "target"),
-    [("both", "controller_manager"), ("postfix", "/left_controller_manager")],
+    ("layout", "target"), [("both", "controller_manager"), ("postfix", "/left_controller_manager")]
 )
 def test_hardware_asks_its_own_controller_manager(layout: str, target: str, tmp_path: Path) -> None:
     """uf_robot_system_hardware.cpp:254 names /controller_manager/list_controllers: the process of the

@@ -13,11 +13,7 @@ from typing import NamedTuple
 import pytest
 from controller_types import registered
 from fleet_folder import planned_fleet
-from vendor_sources import (
-    VARIABLE,
-    installed_sources,
-    packages_below,
-)
+from vendor_sources import VARIABLE, installed_sources, packages_below
 
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.fleet.build import make_outputs
