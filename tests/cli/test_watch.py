@@ -10,19 +10,19 @@ from collections.abc import Generator, Sequence
 import pytest
 from small_fleet import clash, half, healthy, moving, plan
 
-from multibot_rewrite import compare
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.multibot import main as multibot
 from multibot_rewrite.cli.watch import Views, follow
 from multibot_rewrite.live.watching import Verdict, WatchState, final
+from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import System
 
 MANY = 17
 
 
 def look(views: Views) -> tuple[System, System, Sequence[Finding]]:
-    return plan(), views[0], compare(plan(), views[0])
+    return plan(), views[0], check(plan(), views[0])
 
 
 def views(*graphs: System, ended: bool = False) -> Generator[Views, None, None]:

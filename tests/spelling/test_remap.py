@@ -18,7 +18,7 @@ from multibot_rewrite.fleet.checks.meeting import with_meetings
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table, plugin_nodes
-from multibot_rewrite.spelling.table_formats import FORMS
+from multibot_rewrite.spelling.table_formats import FORMS, as_data
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -297,6 +297,12 @@ def test_a_shared_node_keeps_its_namespace_and_name_to_the_letter() -> None:
     node = NodeFacts("/fleet/x_mux", "twist_mux", (), shared=True)
     (found, *_) = table("L1", (node,)).runs
     assert found[:5] == ("", "/fleet/x_mux", "/fleet", "x_mux", ())
+
+
+def test_the_data_of_a_table_names_its_layout_and_each_robot() -> None:
+    found = as_data(table("L4"))
+    assert found["layout"] == "postfix"
+    assert set(found["robots"]) >= {"robot1", "robot2"}  # type: ignore[call-overload]
 
 
 @pytest.mark.parametrize(

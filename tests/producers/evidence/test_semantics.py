@@ -6,13 +6,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fleet_folder import planned_fleet
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.judged import controlled
-from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.robots.robot_nodes import node_sources
 from multibot_rewrite.fleet.robots.systems import system_after, system_before
@@ -62,7 +62,7 @@ def planned(
         f"layout: frames-per-robot\ndescription: arm.urdf\nsrdf: arm.srdf\n{more}"
         "companions: {moveit: [m.yaml]}\nrobots: [{name: robot1}, {name: robot2}]\n"
     )
-    plan = planned_fleet(folder / "fleet.yaml")
+    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
     found = make_outputs(plan).findings
     return plan, [it for it in found if it.code in ("MB229", "MG413")]
 
