@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet, planned_fleet
 from lxml import etree
 
 from multibot_rewrite import load_fleet
@@ -92,7 +92,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def outputs(path: str = "fleet.yaml") -> dict[str, bytes]:
-    return {it.path: it.data for it in make_outputs(planned_fleet(path)).files}
+    return {it.path: it.data for it in built_fleet(path).files}
 
 
 def names(data: bytes, tag: str) -> list[str | None]:

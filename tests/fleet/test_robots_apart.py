@@ -7,11 +7,10 @@ from math import hypot
 from pathlib import Path
 
 import pytest
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet
 from lxml import etree
 
 from multibot_rewrite.description.checks.footprint import reach_of
-from multibot_rewrite.fleet.build import make_outputs
 
 CART = """\
 <robot name="cart">
@@ -39,7 +38,7 @@ def found(folder: Path, robots: str, more: str = "", code: str = "MG702") -> lis
     (folder / "cart.urdf").write_text(CART)
     file = folder / "fleet.yaml"
     file.write_text(f"layout: both\ndescription: cart.urdf\n{more}robots:\n{robots}")
-    made = make_outputs(planned_fleet(file))
+    made = built_fleet(file)
     return [it.message for it in made.findings if it.code == code]
 
 

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet, planned_fleet
 from given_parameters import given_in
 from lxml import etree
 from named_ends import named_ends
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.producers.evidence.hardware import exported
 from multibot_rewrite.producers.evidence.nodes import nodes_of
@@ -87,7 +87,7 @@ def made(folder: Path, arm: str, controllers: str, layout: str, more: str = "") 
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\n{more}description: arm.urdf\n"
         "robots: [{name: left}, {name: right}]\ncompanions: {params: [controllers.yaml]}\n"
     )
-    return make_outputs(planned_fleet(fleet))
+    return built_fleet(fleet)
 
 
 def found(outputs: Outputs, *codes: str) -> list[tuple[str, str]]:
