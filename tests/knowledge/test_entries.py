@@ -305,8 +305,6 @@ nodes:
     assert [it.name for it in node.endpoints] == ["new"]
     # It is started as before.
     assert (node.programs, node.component) == (("drive", "other/run"), "acme::Driver")
-    said = more.replace("package: acme\n", "package: acme\n    programs: [own]\n", 1)
-    assert extend(LIBRARY, said, "m.yaml").nodes["costmap/driver"].programs == ("own",)
     assert [(it.path, it.kind) for it in own.params] == [
         ("map_frame", "frame"),
         ("other", "topic"),
@@ -321,6 +319,8 @@ nodes:
     assert "driver" not in found.nodes
     other = extend(LIBRARY, "nodes: {costmap/driver: {package: b}}", "m").nodes["costmap/driver"]
     assert (other.programs, other.component) == ((), "")
+    said = more.replace("package: acme\n", "package: acme\n    programs: [own]\n", 1)
+    assert extend(LIBRARY, said, "m.yaml").nodes["costmap/driver"].programs == ("own",)
 
 
 @pytest.mark.parametrize(
