@@ -77,8 +77,7 @@ def test_a_bag_that_unpacks_to_more_than_a_bound(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "words",
-    ["urdf_lint .", "urdf_postfix r.urdf a", "multibot check --from a.mcap"],
+    "words", ["urdf_lint .", "urdf_postfix r.urdf a", "multibot check --from a.mcap"]
 )
 def test_a_pipe_in_a_folder_is_not_waited_for(tmp_path: Path, words: str) -> None:
     """An archive may hold pipes under the names that are looked for beside a description."""

@@ -39,20 +39,11 @@ PARAMS = str(ROOT / "examples" / "namespace_and_prefix" / "nav2_params.yaml")
 ALL = {**COMMANDS, **{it.name: it for it in PROGRAMS}}
 EVERY = {"-q", "--quiet", "-v", "--verbose", "--color", "--version", "-h", "--help"}
 OUTPUT = {"-o", "--output"}
-NAMING = {
-    "--layout",
-    "--affix",
-    "--topics",
-    "--separator",
-    "--shared",
-}
+NAMING = {"--layout", "--affix", "--topics", "--separator", "--shared"}
 FINDINGS = {"--select", "--ignore", "--fail-on", "--format"}
 DESCRIPTION = ("urdf-postfix", "urdf-lint", "plan", "rehearse")
 # The options of a command; `help` has no result.
-HAS = {
-    **{name: EVERY | OUTPUT for name in ALL if name != "help"},
-    "help": EVERY,
-}
+HAS = {**{name: EVERY | OUTPUT for name in ALL if name != "help"}, "help": EVERY}
 REPORTS = (*DESCRIPTION, "build", "check")
 
 
@@ -173,10 +164,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-lint a --tf_prefix x", "unknown option --tf_prefix; use --affix prefix"),
         ("urdf-lint a --xacro x", "unknown option --xacro; urdf-postfix takes it;"),
         ("multibot chek", "unknown command 'chek'; did you mean 'check'?"),
-        (
-            "multibot plan --layuot L1",
-            "unknown option --layuot; did you mean '--layout'?",
-        ),
+        ("multibot plan --layuot L1", "unknown option --layuot; did you mean '--layout'?"),
         ("urdf-postfix a b --udno", "unknown option --udno; did you mean '--undo'?"),
         ("urdf-lint a --formt json", "unknown option --formt; did you mean '--format'?"),
         ("multibot check p --format jsno", "'jsno' is not known"),
@@ -347,11 +335,7 @@ def test_a_vocabulary_reaches_every_command_that_reads_a_description(
 ) -> None:
     more = tmp_path / "bad.vocab"
     more.write_text("[plugin acme]\nx uses wheel\n")
-    for words in (
-        ["plan", ROVER, "r"],
-        ["plan", "--form=table", ROVER, "r"],
-        ["inspect", ARM],
-    ):
+    for words in (["plan", ROVER, "r"], ["plan", "--form=table", ROVER, "r"], ["inspect", ARM]):
         code, _, err = said(capsys, "multibot", *words, "--vocabulary", str(more))
         assert (code, "bad.vocab:2: unknown kind 'wheel'" in err) == (2, True), words
 

@@ -62,10 +62,7 @@ OPENED = {
         '<sensor name="s" type="contact"><contact><topic>touch</topic></contact></sensor>',
         {("sends", "/touch")},
     ),
-    "a wrench": (
-        '<sensor name="s" type="force_torque"/>',
-        {("sends", f"{SENSOR}/forcetorque")},
-    ),
+    "a wrench": ('<sensor name="s" type="force_torque"/>', {("sends", f"{SENSOR}/forcetorque")}),
 }
 CONTROL = "<control channel='{0}'><type>COMMAND</type><cmd_topic>{1}</cmd_topic></control>"
 

@@ -12,11 +12,10 @@ from pathlib import Path
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet, planned_fleet
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.spelling.way_checks import running_nodes
 
 pytestmark = pytest.mark.slow
@@ -112,7 +111,7 @@ def built(
     }
     for name, text in files.items():
         (folder / name).write_text(text)
-    made = make_outputs(planned_fleet(folder / "fleet.yaml"))
+    made = built_fleet(folder / "fleet.yaml")
     return {it.path: it.data.decode() for it in made.files}, list(made.findings)
 
 
@@ -307,7 +306,7 @@ def test_a_part_that_is_called_as_a_robot_is_no_name_of_it(finger: str, tmp_path
     fleet = "layout: both\naffix: prefix\ndescription: arm.urdf.xacro\nsrdf: arm.srdf.xacro\n"
     more = f"arguments: {{finger: '{finger}'}}\n{TWO}"
     (tmp_path / "fleet.yaml").write_text(fleet + more)
-    made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
+    made = built_fleet(tmp_path / "fleet.yaml")
     files = {it.path: it.data.decode() for it in made.files}
     names = {"left_finger": "right/left_finger", "{robot}_left_finger": "right_left_finger"}
     for path in ("right/arm.urdf", "right/arm.srdf"):

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 
 ROW = """\
@@ -41,7 +41,7 @@ def made(folder: Path, name: str, more: str = "") -> Outputs:
     (folder / "b.yaml").write_text(ROW.format(name))
     (folder / "p.yaml").write_text(FILTER)
     (folder / "fleet.yaml").write_text(f"{FLEET}{more}")
-    return make_outputs(planned_fleet(folder / "fleet.yaml"))
+    return built_fleet(folder / "fleet.yaml")
 
 
 def first_row(outputs: Outputs) -> dict[str, str]:
@@ -91,14 +91,11 @@ def test_a_row_follows_the_word_that_a_system_makes_its_topic_of(
         f"description: rov.urdf\nlayout: {layout}\nsimulator: gazebo\n"
         "robots: [{name: robot1}, {name: robot2}]\ncompanions: {bridge: b.yaml}\n"
     )
-    outputs = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
+    outputs = built_fleet(tmp_path / "fleet.yaml")
     files = {it.path: it.data for it in outputs.files}
     joint = "fin" if layout == "L1" else "fin_robot2"
     made = [it["gz_topic_name"] for it in yaml.safe_load(files["robot2/bridge.yaml"])]
-    assert made[:2] == [
-        f"/model/rov_robot2/joint/{joint}/cmd_thrust",
-        "/model/robot2/odometry",
-    ]
+    assert made[:2] == [f"/model/rov_robot2/joint/{joint}/cmd_thrust", "/model/robot2/odometry"]
     assert b"<namespace>rov_robot2</namespace>" in files["robot2/rov.urdf"]
 
 

@@ -136,20 +136,13 @@ def test_arms_are_one_description_where_they_stand(tmp_path: Path) -> None:
         ("right_mount", "map", "right/base"),
     ]
     places = [dict(it.attrib) for it in root.iterfind("joint/origin")]
-    assert places == [
-        {"xyz": "0 0.5 0", "rpy": "0 0 1.5"},
-        {"xyz": "0 -0.5 0", "rpy": "0 0 0"},
-    ]
+    assert places == [{"xyz": "0 0.5 0", "rpy": "0 0 1.5"}, {"xyz": "0 -0.5 0", "rpy": "0 0 0"}]
 
 
 def test_materials_are_declared_once_and_keep_their_colours(tmp_path: Path) -> None:
     root = etree.fromstring(built(tmp_path)[0]["cell/cell.urdf"])
     declared = {it.get("name"): it.find("color").get("rgba") for it in root.findall("material")}
-    assert declared == {
-        "grey": "0.5 0.5 0.5 1",
-        "paint": "1 0 0 1",
-        "right_paint": "0 0 1 1",
-    }
+    assert declared == {"grey": "0.5 0.5 0.5 1", "paint": "1 0 0 1", "right_paint": "0 0 1 1"}
     assert len(root.findall("material")) == 3
     used = [it.get("name") for it in root.iterfind("link/visual/material")]
     assert used == ["paint", "right_paint"]
@@ -191,11 +184,7 @@ def test_feet_on_one_world_are_adjacent(tmp_path: Path) -> None:
     }
     root = etree.fromstring(built(tmp_path, **texts)[0]["cell/cell.srdf"])
     last = root.findall("disable_collisions")[-1]
-    assert dict(last.attrib) == {
-        "link1": "left/base",
-        "link2": "right/base",
-        "reason": "Adjacent",
-    }
+    assert dict(last.attrib) == {"link1": "left/base", "link2": "right/base", "reason": "Adjacent"}
 
 
 def test_one_arm_names_the_parameter_above_its_limits_and_the_other_does_not(
@@ -282,10 +271,7 @@ def test_arms_that_their_descriptions_fix_to_the_world_share_its_link(tmp_path: 
 
 
 def test_values_that_disagree_are_said_and_the_first_counts(tmp_path: Path) -> None:
-    own = fleet(
-        "pose: {y: -0.5}",
-        "pose: {y: -0.5}, companions: {moveit: [other.yaml]}",
-    )
+    own = fleet("pose: {y: -0.5}", "pose: {y: -0.5}, companions: {moveit: [other.yaml]}")
     text = "default_velocity_scaling_factor: {}\njoint_limits: {{elbow: {{max_velocity: 1.0}}}}\n"
     files, findings = built(
         tmp_path, fleet_yaml=own, limits_yaml=text.format(0.5), other_yaml=text.format(0.1)

@@ -11,23 +11,20 @@ from typing import NamedTuple
 import pytest
 import yaml
 from drawn_fleets import KINDS
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet, planned_fleet
 from nav2_graphs import ROVER
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
 from multibot_rewrite.system.domains import by_domain, domain_of
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.records import (
-    PUBLISHES,
-    SUBSCRIBES,
-)
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 FLEET = f"""\
 layout: {{layout}}
@@ -55,7 +52,7 @@ SIMULATED = """\
 def written(folder: Path, layout: str = "both") -> Outputs:
     file = folder / "fleet.yaml"
     file.write_text(FLEET.format(layout=layout))
-    return make_outputs(planned_fleet(file))
+    return built_fleet(file)
 
 
 @pytest.fixture(scope="module")
@@ -204,10 +201,7 @@ def test_the_adapter_of_free_fleet_finds_each_robot(layout: str, tmp_path: Path)
         assert told.get("robot_frame", "base_footprint") in there.frames
 
 
-ALLOWED = {
-    "publishers": ("tf", "battery_state"),
-    "action_servers": ("navigate_to_pose",),
-}
+ALLOWED = {"publishers": ("tf", "battery_state"), "action_servers": ("navigate_to_pose",)}
 
 
 @pytest.mark.more
@@ -282,7 +276,7 @@ def test_what_no_plan_fulfils(layout: str, old: str, new: str, said: str, tmp_pa
         given = given.replace("shared_nodes: map_server\n", "").replace(", /robot1/scan", "")
     file.write_text(given)
     with pytest.raises(UsageError, match=said):
-        make_outputs(planned_fleet(file))
+        built_fleet(file)
 
 
 def faults(folder: Path, fleet: str) -> list[Finding]:
@@ -314,7 +308,7 @@ def test_what_a_launch_file_loads_or_brings_up_is_reached_from_one_domain(tmp_pa
     ):
         domains = "domains: {{robot1: {}, robot2: {}}}\n".format(*numbers)
         (tmp_path / "fleet.yaml").write_text(f"{head}stack: {stack}\n{domains}{SMALL}")
-        made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
+        made = built_fleet(tmp_path / "fleet.yaml")
         found = [it for it in made.findings if it.code == "MF849"]
         assert [it.line for it in found] == [5] * told, stack
 
@@ -366,10 +360,7 @@ def test_one_name_in_two_domains_is_no_clash(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
 def test_check_launch_reads_the_files_of_domain_bridge(
-    layout: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each side of a bridge is a node in its domain, with the topics of the file. Robots may be called
     as topics and parts of nodes are, one may be in the domain of all robots."""

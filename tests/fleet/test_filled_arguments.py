@@ -12,13 +12,13 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet
 from lxml import etree
 
 from multibot_rewrite import InputError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.reports import xacro_arguments
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.file import filled_arguments
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -59,7 +59,7 @@ def xacro(folder: Path, argument: str, body: str, default: str = "") -> str:
 def made(description: str, robots: Any = ("robot1", "robot2"), **keys: Any) -> Outputs:
     own = [it if isinstance(it, dict) else {"name": it} for it in robots]
     data = {"description": description, "robots": own, **keys}
-    return make_outputs(planned_fleet(data, "jazzy"))
+    return built_fleet(data, "jazzy")
 
 
 def root(outputs: Outputs, robot: str, file: str = "r.urdf") -> etree._Element:

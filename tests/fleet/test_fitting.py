@@ -85,8 +85,7 @@ def test_the_bridge_takes_what_nav2_sends(release: str, type_: str, tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("release", "value", "type_"),
-    [("jazzy", True, STAMPED), ("lyrical", False, PLAIN)],
+    ("release", "value", "type_"), [("jazzy", True, STAMPED), ("lyrical", False, PLAIN)]
 )
 def test_servers_of_no_file_follow_those_of_the_file(
     release: str, value: bool, type_: str, tmp_path: Path
@@ -156,8 +155,7 @@ def test_the_filter_of_a_real_robot_places_its_root(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("layout", "frame"),
-    [("tf-per-robot", "base_link"), ("frames-per-robot", "robot1/base_link")],
+    ("layout", "frame"), [("tf-per-robot", "base_link"), ("frames-per-robot", "robot1/base_link")]
 )
 def test_amcl_looks_for_a_frame_of_the_robot(layout: str, frame: str, tmp_path: Path) -> None:
     """amcl_node.cpp: base_footprint by default, which this rover has not."""

@@ -22,15 +22,8 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.checked_yaml import TYPES, _in_words
 from multibot_rewrite.fleet.file.fleet_data import SCHEMA, check_files, schema, with_paths
-from multibot_rewrite.fleet.file.fleet_file import (
-    KINDS,
-    FleetFile,
-    read_fleet,
-)
-from multibot_rewrite.fleet.file.robot_spec import (
-    Pose,
-    RobotSpec,
-)
+from multibot_rewrite.fleet.file.fleet_file import KINDS, FleetFile, read_fleet
+from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
 from multibot_rewrite.spelling.plan_file import is_fleet
 from tools.pages import fleet_keys
 
@@ -271,10 +264,7 @@ BAD: dict[str, tuple[str, ...]] = {
         "robots:\n  - &x {name: a, description: rover.urdf}\n  - *x\n",
         "2: anchors and aliases are not allowed: &x; write the value out",
     ),
-    "ring-of-aliases": (
-        "robots: &a [*a]\n",
-        "1:13: not valid YAML: the alias is inside",
-    ),
+    "ring-of-aliases": ("robots: &a [*a]\n", "1:13: not valid YAML: the alias is inside"),
     "merge": (
         "x: &d {a: 1}\nrobots:\n  - {<<: *d, name: a}\n",
         "1: anchors and aliases are not allowed: &d; write",
@@ -358,10 +348,7 @@ BAD: dict[str, tuple[str, ...]] = {
         "2:1: not valid YAML: did not find expected node content; correct the YAML",
     ),
     "two-documents": (f"{ONE}---\n{ONE}", "3:1: not valid YAML: there is more than one document"),
-    "too-deep": (
-        f"robots: {'[' * 600}{']' * 600}\n",
-        "1:108: not valid YAML: it is nested deeper",
-    ),
+    "too-deep": (f"robots: {'[' * 600}{']' * 600}\n", "1:108: not valid YAML: it is nested deeper"),
     "nul": ("robots:\n  - {name: a\0}\n", " not valid YAML: unacceptable character #x0000"),
     "params-of-rviz": (
         f"{ONE}companions: {{params: one_robot.rviz}}\n",

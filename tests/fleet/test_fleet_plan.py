@@ -184,9 +184,7 @@ def test_a_start_pose_is_for_the_node_that_runs(fleet: tuple[str, dict[str, str]
 
 
 @pytest.mark.slow
-def test_the_plan_reads_back_and_holds_each_robots_nodes(
-    fleet: tuple[str, dict[str, str]],
-) -> None:
+def test_the_plan_reads_back_and_holds_each_robots_nodes(fleet: tuple[str, dict[str, str]]) -> None:
     layout, files = fleet
     plan = from_yaml(files["plan.yaml"].encode(), "plan.yaml")
     by_name = {it.name: it for it in plan.robots}

@@ -13,12 +13,12 @@ from pathlib import Path
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet
 from plans import robot_named
 
 from multibot_rewrite import load_fleet, rewrite, strip
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.system.records import Parameter
 
@@ -71,7 +71,7 @@ def made(folder: Path, prefix: str = "rover", fleet: str = FLEET) -> Outputs:
     (folder / "params.yaml").write_text(PARAMS.replace("PREFIX", prefix))
     (folder / "one.rviz").write_text(RVIZ)
     (folder / "fleet.yaml").write_text(fleet)
-    return make_outputs(planned_fleet(folder / "fleet.yaml"))
+    return built_fleet(folder / "fleet.yaml")
 
 
 def text(outputs: Outputs, path: str) -> str:

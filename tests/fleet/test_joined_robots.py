@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet, planned_fleet
 from lxml import etree
 
 from multibot_rewrite import load_fleet
@@ -21,10 +21,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.joining.from_file import _KEYS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_data import schema
-from multibot_rewrite.fleet.file.fleet_file import (
-    input_files,
-    read_fleet,
-)
+from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
 
 ARM = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -95,7 +92,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def outputs(path: str = "fleet.yaml") -> dict[str, bytes]:
-    return {it.path: it.data for it in make_outputs(planned_fleet(path)).files}
+    return {it.path: it.data for it in built_fleet(path).files}
 
 
 def names(data: bytes, tag: str) -> list[str | None]:

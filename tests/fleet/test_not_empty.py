@@ -119,10 +119,7 @@ def test_a_state_publisher_of_the_users_own_is_the_only_one(tmp_path: Path, rove
     assert [it.name for it in fleet.facts] == ["rsp"]
     assert [
         it.name for it in make_fleet(rover, ["a"], ["robot_state"], {}, release=NEWEST_LTS).facts
-    ] == [
-        PUBLISHER,
-        "joint_state_publisher",
-    ]
+    ] == [PUBLISHER, "joint_state_publisher"]
 
 
 # ---------------------------------------------------------------- without it
@@ -213,18 +210,14 @@ def test_a_plan_of_no_robot(
 
 
 def test_a_plan_of_robots_without_nodes(
-    plan: dict[str, Any],
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
+    plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     del plan["robots"][1]["nodes"]
     assert "robot2 has no node that must run" in checked(plan, tmp_path, capsys)
 
 
 def test_a_plan_of_nodes_that_may_all_be_missing(
-    plan: dict[str, Any],
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
+    plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for robot in plan["robots"]:
         for node in robot["nodes"]:

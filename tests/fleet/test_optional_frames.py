@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet, planned_fleet
 
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
@@ -61,7 +61,7 @@ def test_a_plugin_that_says_where_the_robot_is_has_a_name(tmp_path: Path) -> Non
     (tmp_path / "fleet.yaml").write_text(
         "layout: tf-per-robot\nrobots: [{name: robot1, description: sub.sdf, pose: {x: 1}}]\n"
     )
-    found = make_outputs(planned_fleet(tmp_path / "fleet.yaml", "jazzy")).findings
+    found = built_fleet(tmp_path / "fleet.yaml", "jazzy").findings
     (said,) = [it.message for it in found if it.code == "MF701"]
     assert "because its description already says where it is" in said
 
@@ -88,7 +88,7 @@ def test_a_sensor_that_names_no_frame_is_told(
     (tmp_path / "dog.urdf").write_text(SEEN.format(said))
     head = f"layout: tf-per-robot\nsimulator: {simulator}\n"
     (tmp_path / "fleet.yaml").write_text(f"{head}robots: [{{name: r1, description: dog.urdf}}]\n")
-    found = make_outputs(planned_fleet(tmp_path / "fleet.yaml", "jazzy")).findings
+    found = built_fleet(tmp_path / "fleet.yaml", "jazzy").findings
     lines = [it for it in found if it.code == "MG412"]
     assert silent == (not lines)
     for it in lines:
@@ -109,7 +109,7 @@ def test_all_that_read_a_frame_that_nothing_sends_are_told(tmp_path: Path) -> No
     (tmp_path / "ekf.yaml").write_text(COSTMAP)
     text = FLEET.replace("LAYOUT", "tf-per-robot").replace("companions", "stack: nav2\ncompanions")
     (tmp_path / "fleet.yaml").write_text(text)
-    found = make_outputs(planned_fleet(tmp_path / "fleet.yaml")).findings
+    found = built_fleet(tmp_path / "fleet.yaml").findings
     (said,) = [it for it in found if it.code == "MG413" and "frame base_link," in it.message]
     for node in ("/local_costmap/local_costmap", "/behavior_server"):
         assert node in said.message

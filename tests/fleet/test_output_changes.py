@@ -44,6 +44,7 @@ def test_what_a_build_changes(
         "{}",
         "[1]",
         '{"format": "multibot build 0", "outputs": {}}',
+        '{"format": "multibot build 1", "outputs": []}',
         '{"format": "multibot build 1", "outputs": {"../x": "0"}}',
         '{"format": "multibot build 1", "outputs": {"/etc/x": "0"}}',
     ],

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet
 from lxml import etree
 from named_ends import named_ends
 from paths import FIXTURES
@@ -22,7 +22,6 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources import job
 from multibot_rewrite.description.sources.read import SourceText
 from multibot_rewrite.description.sources.whole import read_whole
-from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.robots.rewritten_robots import read_jobs
 
@@ -308,7 +307,7 @@ def test_a_default_that_is_not_empty_is_known_in_files(joint: str, tmp_path: Pat
         "companions": {"params": str(tmp_path / "controllers.yaml")},
         "robots": [{"name": "robot1"}, {"name": "robot2"}],
     }
-    made = make_outputs(planned_fleet(data, "jazzy"))
+    made = built_fleet(data, "jazzy")
     assert {it.code for it in made.findings} & {"MB229", "MB854"} == set()
     text = {it.path: it.data.decode() for it in made.files}["robot2/controllers.yaml"]
     assert "joints: [robot2_A1]" in text

@@ -7,11 +7,12 @@ from math import hypot
 from pathlib import Path
 
 import pytest
-from fleet_folder import planned_fleet
 from lxml import etree
 
 from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 CART = """\
 <robot name="cart">
@@ -39,7 +40,7 @@ def found(folder: Path, robots: str, more: str = "", code: str = "MG702") -> lis
     (folder / "cart.urdf").write_text(CART)
     file = folder / "fleet.yaml"
     file.write_text(f"layout: both\ndescription: cart.urdf\n{more}robots:\n{robots}")
-    made = make_outputs(planned_fleet(file))
+    made = make_outputs(plan_fleet(read_fleet(str(file), "", {})))
     return [it.message for it in made.findings if it.code == code]
 
 

@@ -131,8 +131,7 @@ def controlled(folder: Path, release: str) -> LoadedRobot:
 
 
 @pytest.mark.parametrize(
-    ("release", "rules"),
-    [("humble", []), ("lyrical", ["--controller-ros-args", "-r /tf:=tf"])],
+    ("release", "rules"), [("humble", []), ("lyrical", ["--controller-ros-args", "-r /tf:=tf"])]
 )
 def test_a_controller_has_its_rules_from_its_spawner_or_its_manager(
     release: str, rules: list[str], tmp_path: Path

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet, planned_fleet
 from plans import robot_named
 
 from multibot_rewrite import load_fleet
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.build import Outputs
 
 URDF = """\
 <robot name="rover">
@@ -65,7 +65,7 @@ def written(
 
 
 def made(folder: Path, layout: str, **changed: str) -> tuple[Outputs, dict[str, str]]:
-    outputs = make_outputs(planned_fleet(written(folder, layout, **changed)))
+    outputs = built_fleet(written(folder, layout, **changed))
     return outputs, {it.path: it.data.decode() for it in outputs.files}
 
 
@@ -163,7 +163,7 @@ def test_two_robots_of_one_model_and_of_none(tmp_path: Path) -> None:
     text = path.read_text().replace("simulated: rover.sdf.xacro\n", "")
     text = text.replace("x: 1}}", "x: 1}, simulated: rover.sdf.xacro}")
     path.write_text(text.replace('arguments: {namespace: "{robot}"}\n', ""))
-    outputs = make_outputs(planned_fleet(path))
+    outputs = built_fleet(path)
     lines = b"".join(it.data for it in outputs.files if it.path == "commands.md").decode()
     assert "-name robot1 -file robot1/rover.sdf" in lines
     assert "-name robot2 -topic /robot2/robot_description" in lines
@@ -190,6 +190,6 @@ def test_an_sdf_alone_is_said(changed: dict[str, object], said: list[str], tmp_p
     fleet = yaml.safe_load(Path(written(tmp_path, "tf-per-robot")).read_text())
     given = {key: it for key, it in {**fleet, **changed}.items() if it}
     (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(given))
-    outputs = make_outputs(planned_fleet(tmp_path / "fleet.yaml", "jazzy"))
+    outputs = built_fleet(tmp_path / "fleet.yaml", "jazzy")
     found = [it for it in outputs.findings if it.code == "MF712"]
     assert [text in it.message for it, text in zip(found, said, strict=True)] == [True] * len(said)

@@ -19,17 +19,13 @@ from typing import Any, NamedTuple
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet
 from lxml import etree
 from vendor_arm_pages import text_of
-from vendor_sources import (
-    VARIABLE,
-    installed_sources,
-)
+from vendor_sources import VARIABLE, installed_sources
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.description.sources.whole import read_whole
-from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.launch import missing as without_launch
 
 pytestmark = pytest.mark.slow
@@ -181,7 +177,7 @@ def build(sources: Path, tmp_path: Path) -> Build:
             "robots": [{"name": it} for it in ROBOTS[:count]],
         }
         (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(fleet))
-        made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
+        made = built_fleet(tmp_path / "fleet.yaml")
         return {it.path: it.data for it in made.files}, list(made.findings)
 
     return built
@@ -338,7 +334,7 @@ def test_a_cell_of_xarms_is_the_vendors_own_for_two_arms(sources: Path, tmp_path
         del robot["pose"]
     fleet["robots"][1]["arguments"] |= {"attach_xyz": "0 1 0"}
     (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(fleet))
-    made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
+    made = built_fleet(tmp_path / "fleet.yaml")
     assert {it.code for it in made.findings} <= {"MB873"}
     (file,) = (it.data for it in made.files if it.path == "cell/moveit_parameters.yaml")
     ours = yaml.safe_load(file)["/**"]["ros__parameters"]
@@ -376,7 +372,7 @@ def test_a_cell_of_a_pages_arms_is_one_robot_for_referees(
     fleet = yaml.safe_load(_fleet_of(page).replace("src/", f"{sources}/"))
     fleet |= {"cell": {}, "layout": "frames-per-robot"}
     (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(fleet))
-    made = make_outputs(planned_fleet(tmp_path / "fleet.yaml"))
+    made = built_fleet(tmp_path / "fleet.yaml")
     assert not [it for it in made.findings if it.level == "error"]
     files = {it.path: it.data for it in made.files}
     cell = pinocchio.buildModelFromXML(files["cell/cell.urdf"].decode())
@@ -435,7 +431,7 @@ def test_the_fleet_of_a_page_is_built(page: str, sources: Path, tmp_path: Path) 
     fleet = _fleet_of(page)
     path = tmp_path / "fleet.yaml"
     path.write_text(re.sub(r"\bsrc/", f"{sources}/", fleet))
-    made = make_outputs(planned_fleet(path))
+    made = built_fleet(path)
     # What is left is on the page; MF203 says that each arm has its own RViz.
     assert {it.code for it in made.findings} - {"MF203", FILLING} <= set(
         re.findall(r"M[BF]\d{3}", text)

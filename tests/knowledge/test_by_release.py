@@ -121,32 +121,3 @@ stacks: {s: {nodes: [{node: a, as: x, releases: <=jazzy}, {node: b, as: x, relea
     assert (node.name, node.package) == ("x", "a")
     with pytest.raises(UsageError, match=r"n.yaml:3: stack 's' has two different nodes called 'x'"):
         library("humble", text.replace("REST", "jazzy+"))
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ("releases: jazy", "release 'jazy' is not known; did you mean 'jazzy'"),
-        ("releases: <=jazzy+", "releases '<=jazzy\\+' names no releases; write jazzy, kilted"),
-        ("releases: jazzy 1.3", "releases 'jazzy 1.3' names no releases"),
-        ("source: navigation2", "source 'navigation2' names no place; write OWNER/NAME@TAG PATH"),
-        ("frames: {f: {releases: jazzy}}", "frame f has no default; add default:"),
-        (
-            "publishes: {t: [{type: a/msg/B}, {type: a/msg/C}]}",
-            "publishes 't' is there twice in hu",
-        ),
-        ("publishes: {t: []}", "publishes 't' is an empty list"),
-    ],
-)
-def test_wrong_words_name_their_line(words: str, message: str) -> None:
-    with pytest.raises(UsageError, match=f"^n.yaml:2: {message}"):
-        extend(NOTHING, f"nodes:\n  a: {{{words}}}", "n.yaml")
-
-
-def test_a_source_is_a_place_in_a_tag_or_commit() -> None:
-    one, two = "ros-navigation/navigation2@1.3.9 nav2_amcl/src/amcl_node.cpp:250", "a/b@f00 c.hpp"
-    topic = f"{{t: {{type: a/msg/B, source: {one}}}}}"
-    text = f"nodes: {{a: {{source: [{one}, {two}], publishes: {topic}}}}}"
-    node = extend(NOTHING, text, "n.yaml").nodes["a"]
-    assert node.source == (one, two)
-    assert node.endpoints[0].source == (one,)

@@ -319,6 +319,8 @@ nodes:
     assert "driver" not in found.nodes
     other = extend(LIBRARY, "nodes: {costmap/driver: {package: b}}", "m").nodes["costmap/driver"]
     assert (other.programs, other.component) == ((), "")
+    said = more.replace("package: acme\n", "package: acme\n    programs: [own]\n", 1)
+    assert extend(LIBRARY, said, "m.yaml").nodes["costmap/driver"].programs == ("own",)
 
 
 @pytest.mark.parametrize(
@@ -326,6 +328,8 @@ nodes:
     [
         ("nodes: {a: {releases: jazy}}", "release 'jazy' is not known; did you mean 'jazzy'"),
         ("nodes: {a: {releases: jazzy jazzy}}", "'jazzy jazzy' names no releases; write jazzy,"),
+        ("nodes: {a: {releases: <=jazzy+}}", "releases '<=jazzy+' names no releases; write jazzy,"),
+        ("nodes: {a: {releases: jazzy 1.3}}", "releases 'jazzy 1.3' names no releases"),
         ("nodes: {a: {source: here}}", "source 'here' names no place; write OWNER/NAME@TAG PATH"),
         ("nodes: {a: {source: a/b@c}}", "source 'a/b@c' names no place"),
         ("nodes: {a: {source: 'a/b@c d:x'}}", "source 'a/b@c d:x' names no place"),

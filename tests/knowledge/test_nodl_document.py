@@ -84,10 +84,7 @@ WRONG = {
         3,
         "no depth",
     ),
-    f"{ENDPOINT}{{name: x, type: a/B, {LAST}, depth: 0}}}}\n": (
-        3,
-        "depth is 0",
-    ),
+    f"{ENDPOINT}{{name: x, type: a/B, {LAST}, depth: 0}}}}\n": (3, "depth is 0"),
     f"{ENDPOINT}{{name: x, type: a/B, qos: {{history: KEEP_ALL, reliability: reliable}}}}\n": (
         3,
         "'reliable' is not one of",

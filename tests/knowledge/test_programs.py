@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.knowledge.node_library import extend
-from multibot_rewrite.knowledge.programs import known_program, program_of, runs
-from multibot_rewrite.knowledge.stacks import built_in, load_nodes
+from multibot_rewrite.knowledge.programs import known_program, runs
+from multibot_rewrite.knowledge.stacks import load_nodes
 
 
 @pytest.mark.parametrize(
@@ -37,18 +36,3 @@ def test_a_program_of_another_package_may_run_a_node() -> None:
 def test_a_class_runs_a_node() -> None:
     bridge = load_nodes("jazzy")["ros_gz_bridge"]
     assert runs(bridge, "ros_gz_bridge/ros_gz_bridge::RosGzBridge")
-
-
-@pytest.mark.parametrize(
-    ("more", "executable"),
-    [("", "ukf_node"), ("programs: [own_node]", "own_node")],
-)
-def test_a_user_changes_a_node_and_its_program_stays_unless_said(
-    more: str, executable: str
-) -> None:
-    text = "nodes:\n  ukf_filter_node:\n    package: robot_localization\n"
-    text += "    publishes: {odom: nav_msgs/msg/Odometry}\n" + (more and f"    {more}\n")
-    node = extend(built_in("jazzy"), text, "own.yaml").nodes["ukf_filter_node"]
-    program = program_of(node, "jazzy")
-    assert program is not None
-    assert program.executable == executable

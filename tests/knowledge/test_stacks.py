@@ -16,13 +16,8 @@ from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import (
-    built_in,
-    load_nodes,
-    load_stack,
-    user_stack,
-)
-from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC
+from multibot_rewrite.knowledge.stacks import built_in, load_nodes, load_stack, user_stack
+from multibot_rewrite.system.records import SERVICE, TOPIC
 
 WANTED = {
     "robot_state": {"robot_state_publisher", "joint_state_publisher"},
@@ -75,14 +70,6 @@ def test_shared_nodes_are_those_that_serve_all() -> None:
     bridges = {"domain_bridge", "foxglove_bridge", "ros_gz_bridge", "rosbridge_websocket"}
     assert shared == {*bridges, "rviz2", "map_merging"}
     assert [node.shared for node in load_stack("rviz_nav2", NEWEST_LTS)] == [False]
-
-
-def test_the_type_decides_the_kind() -> None:
-    node = load_nodes(NEWEST_LTS)["joint_trajectory_controller"]
-    kinds = {e.name: e.kind for e in node.endpoints}
-    assert kinds["~/joint_trajectory"] == TOPIC
-    assert kinds["~/query_state"] == SERVICE
-    assert kinds["~/follow_joint_trajectory"] == ACTION
 
 
 def test_a_host_is_a_node() -> None:
@@ -170,11 +157,6 @@ def test_frames_are_reported_with_their_defaults() -> None:
     }
 
 
-def test_a_stack_says_what_it_is_about() -> None:
-    library = extra("stacks:\n  cell:\n    about: a cell of two arms\n    nodes: [rviz2]\n")
-    assert library.stacks["cell"].about == "a cell of two arms"
-
-
 def test_a_node_is_a_stack_of_its_own() -> None:
     assert load_stack("rplidar_node", NEWEST_LTS) == (load_nodes(NEWEST_LTS)["rplidar_node"],)
 
@@ -244,96 +226,53 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        pytest.param("nodes: [", "mine.yaml:1:9: not valid YAML: ", id="broken"),
-        pytest.param("a: 1\n--- \nb: 2", "mine.yaml:2:1: not valid YAML", id="two-documents"),
-        pytest.param("- a", "mine.yaml:1: the file is a list; write keys and values", id="list"),
-        pytest.param(
-            "\nnode: {}", "mine.yaml:2: key 'node' is not known; did you mean 'nodes'", id="key"
-        ),
-        pytest.param(
-            "nodes:\n  a: {}\n  a: {}", "mine.yaml:3: the key 'a' is repeated", id="twice"
-        ),
-        pytest.param(
-            "nodes:\n  ? [a]\n  : b", "mine.yaml:2: a key is a mapping or a list", id="odd-key"
-        ),
-        pytest.param(
-            "nodes: &a {b: *a}",
-            "mine.yaml:1:15: not valid YAML: the alias is inside the",
-            id="endless",
-        ),
-        pytest.param(
-            "nodes: {a: text}", "node 'a' is the text 'text'; write keys", id="no-mapping"
-        ),
-        pytest.param("nodes: {1a: {}}", "mine.yaml:1: node name '1a': ", id="node-name"),
-        pytest.param(
-            "nodes: {a: {shared: 'yes'}}",
-            "shared is the text 'yes'; write true or false",
-            id="flag",
-        ),
-        pytest.param("nodes: {a: {note: {}}}", "note is a mapping; write a text", id="text"),
-        pytest.param(
-            "nodes: {a: {fixed: true}}", "fixed is true or false; write a list", id="no-list"
-        ),
-        pytest.param(
-            "nodes: {a: {with: [tf_lis]}}",
-            "part 'tf_lis' is not known; did you mean 'tf_listener'",
-            id="part",
-        ),
-        pytest.param("nodes: {a: {calls: {b c: x}}}", "mine.yaml:1: name 'b c': ", id="name"),
-        pytest.param(
+        ("nodes: [", "mine.yaml:1:9: not valid YAML: "),
+        ("a: 1\n--- \nb: 2", "mine.yaml:2:1: not valid YAML"),
+        ("- a", "mine.yaml:1: the file is a list; write keys and values"),
+        ("\nnode: {}", "mine.yaml:2: key 'node' is not known; did you mean 'nodes'"),
+        ("nodes:\n  a: {}\n  a: {}", "mine.yaml:3: the key 'a' is repeated"),
+        ("nodes:\n  ? [a]\n  : b", "mine.yaml:2: a key is a mapping or a list"),
+        ("nodes: &a {b: *a}", "mine.yaml:1:15: not valid YAML: the alias is inside the"),
+        ("nodes: {a: text}", "node 'a' is the text 'text'; write keys"),
+        ("nodes: {1a: {}}", "mine.yaml:1: node name '1a': "),
+        ("nodes: {a: {shared: 'yes'}}", "shared is the text 'yes'; write true or false"),
+        ("nodes: {a: {note: {}}}", "note is a mapping; write a text"),
+        ("nodes: {a: {fixed: true}}", "fixed is true or false; write a list"),
+        ("nodes: {a: {with: [tf_lis]}}", "part 'tf_lis' is not known; did you mean 'tf_listener'"),
+        ("nodes: {a: {calls: {b c: x}}}", "mine.yaml:1: name 'b c': "),
+        (
             "nodes:\n  a:\n    calls:\n      b:\n        typ: x",
             "mine.yaml:5: key 'typ' is not known; did you mean 'type'?",
-            id="endpoint-key",
         ),
-        pytest.param(
-            "nodes: {a: {calls: {b: Empty}}}", "'Empty' is not a ROS type; write it like", id="type"
-        ),
-        pytest.param(
+        ("nodes: {a: {calls: {b: Empty}}}", "'Empty' is not a ROS type; write it like"),
+        (
             "nodes: {a: {calls: {b: std_msgs/msg/Empty}}}",
             "calls 'b': std_msgs/msg/Empty is the type of a topic",
-            id="topic-called",
         ),
-        pytest.param(
+        (
             "nodes: {a: {publishes: {b: std_srvs/srv/Empty}}}",
             "publishes 'b': std_srvs/srv/Empty is the type of a service",
-            id="service-published",
         ),
-        pytest.param(
-            "stacks: {a: {nodes: [amlc]}}",
-            "node 'amlc' is not known; did you mean 'amcl'?",
-            id="node",
-        ),
-        pytest.param("stacks: {a: {nodes: [{as: b}]}}", "the entry has no node", id="no-node"),
-        pytest.param("stacks: {a: {nodes: [{node: amcl, as: a-b}]}}", "node name 'a-b': ", id="as"),
-        pytest.param(
+        ("stacks: {a: {nodes: [amlc]}}", "node 'amlc' is not known; did you mean 'amcl'?"),
+        ("stacks: {a: {nodes: [{as: b}]}}", "the entry has no node"),
+        ("stacks: {a: {nodes: [{node: amcl, as: a-b}]}}", "node name 'a-b': "),
+        (
             "stacks: {a: {nodes: [{node: amcl, names: {scam: x}}]}}",
             "name 'scam' is not known; did you mean 'scan'?",
-            id="names",
         ),
-        pytest.param(
+        (
             "stacks: {a: {nodes: [{node: amcl, remaps: {scam: x}}]}}",
             "name 'scam' is not known; did you mean 'scan'?",
-            id="remaps",
         ),
-        pytest.param(
-            "stacks: {a: {nodes: [{node: amcl, remaps: {scan: x//y}}]}}",
-            "name 'x//y': ",
-            id="target",
-        ),
-        pytest.param(
-            "stacks: {a: {include: [nav]}}",
-            "stack 'nav' is not known; did you mean 'nav2'?",
-            id="stack",
-        ),
-        pytest.param(
+        ("stacks: {a: {nodes: [{node: amcl, remaps: {scan: x//y}}]}}", "name 'x//y': "),
+        ("stacks: {a: {include: [nav]}}", "stack 'nav' is not known; did you mean 'nav2'?"),
+        (
             "stacks:\n  a: {include: [b]}\n  b: {include: [a]}",
             "mine.yaml:2: stack 'a' includes itself: a -> b -> a",
-            id="circle",
         ),
-        pytest.param(
+        (
             "stacks: {a: {nodes: [amcl, {node: map_server, as: amcl}]}}",
             "stack 'a' has two different nodes called 'amcl'",
-            id="two-nodes",
         ),
     ],
 )

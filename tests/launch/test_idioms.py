@@ -196,11 +196,7 @@ def test_xml_and_yaml_need_no_type(name: str, text: str, fleet: Path) -> None:
     states, managers = programs(told, "robot_state_publisher"), programs(told, "driver")
     robots = load_fleet(fleet).robots
     for robot, x, state, manager in zip(robots, (1.0, 3.0), states, managers, strict=True):
-        wanted = {
-            "robot_description": robot.description,
-            "rate": x,
-            "use_sim_time": True,
-        }
+        wanted = {"robot_description": robot.description, "rate": x, "use_sim_time": True}
         assert parameters(state, f"{robot.namespace}/robot_state_publisher") == wanted
         assert parameters(manager, f"{robot.namespace}/controller_manager")["use_sim_time"] is False
 

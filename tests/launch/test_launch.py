@@ -888,6 +888,7 @@ def test_a_value_alone_has_its_type(fleet: str, context: Any) -> None:
     [
         (lambda **it: launch.node("amcl", **it), "node"),
         (lambda **it: launch.lifecycle_node("amcl", **it), "lifecycle_node"),
+        (lambda **it: launch.container("amcl", **it), "container"),
         (lambda **it: launch.composable_node("amcl", **it), "composable_node"),
         (launch.place, "place"),
     ],
@@ -1191,12 +1192,6 @@ def test_an_option_that_launch_ros_has_not_is_refused_at_once(
 ) -> None:
     with pytest.raises(TypeError, match="on_exitt"):
         make(on_exitt=[])
-
-
-def test_a_name_comes_from_the_fleet(context: Any) -> None:
-    for made in (launch.node, launch.lifecycle_node, launch.container, launch.composable_node):
-        with pytest.raises(UsageError, match="namespace comes from the fleet file"):
-            made("amcl", namespace="/own")
 
 
 LAUNCH_FILES = ("gz.launch.py", "gz.launch.xml", "classic.launch.py", "classic.launch.yaml")

@@ -32,7 +32,7 @@ def test_the_page_has_them_all() -> None:
     assert launch_idioms.PAGE.read_text() == launch_idioms.page(outcomes)
     assert len(EVERY) >= 16
     assert {it.needs for it in EVERY} == {
-        *("", "nav2_common", "moveit_configs_utils", "simple_launch"),
+        *("", "nav2_common", "moveit_configs_utils", "simple_launch")
     }
 
 

@@ -53,9 +53,7 @@ def test_a_fifth_layout_builds(word: str, tmp_path: Path) -> None:
 @pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
-    "command",
-    [("urdf_postfix",), ("urdf_lint",), ("multibot", "plan")],
-    ids=" ".join,
+    "command", [("urdf_postfix",), ("urdf_lint",), ("multibot", "plan")], ids=" ".join
 )
 def test_the_help_lists_a_fifth_layout(command: tuple[str, ...]) -> None:
     done = python(FIFTH, *command, "--help")

@@ -66,10 +66,7 @@ UNREADABLE = {
     "markup-before-declaration": ("<!-- made by hand -->\n" + robot(""), ("in.urdf:2:", "start")),
     "two-roots": (robot("") + "<robot/>", ("in.urdf:5:", "Extra content", "correct")),
     "tag-mismatch": (robot('<link name="a">'), ("in.urdf:4:", "link line 3", "correct")),
-    "attribute-twice": (
-        robot('<link name="a" name="b"/>'),
-        ("in.urdf:3:", "redefined", "correct"),
-    ),
+    "attribute-twice": (robot('<link name="a" name="b"/>'), ("in.urdf:3:", "redefined", "correct")),
     "mjcf": (
         '<mujoco model="m">\n<worldbody/>\n</mujoco>',
         ("in.urdf:1:", "a model of MuJoCo", "give the robot's URDF or SDF"),

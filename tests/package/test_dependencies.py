@@ -47,12 +47,7 @@ UNASKED = {
     *("trimesh", "numpy"),  # the extra view
 }
 # What the tests import before anything else.
-OF_TESTS = {
-    "python3-hypothesis",
-    "python3-numpy",
-    "python3-pytest",
-    "python3-setuptools",
-}
+OF_TESTS = {"python3-hypothesis", "python3-numpy", "python3-pytest", "python3-setuptools"}
 # The versions of Ubuntu 22.04, which is the oldest.
 OLDEST = {"lxml": "4.8", "xacro": "2.0", "PyYAML": "5.4", "rich": "11", "jsonschema": "3.2"}
 

@@ -56,8 +56,7 @@ def test_why_does_cmd_vel_never_come(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("layout", "windows"),
-    [("frames-per-robot", ["one"]), ("tf-per-robot", ["robot1", "robot2"])],
+    ("layout", "windows"), [("frames-per-robot", ["one"]), ("tf-per-robot", ["robot1", "robot2"])]
 )
 def test_one_rviz_for_all_and_one_for_each(layout: str, windows: list[str], tmp_path: Path) -> None:
     """Where each robot has its own /tf, no window can show both."""

@@ -10,14 +10,7 @@ from pathlib import Path
 
 import pytest
 from expected_names import ROBOT, graph_problems
-from mutants import (
-    MUTATIONS,
-    SAMPLE,
-    Mutation,
-    fixtures,
-    mutant,
-    read_all,
-)
+from mutants import MUTATIONS, SAMPLE, Mutation, fixtures, mutant, read_all
 from real_robots import spread
 
 from multibot_rewrite import MultibotError, ProofError, rewrite, strip

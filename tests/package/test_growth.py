@@ -14,16 +14,7 @@ from fleet_folder import fleet_folder
 from graph_cases import GRAPHS as SAVED
 from graph_examples import read_example, read_system
 from growing import GROWING, description
-from growing_files import (
-    FLEETS,
-    GRAPHS,
-    LAUNCHED,
-    copies,
-    graph_of,
-    launch_file,
-    message,
-    written,
-)
+from growing_files import FLEETS, GRAPHS, LAUNCHED, copies, graph_of, launch_file, message, written
 from launched_here import read_here
 from made_bags import TEXT, Made, write
 from paths import ROOT

@@ -270,6 +270,7 @@ def test_changes_tell_what_was_inserted() -> None:
         (4, "topic", "cmd_vel", "cmd_vel/r1"),
         (4, "topic", "odom", "odom/r1"),
     ]
+    assert {c.path for c in changes if c.rule == "inserted"} == {"robot/gazebo/plugin"}
     assert [c.new for c in changes if c.path.endswith("/plugin@name")] == ["drive_r1"]
 
 

@@ -29,7 +29,7 @@ AT_RUN_TIME = {
 }
 # Not linear, and its text is bounded before.
 BOUNDED = {
-    r"(.{9,}) \1(?= |$)": f"a message of fewer than {LONG} characters, as the code asks before",
+    r"(.{9,}) \1(?= |$)": f"a message of fewer than {LONG} characters, as the code asks before"
 }
 # Twice as long costs twice as much; a few steps at the ends may be more.
 LINEAR = 1.4

@@ -13,7 +13,7 @@ from paths import ROOT
 
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.options import Command, Option
+from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.parser import make_parser
 
 PAGES = sorted((*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")))
@@ -83,17 +83,6 @@ def test_a_help_text_names_only_options_that_there_are(command: Command) -> None
             for name in OPTION.findall(option.help):
                 elsewhere = any(word in option.help and name in has for word, has in others.items())
                 assert name in own or elsewhere, f"{command.name} {option.names[0]}: {name}"
-
-
-@pytest.mark.parametrize("command", EVERY_COMMAND, ids=lambda it: it.name)
-def test_an_option_means_the_same_in_every_command(command: Command) -> None:
-    """No two options of one command by one name."""
-    names = [name for group in command.groups for it in group.options for name in dashed(it)]
-    assert len(names) == len({*names})
-
-
-def dashed(option: Option) -> tuple[str, ...]:
-    return tuple(it for it in option.names if it.startswith("-"))
 
 
 COUNTED = re.compile(r"\ball (two|three|four|five|six|seven|\d+) layouts\b")

@@ -69,7 +69,6 @@ def passed(call: ast.Call, word: str, count: int) -> bool:
     return starred or len(call.args) >= count or bool(named & {word, None})
 
 
-@pytest.mark.slow
 def test_no_function_has_a_release_of_its_own() -> None:
     found = {
         f"{file}: {function.name}"
@@ -80,7 +79,6 @@ def test_no_function_has_a_release_of_its_own() -> None:
     assert found == set()
 
 
-@pytest.mark.slow
 def test_the_newest_release_is_named_where_no_other_can_be_meant() -> None:
     found = {
         file
@@ -91,7 +89,6 @@ def test_the_newest_release_is_named_where_no_other_can_be_meant() -> None:
     assert found == NEWEST
 
 
-@pytest.mark.slow
 def test_every_call_of_what_is_made_once_names_the_release() -> None:
     """mypy does not see what a function behind ``lru_cache`` asks for; it sees the rest."""
     asking = {

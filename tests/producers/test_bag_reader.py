@@ -155,9 +155,7 @@ def test_transforms_are_as_they_were_at_last(topic: str, static: bool) -> None:
     assert edge == Edge("base", "odom", topic, static, (RECORDER,), transform=last, rate=rate)
 
 
-def test_what_is_no_transform_ends_the_reading_and_is_told(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_what_is_no_transform_ends_the_reading_and_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     good = [transform("odom", it, 1.0) for it in ("a", "b")]
     found = recorded(connection("/tf", TF, good[0], b"no cdr", good[1]))
     assert [it.child for it in found.transforms] == ["a"]

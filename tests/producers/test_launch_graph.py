@@ -772,8 +772,7 @@ def test_the_whole_command(
 
 @pytest.mark.more
 @pytest.mark.parametrize(
-    "name",
-    ["two.launch.py", "three.launch.py", pytest.param("three.launch.xml", marks=in_launch)],
+    "name", ["two.launch.py", "three.launch.py", pytest.param("three.launch.xml", marks=in_launch)]
 )
 def test_actions_for_robots_are_read_with_their_names(name: str) -> None:
     """Their names are known when they run: of two robots with everything of their own."""

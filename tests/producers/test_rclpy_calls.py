@@ -91,8 +91,7 @@ def test_a_session_is_its_own_and_its_nodes_leave_the_graph(install: Install) ->
     vars(sys.modules["rclpy"])["init"] = lambda **given: done.append(given)
     install("rclpy.context", Context=lambda: context)
     install(
-        "rclpy.executors",
-        SingleThreadedExecutor=lambda context: done.append(context) or executor,
+        "rclpy.executors", SingleThreadedExecutor=lambda context: done.append(context) or executor
     )
     install("rclpy.signals", SignalHandlerOptions=SimpleNamespace(NO="no signals"))
     with pytest.raises(KeyError), ros.opened() as session:

@@ -346,8 +346,7 @@ def test_a_session_is_a_client_of_the_router_alone(
 
 
 @pytest.mark.parametrize(
-    ("router", "reason"),
-    [("wrong.json5", "Expected a colon"), ("tcp/bad", "no endpoint")],
+    ("router", "reason"), [("wrong.json5", "Expected a colon"), ("tcp/bad", "no endpoint")]
 )
 def test_what_is_no_configuration_is_told(
     router: str, reason: str, monkeypatch: pytest.MonkeyPatch
@@ -359,9 +358,7 @@ def test_what_is_no_configuration_is_told(
     assert str(refused.value) == f"{router}: no session configuration of Zenoh: {reason}; {hint}"
 
 
-def test_a_router_that_does_not_answer_or_no_zenoh_is_told(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_router_that_does_not_answer_or_no_zenoh_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     with_zenoh(monkeypatch, "Unable to connect to any of [tcp/h:7447]! at /z/orchestrator.rs:1.")
     with pytest.raises(NoRouter, match=r"^Unable to connect to any of \[tcp/h:7447\]$"):
         opened("tcp/h:7447", 1.0).__enter__()

@@ -204,8 +204,7 @@ def test_the_manager_that_a_plugin_makes() -> None:
         assert it.parameters == (
             files["/c.yaml"],
             ParameterText(
-                "",
-                "/**:\n  ros__parameters: {use_sim_time: true, robot_description: <robot/>}\n",
+                "", "/**:\n  ros__parameters: {use_sim_time: true, robot_description: <robot/>}\n"
             ),
         )
     (other,) = spawned(plugin("gz-sim-imu-system")).found

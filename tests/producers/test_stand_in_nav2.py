@@ -158,10 +158,7 @@ POSE = dict.fromkeys(("x", "y", "z", "roll", "pitch", "yaw"), 0.0)
     ],
 )
 def test_the_robots_of_the_command_line(
-    words: list[str],
-    robots: dict[str, Any],
-    made: tuple[Any, Any],
-    monkeypatch: pytest.MonkeyPatch,
+    words: list[str], robots: dict[str, Any], made: tuple[Any, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if not hasattr(made[0], "ParseMultiRobotPose"):
         pytest.skip("nav2_common of lyrical has it no longer")

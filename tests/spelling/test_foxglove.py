@@ -108,10 +108,7 @@ PLAN = System(
         sends("/maps", "/a/go", TWIST),
         End(SERVICE, PUBLISHES, "/a/none", "sensor_msgs/msg/LaserScan", "", "/maps", None, ""),
     ),
-    robots=(
-        Robot("a", ("a/odom", "a/base_link"), "/tf"),
-        Robot("b", ("x/odom",), "/tf", (), "x"),
-    ),
+    robots=(Robot("a", ("a/odom", "a/base_link"), "/tf"), Robot("b", ("x/odom",), "/tf", (), "x")),
     topics=(
         Topic("/depth/x", bridge=(PUBLISHES,), type="sensor_msgs/msg/PointCloud2"),
         Topic("/b/cmd", bridge=(SUBSCRIBES,), type=TWIST),

@@ -196,12 +196,6 @@ def test_what_no_rule_reaches_is_said_and_gets_no_rule() -> None:
     ]
 
 
-def test_a_name_made_at_run_time_follows_a_namespace_and_nothing_else() -> None:
-    maker = NodeFacts("maker", "maker", (Endpoint(TOPIC, PUBLISHES, "<camera>/image"),))
-    assert table("L2", (maker,)).problems == ()
-    assert [problem.code for problem in table("L4", (maker,)).problems] == ["MR101"]
-
-
 def test_what_the_stack_renames_itself_is_led_where_the_stack_wants_it() -> None:
     endpoint = Endpoint(TOPIC, PUBLISHES, "cmd_vel", remapped="cmd_vel_nav")
     nodes = (NodeFacts("controller_server", "nav2_controller", (endpoint,)),)
@@ -330,6 +324,12 @@ def test_a_shared_node_keeps_its_namespace_and_name_to_the_letter() -> None:
     node = NodeFacts("/fleet/x_mux", "twist_mux", (), shared=True)
     (found, *_) = table("L1", (node,)).runs
     assert found[:5] == ("", "/fleet/x_mux", "/fleet", "x_mux", ())
+
+
+def test_the_data_of_a_table_names_its_layout_and_each_robot() -> None:
+    found = as_data(table("L4"))
+    assert found["layout"] == "postfix"
+    assert set(found["robots"]) >= {"robot1", "robot2"}  # type: ignore[call-overload]
 
 
 @pytest.mark.parametrize(

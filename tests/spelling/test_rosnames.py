@@ -91,9 +91,7 @@ def test_a_proposal_is_always_valid(name: str) -> None:
         pytest.param("__ns:=/x/", RemapRule("", "__ns", "/x/", 0, 6, ""), id="namespace-slash"),
         pytest.param("rostopic://a:=b", RemapRule("", "a", "b", 11, 14, "rostopic://"), id="topic"),
         pytest.param(
-            "rosservice:///a:=/b",
-            RemapRule("", "/a", "/b", 13, 17, "rosservice://"),
-            id="service",
+            "rosservice:///a:=/b", RemapRule("", "/a", "/b", 13, 17, "rosservice://"), id="service"
         ),
         pytest.param(
             "n:rostopic://a:=b", RemapRule("n", "a", "b", 13, 16, "rostopic://"), id="node-topic"
@@ -171,11 +169,7 @@ def test_anything_else_is_no_rule(text: str) -> None:
 def test_every_part_is_where_the_rule_puts_it(text: str) -> None:
     rule = split_remap(text)
     assert rule is not None
-    for part, at in (
-        (rule.node, 0),
-        (rule.source, rule.source_at),
-        (rule.target, rule.target_at),
-    ):
+    for part, at in ((rule.node, 0), (rule.source, rule.source_at), (rule.target, rule.target_at)):
         assert text.startswith(part, at)
     assert text.endswith(rule.target)
 
@@ -196,6 +190,8 @@ def test_every_part_is_where_the_rule_puts_it(text: str) -> None:
         ("{node}/scan", "/ns", "/ns/node/scan"),
         ("/{node}/scan", "/ns", "/node/scan"),
         ("{ns}/scan", "/ns", "/ns/scan"),
+        ("{node}/scan", "ns", "/ns/node/scan"),
+        ("{ns}/scan", "ns", "/ns/scan"),
         ("/all{namespace}/{node}", "/ns", "/all/ns/node"),
         ("{ns}/scan", "/", "//scan"),
         ("~/{other}", "/ns", "/ns/node/{other}"),
@@ -370,10 +366,3 @@ def test_a_name_that_leads_nowhere(name: str, message: str) -> None:
     with pytest.raises(UsageError) as caught:
         resolve_name(name, "topic", "n", "/r", rules("far:=/" + "a" * 250))
     assert message in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("name", "full"), [("{node}/x", "/ns/n/x"), ("{ns}/x", "/ns/x"), ("/a/{node}", "/a/n")]
-)
-def test_words_in_braces_are_filled_in(name: str, full: str) -> None:
-    assert expand(name, "ns", "n") == full

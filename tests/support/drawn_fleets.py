@@ -642,11 +642,7 @@ FLEET_CAUSES: dict[str, tuple[Callable[[Data], object], Callable[[Data], bool]]]
     ),
     "a shared node that nav2_bringup starts for each": (
         lambda data: (
-            data.update(
-                layout="both",
-                params_style="bringup",
-                shared_nodes=["map_server"],
-            ),
+            data.update(layout="both", params_style="bringup", shared_nodes=["map_server"]),
             data.pop("shape", None),
             _first(data).update(stack=["nav2"]),
         ),

@@ -7,13 +7,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from graph_cases import moved, qos, reframed, with_qos
-from healthy_systems import (
-    CLOCK,
-    nav2_with_tools,
-    simulated,
-    with_ends,
-    with_node,
-)
+from healthy_systems import CLOCK, nav2_with_tools, simulated, with_ends, with_node
 
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.system.records import SUBSCRIBES, Edge, System

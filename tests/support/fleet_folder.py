@@ -7,6 +7,7 @@ import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 
+from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.file.fleet_data import FleetSource
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.file.robot_choice import ALL, Choice
@@ -140,3 +141,13 @@ def planned_fleet(
     """Read and plan a fleet file, or the same as data; raises as the commands do."""
     given = str(source) if isinstance(source, Path) else source
     return plan_fleet(read_fleet(given, release, around or {}, choice), trust=trust)
+
+
+def built_fleet(
+    source: Path | FleetSource,
+    release: str = "",
+    around: Mapping[str, str] | None = None,
+    choice: Choice = ALL,
+) -> Outputs:
+    """Everything that a build of the fleet writes and says."""
+    return make_outputs(planned_fleet(source, release, around, choice))

@@ -52,8 +52,7 @@ GROWING: dict[str, Callable[[int], str]] = {
     "undeclared links of joints": lambda count: (
         _ONE
         + _each(
-            count,
-            '<joint name="j#" type="fixed"><parent link="a#"/><child link="b#"/></joint>',
+            count, '<joint name="j#" type="fixed"><parent link="a#"/><child link="b#"/></joint>'
         )
     ),
     "names declared twice": lambda count: _each(count, '<link name="base"/>'),

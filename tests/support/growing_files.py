@@ -153,10 +153,7 @@ LAUNCHED: Mapping[str, Files] = {
         )
     ),
     "py processes": _python(
-        lambda n: each(
-            n,
-            f"ExecuteProcess(cmd=[{_TALKER}, '-r', '__node:=n#']),",
-        )
+        lambda n: each(n, f"ExecuteProcess(cmd=[{_TALKER}, '-r', '__node:=n#']),")
     ),
     "py words of a process": _python(
         lambda n: (
@@ -270,12 +267,7 @@ def written(folder: Path, files: Mapping[str, str]) -> Path:
 
 # ---- graphs
 
-QOS = {
-    "history": "keep_last",
-    "depth": 10,
-    "reliability": "reliable",
-    "durability": "volatile",
-}
+QOS = {"history": "keep_last", "depth": 10, "reliability": "reliable", "durability": "volatile"}
 
 
 def _end(
@@ -456,11 +448,7 @@ FLEETS: Mapping[str, Files] = {
             "<xacro:arg", each(n, '<xacro:arg name="x#" default="1"/>') + "<xacro:arg", 1
         ),
     },
-    "Lua": _of_rover(
-        "lua",
-        "slam__lua",
-        lambda n: "a = {" + each(n, _LUA) + "}",
-    ),
+    "Lua": _of_rover("lua", "slam__lua", lambda n: "a = {" + each(n, _LUA) + "}"),
     "displays": _of_rover(
         "rviz",
         "one_robot__rviz",

@@ -14,12 +14,7 @@ from typing import Any
 
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, End, Node, System
 
-LISTS = {
-    PUBLISHES: "publishers",
-    SUBSCRIBES: "subscriptions",
-    SERVES: "services",
-    CALLS: "clients",
-}
+LISTS = {PUBLISHES: "publishers", SUBSCRIBES: "subscriptions", SERVES: "services", CALLS: "clients"}
 TF = "tf2_msgs/msg/TFMessage"
 # Every node of rclpy has them by itself.
 _OWN = ("/rosout", "/parameter_events")

@@ -22,16 +22,7 @@ from fault_changes import (
     twice,
 )
 from graph_cases import global_tf
-from healthy_systems import (
-    NAVIGATE,
-    POSE,
-    SCAN,
-    TF,
-    TRIGGER,
-    TWIST,
-    arms,
-    single,
-)
+from healthy_systems import NAVIGATE, POSE, SCAN, TF, TRIGGER, TWIST, arms, single
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES

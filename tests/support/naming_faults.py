@@ -22,15 +22,7 @@ from fault_changes import (
     without_clock,
 )
 from graph_cases import with_type, without_node
-from healthy_systems import (
-    CLOCK,
-    JOINTS,
-    MAP,
-    NAVIGATE,
-    SCAN,
-    TRIGGER,
-    with_node,
-)
+from healthy_systems import CLOCK, JOINTS, MAP, NAVIGATE, SCAN, TRIGGER, with_node
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Node

@@ -185,10 +185,7 @@ def values(
 
 
 def _filled(
-    plugin: etree._Element,
-    name: str,
-    paths: Paths,
-    words: Mapping[str, str],
+    plugin: etree._Element, name: str, paths: Paths, words: Mapping[str, str]
 ) -> Iterator[str]:
     """A name of the code with its slots filled; none where one cannot be."""
     slot = _SLOT.search(name)

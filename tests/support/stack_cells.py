@@ -52,7 +52,7 @@ ON_MAP = {
 # Two stacks -> the codes that their user is told, since the stacks contradict each other.
 CONTRADICTING = {
     # One joystick has the drive's own topic and that of the mux.
-    frozenset({"teleop", "teleop_direct"}): {"MG102"},
+    frozenset({"teleop", "teleop_direct"}): {"MG102"}
 }
 # What the user's own description is warned about, whatever runs beside it.
 OF_DESCRIPTIONS = {
@@ -67,7 +67,7 @@ OF_DESCRIPTIONS = {
 # A description and a stack -> the codes of warnings about what the description lacks.
 LACKING = {
     # Its one sensor is a colour camera: no scanner, no depth.
-    ("sdf", "rtabmap"): {"MG303"},
+    ("sdf", "rtabmap"): {"MG303"}
 }
 
 
@@ -147,10 +147,9 @@ def pair_faults(one: str, other: str, release: str, folder: Path) -> list[str]:
 
 def lives(cell: Cell) -> bool:
     """Is there such a robot? Gazebo Classic ends with Humble, and an arm does not drive."""
-    return {
-        "classic": has_release("humble", cell.release),
-        "arm": cell.stack in OF_ARMS,
-    }.get(cell.robot, True)
+    return {"classic": has_release("humble", cell.release), "arm": cell.stack in OF_ARMS}.get(
+        cell.robot, True
+    )
 
 
 def cells(robot: str) -> Iterator[Cell]:

@@ -14,12 +14,10 @@ from typing import Any
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet
 from paths import ROOT
 from vendor_live import Told, look, said, told
 from vendor_sources import install, packages_below
-
-from multibot_rewrite.fleet.build import make_outputs
 
 ARMS = {"ur": "UR5e", "franka": "FR3", "xarm": "xArm 6", "kinova": "Gen3"}
 # Their sections of docs/arms.md.
@@ -49,7 +47,7 @@ def _told_of_arm(page: str, sources: Path, work: Path) -> Iterator[Told]:
     codes, file = true_codes(page), work / "fleet.yaml"
     for fleet in fleets(page, sources):
         file.write_text(yaml.safe_dump(fleet))
-        made = make_outputs(planned_fleet(file))
+        made = built_fleet(file)
         robots = [it["name"] for it in fleet["robots"]]
         looked = look(file, {it.path: it.data for it in made.files}, robots)
         yield told(

@@ -171,12 +171,7 @@ def rules_of(row: Mapping[str, Any]) -> list[RemapRule]:
 
 
 def _special(
-    row: dict[str, Any],
-    name: str,
-    robot: str,
-    built: Built,
-    theirs: Rows,
-    ours: Rows,
+    row: dict[str, Any], name: str, robot: str, built: Built, theirs: Rows, ours: Rows
 ) -> None:
     """Bridges, RViz and static transforms."""
     program = row["executable"]
@@ -191,12 +186,7 @@ def _special(
 
 
 def _rviz(
-    row: dict[str, Any],
-    name: str,
-    robot: str,
-    built: Built,
-    theirs: Rows,
-    ours: Rows,
+    row: dict[str, Any], name: str, robot: str, built: Built, theirs: Rows, ours: Rows
 ) -> None:
     """The config that the vendor opens with its rules, and the one that is built with its command's."""
     vendor = next((it for it in row.get("texts", {}).values()), "")

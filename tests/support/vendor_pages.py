@@ -18,15 +18,7 @@ from pathlib import Path
 from vendor_arm_pages import ARMS, told_of_arms
 from vendor_compare import Built, Difference
 from vendor_live import Told, said, told
-from vendor_recipes import (
-    ROBOTS,
-    Outcome,
-    Recipe,
-    false_findings,
-    is_true,
-    outcome,
-    read_recipes,
-)
+from vendor_recipes import ROBOTS, Outcome, Recipe, false_findings, is_true, outcome, read_recipes
 from vendor_sources import WITHOUT, sources_folder
 from vendor_systems import read_vendors
 

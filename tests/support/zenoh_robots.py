@@ -159,9 +159,7 @@ def mangled(name: str) -> str:
 
 
 def tf_message(
-    *edges: tuple[str, str],
-    mark: str = "<",
-    numbers: tuple[float, ...] = (1, 2, 3, 0, 0, 0, 1),
+    *edges: tuple[str, str], mark: str = "<", numbers: tuple[float, ...] = (1, 2, 3, 0, 0, 0, 1)
 ) -> bytes:
     """A TFMessage in CDR, little endian or big; all its transforms have these numbers."""
     data = struct.pack(f"{mark}I", len(edges))

@@ -193,8 +193,7 @@ def ur(tmp_path_factory: pytest.TempPathFactory) -> tuple[FleetPlan, System]:
 
 @pytest.mark.more
 @pytest.mark.parametrize(
-    ("node", "code"),
-    [("dashboard_client", "MG101"), ("io_and_status_controller", "MG101")],
+    ("node", "code"), [("dashboard_client", "MG101"), ("io_and_status_controller", "MG101")]
 )
 def test_a_node_that_is_gone_is_found(node: str, code: str, ur: tuple[FleetPlan, System]) -> None:
     plan, seen = ur

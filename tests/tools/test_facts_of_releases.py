@@ -78,8 +78,7 @@ def of(release: str, node: str, role: str, name: str) -> set[tuple[str, str]]:
 # From the sources by hand: slam_toolbox_common.cpp:123 and ros_filter.cpp:116 of
 # robot_localization make TransformListener(*buffer); amcl_node.cpp:1522 of 1.3.13 gives it itself.
 @pytest.mark.parametrize(
-    ("node", "way"),
-    [("slam_toolbox", "helper"), ("ekf_filter_node", "helper"), ("amcl", "")],
+    ("node", "way"), [("slam_toolbox", "helper"), ("ekf_filter_node", "helper"), ("amcl", "")]
 )
 def test_who_listens(node: str, way: str) -> None:
     assert of("jazzy", node, "subscribes", "/tf") == {(TF, way)}

@@ -97,8 +97,7 @@ def test_a_launch_file_in_yaml() -> None:
 
 
 @pytest.mark.parametrize(
-    ("file", "text"),
-    [("a.py", "def ("), ("a.xml", "<launch>"), ("a.yaml", "a: [")],
+    ("file", "text"), [("a.py", "def ("), ("a.xml", "<launch>"), ("a.yaml", "a: [")]
 )
 def test_a_file_that_cannot_be_read_has_no_nodes(file: str, text: str) -> None:
     assert launched_nodes(file, text) == ()

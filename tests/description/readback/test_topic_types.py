@@ -7,7 +7,7 @@ Sources: ros-simulation/gazebo_ros_pkgs ros2 gazebo_plugins/src, unless a line s
 from __future__ import annotations
 
 import pytest
-from description_calls import NEWEST_LTS, check_vocabulary, load_vocabulary, read
+from description_calls import NEWEST_LTS, RuntimeName, check_vocabulary, load_vocabulary, read
 
 ODOM, TWIST, TF = "nav_msgs/msg/Odometry", "geometry_msgs/msg/Twist", "tf2_msgs/msg/TFMessage"
 IMAGE, INFO, CLOUD = (f"sensor_msgs/msg/{it}" for it in ("Image", "CameraInfo", "PointCloud2"))

@@ -337,11 +337,7 @@ VENDORS = [
         command(*(f"fer_{it}/effort" for it in ARM))
         | state(*(f"fer_{it}/{of_}" for it in ARM for of_ in ("position", "velocity"))),
     ),
-    (
-        "franka_example_controllers/JointImpedanceExampleController",
-        "",
-        set(),
-    ),
+    ("franka_example_controllers/JointImpedanceExampleController", "", set()),
     (
         "franka_example_controllers/ModelExampleController",
         "",
@@ -452,6 +448,4 @@ def test_a_command_that_two_parameters_name_is_told_with_both_places() -> None:
     given = given_in(text, file="c.yaml")
     (it,) = (node for node in given if node.manager)
     found = [*claimed_twice(load_nodes("jazzy")[it.known].claims, it)]
-    assert found == [
-        (Claimed("command", "w/velocity", Place("c.yaml", 7)), Place("c.yaml", 6)),
-    ]
+    assert found == [(Claimed("command", "w/velocity", Place("c.yaml", 7)), Place("c.yaml", 6))]

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet, planned_fleet
 from given_parameters import given_in
 from lxml import etree
 from named_ends import named_ends
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.producers.evidence.hardware import exported
 from multibot_rewrite.producers.evidence.nodes import nodes_of
@@ -87,7 +87,7 @@ def made(folder: Path, arm: str, controllers: str, layout: str, more: str = "") 
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\n{more}description: arm.urdf\n"
         "robots: [{name: left}, {name: right}]\ncompanions: {params: [controllers.yaml]}\n"
     )
-    return make_outputs(planned_fleet(fleet))
+    return built_fleet(fleet)
 
 
 def found(outputs: Outputs, *codes: str) -> list[tuple[str, str]]:
@@ -278,8 +278,7 @@ def test_nodes_that_hardware_makes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("layout", "target"),
-    [("both", "controller_manager"), ("postfix", "/left_controller_manager")],
+    ("layout", "target"), [("both", "controller_manager"), ("postfix", "/left_controller_manager")]
 )
 def test_hardware_asks_its_own_controller_manager(layout: str, target: str, tmp_path: Path) -> None:
     """uf_robot_system_hardware.cpp:254 names /controller_manager/list_controllers: the process of the

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 import yaml
-from fleet_folder import planned_fleet
+from fleet_folder import built_fleet
 from plans import ends_of
 
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.fleet.build import Outputs
 
 REPUBLISHER = """\
 /**:
@@ -35,7 +35,7 @@ def made(folder: Path, layout: str, params: str = REPUBLISHER) -> Outputs:
         f"layout: {layout}\naffix: prefix\ndescription: r.urdf\nstack: create3_repub\n"
         "robots: [{name: robot1}, {name: robot2}]\ncompanions: {params: p.yaml}\n"
     )
-    return make_outputs(planned_fleet(folder / "fleet.yaml"))
+    return built_fleet(folder / "fleet.yaml")
 
 
 def text(outputs: Outputs, path: str) -> str:

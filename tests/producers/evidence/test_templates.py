@@ -29,10 +29,7 @@ def made(template: str, condition: str = "") -> list[str]:
     ("template", "names"),
     [
         ("fixed/name", ["fixed/name"]),
-        (
-            "<joints>/<kinds>",
-            ["left/velocity", "left/effort", "right/velocity", "right/effort"],
-        ),
+        ("<joints>/<kinds>", ["left/velocity", "left/effort", "right/velocity", "right/effort"]),
         ("<name>/orientation.x", ["imu/orientation.x"]),
         ("<missing|name>/x", ["imu/x"]),
         ("<empty|none|name>/x", ["imu/x"]),
