@@ -5,24 +5,34 @@ from __future__ import annotations
 
 import argparse
 import shlex
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from functools import partial
+from itertools import islice
 
+from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.fleet import own_nodes
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report, chosen
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.fleet.checks.manager_remedy import with_remedies
+from multibot_rewrite.fleet.file.simulator_switch import MOST, is_called_as_switch
 from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.findings import not_read
+from multibot_rewrite.producers.launch.include_arguments import arguments_declared
+from multibot_rewrite.producers.launch.kept_paths import read_text
+from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words
 from multibot_rewrite.rules.check import side_by_side
 from multibot_rewrite.rules.domains import check_view
 from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch, placed
+from multibot_rewrite.rules.launch.started import START_MANAGER, no_manager
+
+_Read = Callable[[Sequence[LaunchOrder]], Launched]
 
 
 def run(options: argparse.Namespace) -> int:
@@ -36,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
     for it in made.system.environment.caveats:
         if not it.incomplete:
             note(options, it.message)
-    found = [*with_remedies(judge_launch(made), orders, read), *named_findings(made)]
+    found = [*_with_remedies(judge_launch(made), orders, read), *named_findings(made)]
     if options.format != "text":
         found += not_read(made.graph)
     if plan is not None:
@@ -62,3 +72,48 @@ def _check_use(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> No
     pictures.check(options)
     if options.output:
         check_target(options.output, [*filter(None, [options.plan]), *(it.file for it in orders)])
+
+
+def _with_remedies(
+    found: Iterable[Finding], orders: Sequence[LaunchOrder], read: _Read
+) -> list[Finding]:
+    """Return the findings; those of a controller manager that spawners wait for and nothing starts say
+    the argument with which one is, tried out. ``read`` reads launch files with other arguments."""
+    every = list(found)
+    if not any(_is_open(it) for it in every):
+        return every
+    remedy = _argument(orders, read) or START_MANAGER
+    return [it._replace(hint=remedy) if _is_open(it) else it for it in every]
+
+
+def _is_missing(it: Finding) -> bool:
+    return it.code == no_manager.code
+
+
+def _is_open(it: Finding) -> bool:
+    return _is_missing(it) and it.level == ERROR and it.hint == START_MANAGER
+
+
+def _argument(orders: Sequence[LaunchOrder], read: _Read) -> str:
+    """Return the argument of a launch file with which no manager is missing; empty for none."""
+    for name, value in islice(_choices(orders), MOST):
+        with suppress(MultibotError):
+            other = read([_with(it, name, value) for it in orders])
+            if other.models.found and not any(map(_is_missing, judge_launch(other))):
+                return f"add {name}:={value}, with which a manager is started"
+    return ""
+
+
+def _choices(orders: Sequence[LaunchOrder]) -> Iterator[tuple[str, str]]:
+    """Yield the arguments that may switch to another manager, with both values."""
+    declared: dict[str, None] = {}
+    for it in orders:
+        declared |= dict.fromkeys(sorted(arguments_declared(read_text(it.file))))
+    given = {it for order in orders for it in order.arguments}
+    for name in filter(is_called_as_switch, declared):
+        yield from ((name, it) for it in ("true", "false") if (name, it) not in given)
+
+
+def _with(it: LaunchOrder, name: str, value: str) -> LaunchOrder:
+    others = (one for one in it.arguments if one[0] != name)
+    return it._replace(arguments=(*others, (name, value)))

@@ -21,6 +21,7 @@ from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.sources.job import (
+    PARTS,
     FilesRead,
     Job,
     Reader,
@@ -35,7 +36,7 @@ from multibot_rewrite.description.steps.collect import NOTHING
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.robots.member import Member, member
 from multibot_rewrite.fleet.robots.own_values import Written
-from multibot_rewrite.fleet.robots.srdf_of_another import srdf_findings
+from multibot_rewrite.rules.files.names import of_another_robot
 from multibot_rewrite.spelling.transforms import links_of, tree_of
 from multibot_rewrite.system.records import Edge
 
@@ -54,6 +55,11 @@ class Jobs(NamedTuple):
 # The rule about such names, and what to do.
 PREFIX_ONLY = "MB422"
 SET_PREFIX = "its plugin can only put the robot's name in front of names: set affix: prefix"
+
+# The rules about single names.
+_LOOSE = ("MB803", "MB804", "MB807")
+# Fewer names are mistakes in an SRDF that is meant.
+_FEWEST = 3
 
 
 NO_SYSTEMS: Mapping[str, str] = MappingProxyType({})
@@ -208,7 +214,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
         made, simulated = member(text, data, robot.tag, robot.simulator == REAL), b""
         said = semantic.template.inventory.declared if semantic else NOTHING
         declared = with_srdf(text.template.inventory.declared, said)
-        found = (*text.findings, *(srdf_findings(semantic) if semantic else ()))
+        found = (*text.findings, *(_srdf_findings(semantic) if semantic else ()))
         if model and jobs.simulated:
             declared = _both(declared, model.template.inventory.declared)
             simulated = _final(model, robot, jobs.simulated.naming)
@@ -228,6 +234,30 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             tuple(it for it in found if it.code not in (*SHARED_CODES, UNREAD)),
             simulated,
         )
+
+
+def _srdf_findings(semantic: Rewrite) -> Iterator[Finding]:
+    """The findings of an SRDF; one in place of all about links and joints where most are not there: it
+    was not written for its URDF."""
+    named = {
+        (kind, name.text): name.kind
+        for names in semantic.template.inventory.names
+        for name in names
+        for kind in (name.kind or name.kinds[0],)
+        if kind in PARTS
+    }
+    missing = [text for (_, text), kind in named.items() if not kind]
+    loose = [it for it in semantic.findings if it.code in _LOOSE]
+    if len(missing) < _FEWEST or 2 * len(missing) <= len(named) or not loose:
+        yield from semantic.findings
+        return
+    message = f"{len(missing)} of the {len(named)} links and joints that the SRDF names are not in "
+    message += f"the URDF: {missing[0]}, {missing[1]} and others"
+    first = min(loose, key=lambda it: it.line)
+    hint = "; ".join((*filter(None, [first.hint]), "give both the same arguments:"))
+    place = {"file": first.file, "line": first.line, "column": first.column}
+    yield of_another_robot.finding(message, hint, **place)
+    yield from (it for it in semantic.findings if it.code not in _LOOSE)
 
 
 def _both(declared: Declared, model: Declared) -> Declared:
