@@ -191,8 +191,9 @@ def _targets(endpoint: Endpoint, place: _Place) -> Iterator[Rule]:
         # What a node joins with the namespace above is no name of its own namespace.
         for joined in asked_for(source, endpoint, namespace)[1:]:
             if naming.topics != NAMESPACE:
-                above = target_of(wanted, kind, robot, naming) or target
-                yield from [(joined, f"/{above.lstrip('/')}")] * bool(target)
+                above = target_of(wanted, kind, robot, naming) or target or wanted
+                is_led = target or wanted.startswith("/")
+                yield from [(joined, f"/{above.lstrip('/')}")] * bool(is_led)
             elif (target or wanted).startswith("/") and joined != (target or wanted):
                 yield joined, target or wanted
 
