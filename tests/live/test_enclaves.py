@@ -16,7 +16,6 @@ from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.spelling.enclaves import to_policy
-from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.system.records import System, surely
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
