@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import pytest
-from graph_calls import ABSENCE, RULES, check
+from graph_calls import ABSENCE, RULES, check, name_ownership
 from graph_cases import (
     environment,
     global_tf,
@@ -27,7 +27,6 @@ from multibot_rewrite.base.naming import make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.system.ownership import name_ownership
 from multibot_rewrite.system.records import (
     MAY,
     PUBLISHES,

@@ -15,6 +15,7 @@ from graph_calls import to_json, to_yaml
 from graph_faults import FAULTS
 from lxml import html
 from page_calls import (
+    CLASH,
     MISSING,
     OK,
     UNEXPECTED,
@@ -31,7 +32,6 @@ from multibot_rewrite.cli import multibot
 from multibot_rewrite.cli.pictures import snippets
 from multibot_rewrite.lint.catalogue import rules
 from multibot_rewrite.live.rehearsal import with_substitutes
-from multibot_rewrite.pages.states import CLASH
 from multibot_rewrite.system.records import ACTION, SERVES, End, Node
 
 GRAPHS = ROOT / "fixtures" / "graphs"
