@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import pytest
-from description_calls import NEWEST_LTS, make_naming, spelled
 from graph_calls import ABSENCE, RULES, check, name_ownership
 from graph_cases import (
     environment,
@@ -24,6 +23,8 @@ from graph_cases import (
 from plans import from_plugin, more, own, planned_end, told, without
 from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 
+from multibot_rewrite.base.naming import make_naming, spelled
+from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.records import (
@@ -502,54 +503,6 @@ def test_a_tf_listener_that_no_rule_reached() -> None:
 # ---------------------------------------------------------------- odd robots
 
 
-def robots_called(*names: str, layout: str = "L2") -> System:
-    naming = make_naming(layout)
-    declared = {name: [spelled(naming, name, "frame", link) for link in LINKS] for name in names}
-    return expect(build_table(names, NODES, naming, release=NEWEST_LTS), naming, declared)
-
-
-@pytest.mark.parametrize(
-    ("robots", "layout", "name", "robot"),
-    [
-        (("arm", "arm_left"), "L2", "/arm_left/x", "arm_left"),
-        (("arm", "arm_left"), "L2", "/arm/left", "arm"),
-        (("arm", "arm_left"), "L4", "/x/arm_left", "arm_left"),
-        (("arm", "arm_left"), "L4", "/gripper_arm_left", "arm_left"),
-        (("arm", "arm_left"), "L4", "/gripper_arm", "arm"),
-        (("robot1", "joint_states"), "L2", "/robot1/joint_states", "robot1"),
-        (("robot1", "joint_states"), "L2", "/joint_states", ""),
-        (("robot1", "joint_states"), "L2", "/robot1/more/joint_states", "robot1"),
-        (("robot1", "joint_states"), "L2", "/joint_states/scan", "joint_states"),
-        (("robot1", "joint_states"), "L4", "/joint_states/robot1", "robot1"),
-        (("robot1", "joint_states"), "L4", "/joint_states/more/robot1", "robot1"),
-        (("robot1", "joint_states"), "L4", "/joint_states/compressed", ""),
-        (("robot1", "robot10"), "L2", "/robot10/x", "robot10"),
-        (("robot1", "robot2"), "L2", "/driver_robot1/x", "robot1"),
-        (("robot1", "robot2"), "L2", "/robot1", ""),
-    ],
-)
-def test_which_robot_a_name_belongs_to(
-    robots: tuple[str, ...], layout: str, name: str, robot: str
-) -> None:
-    assert name_ownership(robots_called(*robots, layout=layout)).robot(name) == robot
-
-
-@pytest.mark.parametrize(
-    ("layout", "name", "bare"),
-    [
-        ("L2", "/robot1/scan", "/scan"),
-        ("L2", "/robot1/a/robot1", "/a/robot1"),
-        ("L4", "/robot1/a/robot1", "/robot1/a"),
-        ("L4", "/driver_robot1", "/driver"),
-        ("L4", "/robot1_driver", "/driver"),
-        ("L2", "/robot1", "/robot1"),
-        ("L2", "/robot10/x", "/robot10/x"),
-    ],
-)
-def test_a_name_without_the_robots(layout: str, name: str, bare: str) -> None:
-    assert name_ownership(plan(layout)).without_robot(name, "robot1") == bare
-
-
 # ---------------------------------------------------------------- size
 
 
@@ -589,3 +542,35 @@ def test_bare_frames_of_two_robots_on_one_topic() -> None:
 def test_an_unplanned_node_by_its_affix() -> None:
     (found,) = check(plan("L4"), with_node(healthy("L4"), "/gripper_robot2"))
     assert (found.code, found.robot) == ("MG108", "robot2")
+
+
+def robots_called(*names: str, layout: str = "L2") -> System:
+    naming = make_naming(layout)
+    declared = {name: [spelled(naming, name, "frame", link) for link in LINKS] for name in names}
+    return expect(build_table(names, NODES, naming, release=NEWEST_LTS), naming, declared)
+
+
+@pytest.mark.parametrize(
+    ("robots", "layout", "name", "robot"),
+    [
+        (("arm", "arm_left"), "L2", "/arm_left/x", "arm_left"),
+        (("arm", "arm_left"), "L2", "/arm/left", "arm"),
+        (("arm", "arm_left"), "L4", "/x/arm_left", "arm_left"),
+        (("arm", "arm_left"), "L4", "/gripper_arm_left", "arm_left"),
+        (("arm", "arm_left"), "L4", "/gripper_arm", "arm"),
+        (("robot1", "joint_states"), "L2", "/robot1/joint_states", "robot1"),
+        (("robot1", "joint_states"), "L2", "/joint_states", ""),
+        (("robot1", "joint_states"), "L2", "/robot1/more/joint_states", "robot1"),
+        (("robot1", "joint_states"), "L2", "/joint_states/scan", "joint_states"),
+        (("robot1", "joint_states"), "L4", "/joint_states/robot1", "robot1"),
+        (("robot1", "joint_states"), "L4", "/joint_states/more/robot1", "robot1"),
+        (("robot1", "joint_states"), "L4", "/joint_states/compressed", ""),
+        (("robot1", "robot10"), "L2", "/robot10/x", "robot10"),
+        (("robot1", "robot2"), "L2", "/driver_robot1/x", "robot1"),
+        (("robot1", "robot2"), "L2", "/robot1", ""),
+    ],
+)
+def test_which_robot_a_name_belongs_to(
+    robots: tuple[str, ...], layout: str, name: str, robot: str
+) -> None:
+    assert name_ownership(robots_called(*robots, layout=layout)).robot(name) == robot

@@ -21,6 +21,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import html
 from page_calls import (
+    CLASH,
     FAULTY,
     MISSING,
     OK,
@@ -39,7 +40,6 @@ from plans import own as nodes_of
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
-from multibot_rewrite.pages.states import CLASH
 from multibot_rewrite.system.records import Edge, Node, System
 
 # What a page is made of.

@@ -11,11 +11,10 @@ import nav2_graphs
 import pytest
 import report_pages
 from fault_changes import Fault
-from graph_calls import side_by_side, to_json, to_yaml
+from graph_calls import to_json, to_yaml
 from graph_faults import FAULTS
 from lxml import html
 from page_calls import (
-    BRIDGE,
     CLASH,
     MISSING,
     OK,
@@ -23,13 +22,12 @@ from page_calls import (
     Scene,
     ids_of,
     make_ids,
-    robots_of,
     to_html,
 )
 from paths import ROOT
-from report_pages import FIRST, SECOND
+from report_pages import FIRST
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.cli.pictures import snippets
 from multibot_rewrite.lint.catalogue import rules
@@ -101,62 +99,6 @@ def test_the_tree_with_the_fault_is_above_the_nodes() -> None:
     assert page(report_pages.healthy()).xpath("//section/@id") == order
 
 
-@pytest.mark.more
-def test_twenty_robots_with_the_same_faults_are_one_card_and_one_drawing() -> None:
-    tree = page(report_pages.twenty())
-    (card,) = tree.find_class("card")
-    assert card.find("p").text == "20 robots, 1 error each; 40 nodes running"
-    assert [it.text for it in card.iterfind("h3/a")] == [f"robot{at}" for at in range(1, 9)]
-    assert len(card.xpath(".//h3//a")) == 20
-    opened = tree.xpath("//section[@id='graph']//details[@open]/@id")
-    assert opened == ["g0", "shared"]
-
-
-@pytest.mark.more
-def test_of_a_large_fleet_the_robots_with_findings_are_drawn() -> None:
-    plan = nav2_graphs.fleet(40, 2)
-    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot39/topic1", "/topic1")
-    tree = page(nav2_graphs.scene(plan, graph))
-    groups = tree.xpath("//section[@id='graph']//details[starts-with(@id, 'g')]")
-    drawn = [it.get("id") for it in groups if it.xpath(".//svg")]
-    assert sorted(drawn) == sorted(["g38", *(f"g{at}" for at in range(29))])
-    assert len(groups) == 40
-    assert all("Not drawn" in it.text_content() for it in groups if not it.xpath(".//svg"))
-
-
-@pytest.mark.more
-def test_both_robots_of_cross_talk_are_concerned() -> None:
-    rows = {it.finding.code: it.robots for it in report_pages.spoiled().rows}
-    assert rows["MG321"] == ("robot1", "robot2")
-    assert rows["MG308"] == ("robot1",)
-    assert cards(report_pages.spoiled()) == {"robot1": "bad", "robot2": "bad"}
-
-
-def test_a_card_of_its_own_says_the_robots_own_names() -> None:
-    """robot2 has the fault of all, and one more: the fault of all is not said of robot1 there."""
-    plan = nav2_graphs.fleet(3, 2)
-    graph = nav2_graphs.healthy(plan)
-    for robot in ("robot1", "robot2", "robot3"):
-        graph = nav2_graphs.moved(graph, f"/{robot}/topic1", "/topic1")
-    graph = nav2_graphs.moved(graph, "/robot2/topic0", "/topic0")
-    first, second = page(nav2_graphs.scene(plan, graph)).find_class("card")[:2]
-    texts = [it.text_content() for it in (first, second)]
-    own = next(it for it in texts if it.startswith("robot2"))
-    assert "/robot2/topic1" in own and "/robot1" not in own
-
-
-def test_a_robot_is_not_concerned_by_a_robot_with_a_longer_name() -> None:
-    plan = nav2_graphs.fleet(11, 2)
-    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot11/topic1", "/topic1")
-    assert {it.robots for it in nav2_graphs.scene(plan, graph).rows} == {("robot11",)}
-
-
-def test_a_frame_concerns_the_robot_that_has_its_word() -> None:
-    by_plan, _ = side_by_side(report_pages.rich_plan(), report_pages.rich_graph())
-    found = Finding("MG401", ERROR, "has two parents", names=("robot2/laser",))
-    assert robots_of(by_plan, found) == {"fleet_a/robot2"}
-
-
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("fault", FAULTS, ids=[it.name for it in FAULTS])
 def test_a_danger_is_drawn_and_concerns_a_robot(fault: Fault) -> None:
@@ -189,27 +131,6 @@ def test_robots_in_namespaces_of_two_levels_with_all_that_a_plan_may_have() -> N
     assert f'<tspan class="dim">{FIRST}</tspan>/topic0' in text
     first = re.search('<p class="one-of">(.*)</p>', text)
     assert first and first[1].endswith(f'<em class="good">{FIRST}/amcl runs</em>')
-
-
-def test_a_topic_that_no_bridge_carries_is_dashed() -> None:
-    graph = report_pages.rich_graph()
-    ends = (it for it in graph.ends if it.name != f"{SECOND}/cmd_vel")
-    scene = report_pages.rich(graph._replace(ends=tuple(ends)))
-    assert [it.finding.code for it in scene.rows] == ["MG126"]
-    wrong = {key: state for key, state in edge_states(scene).items() if state != OK}
-    assert wrong == {(BRIDGE, f"{SECOND}/cmd_vel"): MISSING}
-    assert cards(scene) == {"fleet_a/robot2": "bad", "fleet_a/robot1": "good"}
-
-
-@pytest.mark.parametrize(("running", "state"), [((), MISSING), (("amcl", "slam_toolbox"), CLASH)])
-def test_of_alternatives_none_or_two_run(running: tuple[str, ...], state: str) -> None:
-    graph = nav2_graphs.without_node(report_pages.rich_graph(), f"{FIRST}/amcl")
-    nodes = (Node(f"{FIRST}/{it}", it) for it in running)
-    scene = report_pages.rich(graph._replace(nodes=(*graph.nodes, *nodes)))
-    wrong = {node for node, it in node_states(scene).items() if it != OK}
-    assert wrong == {f"{FIRST}/amcl", f"{FIRST}/slam_toolbox"}
-    assert node_states(scene)[f"{FIRST}/amcl"] == state
-    assert cards(scene)["fleet_a/robot1"] == "bad"
 
 
 def test_what_a_shared_node_lacks_is_dashed() -> None:
@@ -328,3 +249,14 @@ def test_snippets_are_short_and_of_files_that_are_there(tmp_path: Path) -> None:
     assert [line.split()[0] for line in found[f"{file}:1"]] == ["1", "2", "3"]
     assert [line.split()[0] for line in found[f"{file}:5"]] == ["3", "4", "5", "6", "7"]
     assert max(map(len, found[f"{file}:5"])) < 200
+
+
+@pytest.mark.parametrize(("running", "state"), [((), MISSING), (("amcl", "slam_toolbox"), CLASH)])
+def test_of_alternatives_none_or_two_run(running: tuple[str, ...], state: str) -> None:
+    graph = nav2_graphs.without_node(report_pages.rich_graph(), f"{FIRST}/amcl")
+    nodes = (Node(f"{FIRST}/{it}", it) for it in running)
+    scene = report_pages.rich(graph._replace(nodes=(*graph.nodes, *nodes)))
+    wrong = {node for node, it in node_states(scene).items() if it != OK}
+    assert wrong == {f"{FIRST}/amcl", f"{FIRST}/slam_toolbox"}
+    assert node_states(scene)[f"{FIRST}/amcl"] == state
+    assert cards(scene)["fleet_a/robot1"] == "bad"

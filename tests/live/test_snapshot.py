@@ -225,11 +225,6 @@ def test_a_wrong_domain_is_reported_before_rcl_exits(word: str) -> None:
 # --- is the view whole?
 
 
-def fleet(count: int) -> tuple[list[str], list[End]]:
-    nodes = [f"/robot{number}/drive" for number in range(count)]
-    return nodes, [end(node, "/heartbeat", process=f"{at:024x}") for at, node in enumerate(nodes)]
-
-
 def test_every_caveat_is_documented() -> None:
     root = ROOT
     rooms = ("system", "live", *(f"producers/{it}" for it in ("bags", "ros", "rosgraph", "zenoh")))

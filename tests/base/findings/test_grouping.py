@@ -3,12 +3,9 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, same_for
-from multibot_rewrite.base.findings.formats import FORMATS, Report, rendered
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, same_for
 from multibot_rewrite.base.findings.selection import grouped
 
 ROBOTS = [f"robot{number}" for number in range(1, 21)]
@@ -89,28 +86,3 @@ def test_the_order_is_that_of_the_first() -> None:
     command = [lost(robot) for robot in ROBOTS[:2]]
     found = grouped([scan[0], command[0], command[1], scan[1]], NAMES)
     assert [it.names for it in found] == [("/robot1/scan",), ("/robot1/cmd_vel",)]
-
-
-@pytest.mark.parametrize("form", [it for it in FORMATS if it != "statistics"])  # which counts only
-def test_every_format_names_the_robots_and_the_node(form: str) -> None:
-    found = grouped([lost(robot) for robot in ROBOTS], NAMES)
-    text = rendered(form, found, Report("multibot check", ["plan.yaml"], {}))
-    assert "/robot1/driver" in text.replace("\\", "")
-    assert "MG102" in text
-    if form == "json":
-        (one,) = json.loads(text)["findings"]
-        assert (one["robots"], one["file"]) == (ROBOTS, None)
-    else:
-        assert "the same for robot2 and 18 more" in text
-
-
-@pytest.mark.parametrize("form", FORMATS)
-def test_a_report_without_any_file_is_one(form: str) -> None:
-    found = [lost("robot1", level=INCONCLUSIVE)]
-    assert "MG102" in rendered(form, found, Report("multibot check", [], {}))
-
-
-def test_what_is_inconclusive_is_no_failure_in_junit() -> None:
-    found = [lost("robot1", level=INCONCLUSIVE), lost("robot2")]
-    text = rendered("junit", found, Report("multibot check", ["plan.yaml"], {}))
-    assert 'tests="2" failures="1" errors="0" skipped="1"' in text
