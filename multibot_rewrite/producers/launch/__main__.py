@@ -37,7 +37,7 @@ from multibot_rewrite.producers.launch.door import is_there
 from multibot_rewrite.producers.launch.read import UnreadableError, read_graph
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, graph_of, orders_of
 from multibot_rewrite.producers.launch.relay import Relay, relayed
-from multibot_rewrite.producers.launch.source_packages import SOURCES, link_sources
+from multibot_rewrite.producers.launch.source_packages import SOURCES, link_sources, packages_for
 from multibot_rewrite.producers.launch.stand_in import is_stood_in, standing_in
 
 NO_LAUNCH = (
@@ -153,7 +153,8 @@ def _work(order: LaunchOrder, folder: str, first: str, seconds: float, place: in
     stood_in = is_stood_in()
     try:
         if not order.trusted:
-            confine(order, folder, [first], seconds)
+            found = packages_for(order.file, order.roots).values()
+            confine(order, folder, [first, *found], seconds)
             vars(conversation)["child"] = relayed(asking(inbox.read, send))
         graph = read_graph(order, folder)
         answer: object = {"graph": graph._replace(stood_in=stood_in)}

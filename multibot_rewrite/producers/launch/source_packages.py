@@ -35,14 +35,14 @@ NOT_INSTALLED = "not_installed"
 def link_sources(file: str, roots: Iterable[str], folder: str) -> None:
     """Fill a folder with links to the packages below ``roots``, and to those beside the one of the
     launch ``file``."""
-    for name, path in dict(_packages(file, roots)).items():
+    for name, path in packages_for(file, roots).items():
         link_share(name, path, _shared(name, os.path.join(folder, SOURCES)))
 
 
 def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
     """Make the packages known that ``link_sources`` has linked. What is installed is found first, then
     what is below the roots."""
-    for name, path in dict(_packages(file, roots)).items():
+    for name, path in packages_for(file, roots).items():
         if os.path.isfile(os.path.join(path, name, "__init__.py")) or _installs_python(path):
             sys.path.append(path)
     _search(os.path.join(folder, SOURCES))
@@ -96,6 +96,11 @@ def _shared(name: str, prefix: str) -> str:
     with open(os.path.join(prefix, _INDEX, name), "wb"):
         pass
     return os.path.join(prefix, "share", name)
+
+
+def packages_for(file: str, roots: Iterable[str]) -> dict[str, str]:
+    """Return the folders of the packages that a launch file finds as sources, by their names."""
+    return dict(_packages(file, roots))
 
 
 def _packages(file: str, roots: Iterable[str]) -> Iterator[tuple[str, str]]:

@@ -96,7 +96,10 @@ def test_sections_say_the_stacks(nodes: str, stacks: list[str], tmp_path: Path) 
     assert {it: why for it, why in made.stacks.items() if it not in bare} == said
 
 
-_LAUNCH = "def generate_launch_description():\n    {} return LaunchDescription([{}])\n"
+_LAUNCH = (
+    "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
+    "def generate_launch_description():\n    {} return LaunchDescription([{}])\n"
+)
 _NODE = "it = Node(package='{}', executable='e', parameters=[{!r}]);"
 
 
@@ -107,10 +110,11 @@ _NODE = "it = Node(package='{}', executable='e', parameters=[{!r}]);"
         ("nav2_collision_monitor", "collision_monitor", "", "it is an example of"),
         ("nav2_collision_monitor", "collision_monitor", "own", ""),
         ("own", "collision_monitor", "", ""),
-        # A node that nobody knows is the robot's where a launch file has it, and does not drop it.
+        # A node that nobody knows is the robot's where a launch file has it.
         ("own", "mapper", "", "no launch file starts mapper"),
         ("own", "mapper", "own", ""),
-        ("own", "mapper", "unused", "no launch file starts mapper"),
+        # It may read a file that its text names in another way than by a node.
+        ("own", "mapper", "unused", ""),
         # A section of every node is for that which gets it.
         ("own", "/**", "own", "it is for any node"),
         ("own", "/**", "robot_localization", ""),

@@ -31,8 +31,13 @@ SDF = f"""<sdf version="1.9"><model name="rover_sim">
 SPAWNS = "description = 'rover.urdf'\nmodel = 'rover_sim.sdf'\n"
 # Another thing of the same package.
 DOCK = '<sdf version="1.9"><model name="dock"><link name="plate"/><link name="post"/></model></sdf>'
-GIVES = """here = get_package_share_directory('rover')
-Node(executable='amcl', parameters=[os.path.join(here, 'tb3.yaml')])
+GIVES = """import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch_ros.actions import Node
+def generate_launch_description():
+    file = os.path.join(get_package_share_directory('rover'), 'tb3.yaml')
+    return LaunchDescription([Node(package='nav2_amcl', executable='amcl', parameters=[file])])
 """
 AMCL = "amcl:\n  ros__parameters: {{base_frame_id: {}, scan_topic: {}}}\n"
 

@@ -192,8 +192,12 @@ def test_a_file_of_controllers_that_launch_files_give_is_given(folder: Path) -> 
     xacro.write_text(text.replace("$(find rover)/control.yaml", "$(arg controllers)"))
     ekf = "ekf_filter_node: {ros__parameters: {base_link_frame: base_link}}\n"
     (folder / "ekf.yaml").write_text(ekf)
-    node = "Node(executable='ekf_node', name='ekf_filter_node', parameters=[{'frequency': 20.0}])"
-    (folder / "up.launch.py").write_text(node)
+    ekf_node = "package='robot_localization', executable='ekf_node', name='ekf_filter_node'"
+    node = f"Node({ekf_node}, parameters=[{{'frequency': 20.0}}])"
+    (folder / "up.launch.py").write_text(
+        "from launch import LaunchDescription; from launch_ros.actions import Node\n"
+        f"def generate_launch_description(): return LaunchDescription([{node}])\n"
+    )
     fleet = fleet_of(folder)
     assert fleet["arguments"] == {"controllers": "control.yaml"}
     assert {"ekf_filter_node": {"frequency": 20.0}} in fleet["companions"]["params"]
