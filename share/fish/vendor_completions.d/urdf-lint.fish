@@ -7,7 +7,7 @@ complete -c urdf-lint -l roots -r -d 'folders to search for packages, in additio
 complete -c urdf-lint -l urdf -r -d 'the URDF that an SRDF or another related file is for'
 complete -c urdf-lint -l vocabulary -r -d 'file with more plugin definitions: which parameters are names (docs/add-a-plugin.md)'
 complete -c urdf-lint -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release that the robots run: humble, jazzy, kilted, lyrical, rolling'
-complete -c urdf-lint -l trust -d 'run xacro files without the sandbox'
+complete -c urdf-lint -l trust -d 'run xacro and launch files without the sandbox'
 complete -c urdf-lint -s o -l output -r -d 'write the findings there, not to standard output'
 complete -c urdf-lint -l fix -d 'apply the safe fixes'
 complete -c urdf-lint -l diff -d 'with --fix: print what would change, write nothing'

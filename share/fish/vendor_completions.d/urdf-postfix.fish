@@ -5,7 +5,7 @@ complete -c urdf-postfix -s n -l count -r -d 'number of robots, called robot1, r
 complete -c urdf-postfix -l urdf -r -d 'the URDF that an SRDF or another related file is for'
 complete -c urdf-postfix -l vocabulary -r -d 'file with more plugin definitions: which parameters are names (docs/add-a-plugin.md)'
 complete -c urdf-postfix -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release that the robots run: humble, jazzy, kilted, lyrical, rolling'
-complete -c urdf-postfix -l trust -d 'run xacro files without the sandbox'
+complete -c urdf-postfix -l trust -d 'run xacro and launch files without the sandbox'
 complete -c urdf-postfix -s o -l output -r -d 'write it there'
 complete -c urdf-postfix -l in-place -d 'write the result over the input'
 complete -c urdf-postfix -l world-systems -r -f -a 'keep leave' -d 'Gazebo systems of the whole world, such as Sensors: keep them (default for one robot)'
