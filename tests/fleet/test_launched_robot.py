@@ -128,11 +128,12 @@ def test_a_wrong_entry_is_refused_with_its_line(launch: str, said: str, tmp_path
         read_fleet(file, "", {})
 
 
-def test_a_launch_file_that_a_fleet_names_needs_trust(tmp_path: Path) -> None:
-    (tmp_path / "a.launch.py").write_text("")
+def test_a_launch_file_that_a_fleet_names_is_read_behind_fences(tmp_path: Path) -> None:
+    (tmp_path / "a.launch.py").write_text("import subprocess\nsubprocess.run(['touch', 'started'])\n")
     file = written(tmp_path, FLEET.replace("system_model.yaml", "a.launch.py"))
     with pytest.raises(InputError, match="--trust"):
         planned_fleet(file)
+    assert not (tmp_path / "started").exists()
 
 
 def test_the_command_takes_a_launch_file_beside_robots(

@@ -40,7 +40,7 @@ from plans import own as nodes_of
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
-from multibot_rewrite.system.records import Edge, Node, System
+from multibot_rewrite.system.records import Edge, Node, System, surely
 
 # What a page is made of.
 TAGS = frozenset(
@@ -455,7 +455,7 @@ def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.without_node(nav2_graphs.healthy(plan), ABSENT))
     assert node_states(scene)[ABSENT] == MISSING
-    own = {e.name for e in plan.ends if e.node == ABSENT}
+    own = {e.name for e in surely(plan).ends if e.node == ABSENT}
     missing = {e.name for e in group(scene, "robot2").edges if e.state == MISSING}
     assert missing == {name for name in own if "robot2" in name} | {"/tf", "/tf_static"}
     shown = {
