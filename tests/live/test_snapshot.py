@@ -231,9 +231,9 @@ def test_every_caveat_is_documented() -> None:
     files = (it for room in rooms for it in (root / "multibot_rewrite" / room).rglob("*.py"))
     source = "".join(it.read_text() for it in files)
     page = (root / "docs/snapshot.md").read_text().partition("## Caveats")[2]
-    assert set(re.findall(r'(?:Caveat\(\s*|(?:BUSY_MACHINE|WAITED_FOR) = )"([\w-]+)"', source)) == set(
-        re.findall(r"`([a-z]+-[\w-]+)`", page)
-    )
+    assert set(
+        re.findall(r'(?:Caveat\(\s*|(?:BUSY_MACHINE|WAITED_FOR) = )"([\w-]+)"', source)
+    ) == set(re.findall(r"`([a-z]+-[\w-]+)`", page))
 
 
 def test_a_long_list_is_cut() -> None:

@@ -28,6 +28,7 @@ _LIBRARIES = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/et
 _DEVICES = ("/dev/null", "/dev/urandom")
 # Variables that are no secret, beside those that xacro sees.
 _PLAIN = (
+    "COLUMNS",
     "DISPLAY",
     "HOME",
     "HOSTNAME",
@@ -37,6 +38,7 @@ _PLAIN = (
     "USER",
     "MULTIBOT_",
     "LD_LIBRARY_PATH",
+    "LINES",
     "PYTHONPATH",
 )
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
