@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 
 FEW, SEVERAL, SHOWN = 3, 5, 8
@@ -41,3 +42,42 @@ def plural(count: int, word: str) -> str:
     """A number with the word for what is counted."""
     ending = "es" if word.endswith("s") else "s"
     return f"{count} {word}{ending * (count != 1)}"
+
+
+# A value that a message repeats may be a whole file.
+LONGEST = 1_000
+# What ends a line or steers a terminal; what turns the direction of reading; what stands in no XML or
+# UTF-8: lone surrogates are bytes of a file's name that are no UTF-8.
+_STEERING = "\x00-\x08\x0b-\x1a\x1c-\x1f\x7f-\x9f\u2028\u2029"
+_TURNING = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
+_ODD = f"{_STEERING}{_TURNING}\ud800-\udfff\ufffe\uffff"
+_IN_A_LINE = f"[{_ODD}\t\n\x1b]"
+_NOT_ESCAPED = f"[\x7f-\x9f\u2028\u2029{_TURNING}]"
+# Colours are ours, or do no harm.
+_IN_A_TEXT = f"[{_ODD}]|\x1b(?!\\[[0-9;]*m)"
+
+
+def one_line(text: str) -> str:
+    r"""The text with every odd character as Python writes it: ``\n``, ``\x1b``, ``\udcff``. Of a very
+    long one the middle is left out."""
+    if len(text) > LONGEST:
+        text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 2 :]}"
+    if text.isprintable():
+        return text  # as most are: the pattern takes longer to compile than a report to write
+    return re.sub(_IN_A_LINE, _escaped, text)
+
+
+def for_terminal(text: str) -> str:
+    """The same for several lines, which may be coloured."""
+    if text.replace("\n", "").isprintable():
+        return text
+    return re.sub(_IN_A_TEXT, _escaped, text)
+
+
+def in_json(text: str) -> str:
+    """A JSON text with the escapes of JSON for what it may hold as it is, and a terminal obeys."""
+    return re.sub(_NOT_ESCAPED, lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def _escaped(found: re.Match[str]) -> str:
+    return found[0].encode("unicode_escape").decode()

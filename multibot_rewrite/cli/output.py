@@ -14,7 +14,7 @@ from typing import TextIO, TypeGuard, TypeVar
 
 from multibot_rewrite.base import editors
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.printable import for_terminal, one_line
+from multibot_rewrite.base.wording import for_terminal, one_line
 from multibot_rewrite.cli.walk import check_link, check_target
 
 AUTO, ALWAYS = "auto", "always"

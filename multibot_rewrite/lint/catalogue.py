@@ -26,7 +26,7 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF1",
         (
-            "companions.params.section_keys",
+            "companions.params.rewrite",
             "companions.params.values",
             "companions.params.shared_defaults",
             "companions.params.bringup_style",
@@ -36,16 +36,16 @@ HOMES: tuple[Home, ...] = (
         "MF2",
         (
             "companions.rviz.window_checks",
-            "companions.rviz.bridged",
+            "companions.rviz.of_plan",
         ),
     ),
     Home("MF5", ("fleet.outputs.bridge_outputs",)),
     Home(
         "MF7",
         (
-            "fleet.robots.start_pose_rules",
+            "fleet.robots.start_poses",
             "fleet.outputs.spawn",
-            "fleet.robots.two_descriptions",
+            "fleet.checks.of_robots",
             "fleet.outputs.controller_files",
         ),
     ),
@@ -61,7 +61,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.robots.simulators",
             "fleet.checks.lacking",
             "fleet.checks.other_manager",
-            "fleet.robots.hardware_services",
+            "fleet.checks.of_robots",
             "fleet.robots.joined_robots",
             "fleet.robots.world_systems",
             "fleet.checks.across_domains",

@@ -16,8 +16,17 @@ from multibot_rewrite.base.findings.selection import (
     said_of,
 )
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.printable import for_terminal, in_json, one_line
-from multibot_rewrite.base.wording import and_then, clip, only, plural, shorten, unique
+from multibot_rewrite.base.wording import (
+    and_then,
+    clip,
+    for_terminal,
+    in_json,
+    one_line,
+    only,
+    plural,
+    shorten,
+    unique,
+)
 
 
 def test_lists_in_a_sentence() -> None:

@@ -14,7 +14,7 @@ from fleet_folder import SMALL, fleet_folder
 from graph_cases import healthy, read_plan
 
 from multibot_rewrite.base.findings.formats import FORMATS
-from multibot_rewrite.base.printable import for_terminal, one_line
+from multibot_rewrite.base.wording import for_terminal, one_line
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.output import print_bytes

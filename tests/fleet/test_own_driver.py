@@ -9,7 +9,7 @@ import pytest
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.robots.start_pose_rules import OWN_ODOMETRY
+from multibot_rewrite.fleet.robots.start_poses import OWN_ODOMETRY
 
 ROBOT = """\
 <robot name="bare">

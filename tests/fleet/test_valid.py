@@ -13,8 +13,8 @@ import jsonschema
 import pytest
 import yaml
 
+from multibot_rewrite.fleet.file.checked_yaml import is_valid
 from multibot_rewrite.fleet.file.fleet_data import schema
-from multibot_rewrite.fleet.file.valid import is_valid
 
 ROOT = Path(__file__).parents[2]
 FLEETS = [

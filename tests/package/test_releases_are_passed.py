@@ -27,7 +27,7 @@ NEWEST = {
     "base/releases.py",
     "cli/declared/shared.py",
     "description/sources/release_said.py",
-    "fleet/proposal/release_of_files.py",
+    "fleet/proposal/propose.py",
     "rules/settings.py",
 }
 

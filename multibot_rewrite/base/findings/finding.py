@@ -6,8 +6,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 from multibot_rewrite.base.model import Edit, MultibotError
-from multibot_rewrite.base.printable import one_line
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import one_line
 
 # What is counted once: a file may have thousands of findings, and be one line.
 _BLOCK = 4096

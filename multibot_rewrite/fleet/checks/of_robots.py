@@ -8,23 +8,26 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import combinations, pairwise
 from math import ceil, dist
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.readback.meeting import OPENED
+from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.checks.lacking import lacking
 from multibot_rewrite.fleet.checks.named_twice import named_twice
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec, Sources
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launched_prefix import launched_prefixes
 from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_frames
-from multibot_rewrite.fleet.robots.hardware_services import moved_services
 from multibot_rewrite.fleet.robots.own_values import own_value, sources_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 from multibot_rewrite.fleet.robots.simulators import is_simulated, other_hardware
-from multibot_rewrite.fleet.robots.two_descriptions import differences, of_sdf_alone
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
@@ -32,9 +35,10 @@ from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.files.robot_words import in_description
 from multibot_rewrite.rules.launch.models import in_each_other
 from multibot_rewrite.rules.system.sharing import one_device
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.records import DEVICE, Address, Place, Robot, System
+from multibot_rewrite.system.records import DEVICE, SERVES, Address, Place, Robot, System
 
 # Robots of which each pair is looked at; of more the nearest neighbours in a list are.
 MOST = 400
@@ -180,3 +184,83 @@ def _finding(robot: RewrittenRobot, other: str, gap: float, needed: float) -> Fi
         f" {needed:.2f} m"
     )
     return at_robot(in_each_other, robot, message, "give them pose: further apart")
+
+
+MOVED = declare("MF851", "service-of-hardware-moved", NOTE, formats=("fleet",))
+
+
+def moved_services(plan: FleetPlan) -> Iterator[Finding]:
+    """Yield the absolute services of hardware that have the robot's name now, one finding a robot."""
+    tables = plan.fleet.table.by_robot(it.spec.namespace for it in plan.robots)
+    for robot in plan.robots:
+        runs = (it for it in tables[robot.spec.namespace].runs if it.fact.of_hardware)
+        own = (it for run in runs for it in run.names)
+        served = [it for it in own if it[0].role == SERVES and it[0].name[0] == "/"]
+        moved = [(end.name, name) for end, name in served if name != end.name]
+        if moved:
+            rules = ", ".join(f"{old}:={new}" for old, new in moved)
+            message = f"the controller manager of robot {robot.spec.name!r} has the rules {rules}"
+            hint = f"call {moved[0][1]}: nothing serves {moved[0][0]} any more"
+            yield at_robot(MOVED, robot, message, hint)
+
+
+DIFFERENT = declare("MF711", "model-differs-from-description", WARNING, formats=("fleet",))
+
+SDF_ALONE = declare("MF712", "sdf-for-state-publisher", WARNING, formats=("fleet",))
+
+
+def of_sdf_alone(plan: FleetPlan) -> Iterator[Finding]:
+    """The robots whose robot_state_publisher gets an SDF: robot_state_publisher.cpp reads it by
+    urdf::Model, which asks the parsers that are installed."""
+    published = {it.name for it in plan.fleet.facts if it.package == STATE_PUBLISHER}
+    runs = {it.robot for it in plan.fleet.table.runs if it.node in published}
+    for robot in plan.robots:
+        if robot.member.described.document.root.tag == "sdf" and robot.spec.namespace in runs:
+            links = shorten(robot.member.described.declared.get("link", ()))
+            message = (
+                f"robot_state_publisher of {robot.spec.name} gets an SDF, which it reads with the "
+                f"package sdformat_urdf alone; else no node sends {links}"
+            )
+            hint = "name its URDF as description and this file as simulated, or install the package"
+            yield at_robot(SDF_ALONE, robot, message, hint)
+
+
+def differences(plan: FleetPlan) -> Iterator[Finding]:
+    """What the model of a robot and its description do not have in common."""
+    for robot in plan.robots:
+        if robot.simulated:
+            described, model = _moving(robot.member.described), _moving(robot.member.inventory)
+            lacking = [it for it in described if it not in model]
+            if lacking:
+                what = "has no moving joint" if len(lacking) == 1 else "has no moving joints"
+                message = f"what the simulator gets of {robot.spec.name} {what} {shorten(lacking)}"
+                hint = "nothing in the simulator sends their states; give both files the same names"
+                yield at_robot(DIFFERENT, robot, message, hint)
+            yield from _of_frames(robot)
+
+
+def _moving(inventory: Inventory) -> list[str]:
+    """The joints that need states: neither fixed nor following another one."""
+    return [
+        str(it.get("name", ""))
+        for it in inventory.document.root.iter("joint")
+        if it.get("type", "fixed") != "fixed"
+        if it.find("mimic") is None and it.find("axis/mimic") is None
+    ]
+
+
+def _of_frames(robot: RewrittenRobot) -> Iterator[Finding]:
+    names = robot.names._replace(robot=robot.spec.tag)
+    usual = (spell(names, "frame", it) for it in USUAL_FRAMES)
+    known = {*robot.links, *names.naming.shared_frames, *usual}
+    named = {
+        claim.value.strip()
+        for claim in robot.member.inventory.claims
+        if claim.site.kinds == ("frame",) and claim.site.form == "whole"
+    }
+    unknown = sorted(it for it in named - known if it and "<" not in it and "$" not in it)
+    if unknown:
+        model = f"what the simulator gets of {robot.spec.name}"
+        message = f"{model} names frames that its description has not: {shorten(unknown)}"
+        hint = "name links of the description, or send a transform to them"
+        yield at_robot(DIFFERENT, robot, message, hint)

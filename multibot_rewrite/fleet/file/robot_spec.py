@@ -13,12 +13,18 @@ from multibot_rewrite.base.naming import NAMESPACE, Naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.rviz.colours import read_colour
+from multibot_rewrite.description.joining.from_file import part_of, parts_of
 from multibot_rewrite.description.joining.part import Part, files_of
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import JOIN as LIST
 from multibot_rewrite.fleet.file.checked_yaml import Path
-from multibot_rewrite.fleet.file.fleet_data import FleetData, given_arguments, listed, texts_of
-from multibot_rewrite.fleet.file.listed_parts import described
+from multibot_rewrite.fleet.file.fleet_data import (
+    JOIN,
+    FleetData,
+    given_arguments,
+    listed,
+    texts_of,
+)
 from multibot_rewrite.fleet.fleet import facts_of
 from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order
 
@@ -223,3 +229,31 @@ def _tag(own: Mapping[str, Any], side: str, place: str) -> str:
         what = f"{own['name']!r} has a {other}, but the fleet's affix is {side}"
         raise InputError(f"{place}: {what}; write {side}: instead")
     return str(own.get(side, own["name"]))
+
+
+DESCRIPTION = "description"
+# What a robot is called where the fleet file lists its parts.
+_MADE = "robot.urdf"
+
+
+def described(read: FleetData, at: int) -> tuple[str, tuple[Part, ...]]:
+    """The description of a robot, by its number, and the parts that it is joined of.
+
+    That of a list in the fleet file is no file, and is called as if it were below. Raises InputError
+    for a robot with both.
+    """
+    data, own = read.data, read.data["robots"][at]
+    file, line = read.places["robots", at]
+    if any(JOIN in it and DESCRIPTION in it for it in (own, data)):
+        what = "join and description are both there: a robot has one of them; remove the other"
+        raise InputError(f"{file}:{line}: {what}")
+    given = own if JOIN in own or DESCRIPTION in own else data
+    if JOIN not in given:
+        path = given.get(DESCRIPTION, "")
+        return path, parts_of(path) if path.endswith(LIST) else ()
+    like = next(it["name"] for it in data["robots"] if it.get(JOIN) == own.get(JOIN))
+    try:
+        parts = tuple(map(part_of, given[JOIN]))
+    except UsageError as error:
+        raise InputError(f"{file}:{line}: {error}") from None
+    return os.path.join(read.file, like if given is own else "", _MADE), parts

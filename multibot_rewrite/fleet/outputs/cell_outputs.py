@@ -34,7 +34,7 @@ from multibot_rewrite.fleet.outputs.moveit_parameters import (
     parameters_from,
 )
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile, path_for
-from multibot_rewrite.fleet.robots.joined_arms import Arm, joined_arms
+from multibot_rewrite.fleet.robots.joined_robots import Arm, joined_arms
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.start_poses import world_of
 from multibot_rewrite.spelling.start import File, Start, shell_line

@@ -9,8 +9,7 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
-from multibot_rewrite.companions.rviz.bridged import bridged_window
-from multibot_rewrite.companions.rviz.of_plan import windows_of_plan
+from multibot_rewrite.companions.rviz.of_plan import bridged_window, windows_of_plan
 from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC

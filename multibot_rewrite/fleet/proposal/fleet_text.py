@@ -9,7 +9,7 @@ from math import inf
 from typing import Any
 
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.base.wording import one_line
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
 from multibot_rewrite.fleet.file.robot_spec import REAL

@@ -7,18 +7,29 @@ They are texts of files that are on no disk; what reads a file of a robot takes 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+
+from lxml import etree
+from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.join import Joined, join_plain
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS, RVIZ
-from multibot_rewrite.description.joining.part import Part
-from multibot_rewrite.description.rewriters.tree import builtin_tree
+from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
+from multibot_rewrite.description.joining.kept import without_marks
+from multibot_rewrite.description.joining.part import Part, ReadPart
+from multibot_rewrite.description.joining.semantic import PartSemantics, joined_srdf, xml_text
+from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import JOIN, is_xacro
+from multibot_rewrite.fleet.file.cell_file import Cell
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
-from multibot_rewrite.fleet.file.robot_spec import RobotSpec
+from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
 
 ABOUT_PARTS = declare("MF848", "joined-parts", NOTE, formats=("fleet",))
 
@@ -75,3 +86,92 @@ def _note(robot: RobotSpec, text: str) -> Finding:
     message = f"robot {robot.name!r} is joined of parts: {text}"
     hint = "see what it means for the robot; multibot join shows the files"
     return ABOUT_PARTS.finding(message, hint, file=robot.file, line=robot.line)
+
+
+# Several arms as one robot: the robots of a cell, as they are written, joined at one world link.
+# Source: moveit2 2.12.4 robot_model.cpp (``buildModel``: a virtual joint counts only where its child is
+# the root link).
+_STANDING = Pose()
+_HINT = "set groups: rename"
+
+
+class Arm(NamedTuple):
+    """A robot of a cell: its written URDF and SRDF, the word in its frames, where it stands; ``place``
+    is its line of the fleet file."""
+
+    name: str
+    tag: str
+    urdf: bytes
+    srdf: bytes
+    pose: Pose | None
+    place: str
+
+    @property
+    def where(self) -> str:
+        """What a message begins with."""
+        return f"{self.place}: cell: robot {self.name!r}"
+
+
+def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapping[str, bytes]:
+    """One URDF and one SRDF of all arms, by their endings: each arm is fixed to the link ``world``
+    where it stands, and the cell's own groups are there besides.
+
+    Raises InputError for an arm that has no place or moves, for groups that are not there, and as
+    ``join_texts`` and ``joined_srdf``.
+    """
+    root = etree.Element("robot", name=cell.name)
+    etree.SubElement(root, "link", name=world)
+    parts = [GivenPart(Part("", name=cell.name), etree.tostring(root), cell.name)]
+    for arm in arms:
+        part = Part("", world, tuple(arm.pose or _STANDING), name=arm.tag)
+        parts.append(GivenPart(part, arm.urdf, arm.where))
+    made = join_texts(parts, tree)
+    semantics = _semantics(made, world, arms)
+    srdf = read_xml(joined_srdf(semantics, made.data, hint=_HINT).data, cell.place)
+    _add_groups(srdf, cell)
+    return {".urdf": without_marks(made.data), ".srdf": xml_text(srdf)}
+
+
+def _semantics(made: JoinedText, world: str, arms: Sequence[Arm]) -> list[PartSemantics]:
+    first, *others = (it.part for it in made.parts)
+    found = [PartSemantics(first, b"", "")]
+    for arm, part in zip(arms, others, strict=True):
+        _check_place(arm, part, world)
+        _check_stands(arm)
+        found.append(PartSemantics(part, arm.srdf, arm.where))
+    return found
+
+
+def _check_place(arm: Arm, part: ReadPart, world: str) -> None:
+    if part.root == world and arm.pose not in (None, _STANDING):
+        what = f"has a pose, but its description fixes it to {world!r}"
+        raise InputError(f"{arm.where} {what}; set shared_frames: [map], or remove the pose")
+    if part.root != world and arm.pose is None:
+        what = f"has no pose; write where it stands in {world!r}: pose: {{x: 0.5}}"
+        raise InputError(f"{arm.where} {what}")
+
+
+def _check_stands(arm: Arm) -> None:
+    """A virtual joint says where an arm stands; in a cell the URDF does."""
+    for it in read_xml(arm.srdf, arm.place).iterchildren("virtual_joint"):
+        if it.get("type") != "fixed":
+            what = f"its virtual joint {it.get('name')!r} is {it.get('type')}"
+            raise InputError(f"{arm.where}: {what}; an arm of a cell stands: make it fixed")
+
+
+def _add_groups(srdf: _Element, cell: Cell) -> None:
+    known = [it.get("name", "") for it in srdf.iterchildren("group")]
+    for name, parts in cell.groups.items():
+        for what in _faults(name, parts, known):
+            raise InputError(f"{cell.place}: cell: group {name!r}{what}")
+        group = etree.SubElement(srdf, "group", name=name)
+        group.extend(etree.Element("group", name=it) for it in parts)
+
+
+def _faults(name: str, parts: Sequence[str], known: Sequence[str]) -> Iterator[str]:
+    if name in known:
+        yield " is a group of one arm; write another name"
+    for it in parts:
+        if it not in known:
+            near = did_you_mean_one_of(it, known) or "name a group of an SRDF"
+            yield f": no arm has a group {it!r}; {near}"

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.rule import Rule, declare
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.record import NamedTuple
@@ -23,13 +23,6 @@ from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
-from multibot_rewrite.fleet.robots.start_pose_rules import (
-    LOCALISED_ALREADY,
-    NO_SHARED_FRAME,
-    NO_SINGLE_ROOT,
-    OWN_ODOMETRY,
-    POSE_ON_WORLD,
-)
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridge_rows import PLUGINS, rows_of
 from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
@@ -260,3 +253,11 @@ def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
     edges = {(it.robot, NODE): [edge_of(it.parent, it.child, True)] for it in held}
     more = fleet.table._replace(runs=runs, problems=())
     return fleet._replace(table=joined(fleet.table, more), edges={**fleet.edges, **edges})
+
+
+LOCALISED_ALREADY = declare("MF701", "pose-of-localised-robot", WARNING, formats=("fleet",))
+NO_SINGLE_ROOT = declare("MF702", "pose-without-root-frame", WARNING, formats=("fleet",))
+POSE_ON_WORLD = declare("MF709", "pose-of-robot-on-world", ERROR, formats=("fleet",))
+NO_SHARED_FRAME = declare("MF704", "pose-without-shared-frame", WARNING, formats=("fleet",))
+
+OWN_ODOMETRY = declare("MF710", "pose-beside-own-odometry", WARNING, formats=("fleet",))

@@ -10,8 +10,7 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
-from multibot_rewrite.base.printable import one_line
-from multibot_rewrite.base.wording import plural
+from multibot_rewrite.base.wording import one_line, plural
 from multibot_rewrite.base.workers import limit_time, worker_pool
 from multibot_rewrite.pages.page import Framed, source_hash
 from multibot_rewrite.pages.view.heard import DEGREES, METRES

@@ -19,8 +19,7 @@ from typing import TYPE_CHECKING, Any
 from multibot_rewrite.base.bounded import load_yaml, read_text
 from multibot_rewrite.base.file_kinds import BAG, refuse_others
 from multibot_rewrite.base.model import InputError, Unusable
-from multibot_rewrite.base.printable import one_line
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, one_line, shorten
 from multibot_rewrite.base.workers import limit_files, worker_pool
 from multibot_rewrite.producers.bags.recording import RECORDER, RecordedTopic, Recording
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, numbers_of

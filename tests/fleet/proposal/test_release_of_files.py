@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.fleet.proposal.release_of_files import release_of_files
+from multibot_rewrite.fleet.proposal.propose import release_of_files
 
 MANAGER = """controller_manager:
   ros__parameters:

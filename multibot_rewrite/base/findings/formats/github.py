@@ -15,7 +15,7 @@ from multibot_rewrite.base.findings.formats.shared import (
     title,
     via,
 )
-from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.base.wording import one_line
 
 _COMMANDS = {ERROR: "error", INCONCLUSIVE: "warning", WARNING: "warning", NOTE: "notice"}
 _DATA = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A"})

@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WA
 from multibot_rewrite.base.findings.formats import Report
 from multibot_rewrite.base.findings.formats.shared import by_file, file_of, path_below, said
 from multibot_rewrite.base.findings.formats.text import lines
-from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.base.wording import one_line
 
 _PASSED = "no findings"
 

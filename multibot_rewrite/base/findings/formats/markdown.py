@@ -18,8 +18,7 @@ from multibot_rewrite.base.findings.formats.shared import (
     title,
     via,
 )
-from multibot_rewrite.base.printable import one_line
-from multibot_rewrite.base.wording import plural
+from multibot_rewrite.base.wording import one_line, plural
 
 # A comment on GitHub holds 65,536 characters.
 ROOM = 60_000

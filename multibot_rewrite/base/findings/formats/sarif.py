@@ -23,7 +23,7 @@ from multibot_rewrite.base.findings.formats.shared import (
 )
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.base.wording import one_line
 from multibot_rewrite.version import __version__
 
 Json = dict[str, Any]

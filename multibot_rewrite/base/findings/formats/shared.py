@@ -11,9 +11,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, LEVELS, Finding, same_for
 from multibot_rewrite.base.findings.formats import Report
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.printable import in_json, one_line
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.wording import plural
+from multibot_rewrite.base.wording import in_json, one_line, plural
 
 _SURROGATE = lazy_compile("[\ud800-\udfff]")
 _CALL = lazy_compile(r"(?P<file>.*):(?P<line>\d+): (?P<macro>.*)", re.DOTALL)

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.formats import Report
 from multibot_rewrite.base.findings.formats.shared import circumstances, path_given, said, via
-from multibot_rewrite.base.printable import one_line
+from multibot_rewrite.base.wording import one_line
 
 _PAINT = {ERROR: "\033[31m", WARNING: "\033[33m", INCONCLUSIVE: "\033[35m", NOTE: "\033[36m"}
 _PLAIN = "\033[0m"
