@@ -179,12 +179,6 @@ def _shared(context: Context) -> list[Action]:
     return [one for it in shared for one in _process(context, fleet.robots[0], it)]
 
 
-def _clock(context: Context) -> list[dict[str, bool]]:
-    """The parameter that says whose time counts, where somebody says it."""
-    clock = sim_time(context, fleet_of(context, _said("fleet")).robots[0], None)
-    return [] if clock is None else [{SIM_TIME: clock}]
-
-
 def _rviz(context: Context) -> list[Action]:
     """The windows that are asked for."""
     word = str(context.launch_configurations.get("rviz", NONE)).strip().lower()
@@ -209,7 +203,9 @@ def _rviz(context: Context) -> list[Action]:
 def _window(context: Context, file: str, window: RvizText) -> Action:
     path = written(context, None, f"{window.robot or 'all'}/{file}", window.text)
     given = keywords(window_start(window, path))
-    return node_class()(**given | {"arguments": ["-d", path], "parameters": _clock(context)})
+    clock = sim_time(context, fleet_of(context, _said("fleet")).robots[0], None)
+    clocks = [] if clock is None else [{SIM_TIME: clock}]
+    return node_class()(**given | {"arguments": ["-d", path], "parameters": clocks})
 
 
 def kind_of(name: str) -> str:
