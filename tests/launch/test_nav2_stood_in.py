@@ -132,7 +132,8 @@ def test_programs_are_those_of_nav2(nodes: dict[str, LaunchedNode]) -> None:
         assert (it.package, it.executable, it.container) == (package, program, "")
     state = nodes["/robot_state_publisher_robot2"]
     assert (state.package, state.executable) == ("robot_state_publisher",) * 2
-    assert "robot_description" in "".join(it.text for it in state.parameters)
+    texts = "".join(it.text for it in state.parameters)
+    assert "robot_description" in texts and "</robot>" in texts
     assert len(nodes) == 2 * (len(NAV2) + len(MANAGERS) + 1)
 
 
@@ -174,6 +175,10 @@ def test_each_process_has_the_level_of_the_log_and_shows_it(
 @pytest.mark.more
 def test_every_node_has_the_clock_that_is_said(each: LaunchGraph, composed: LaunchGraph) -> None:
     assert [clocks(it) for it in each.nodes] == [{True}] * len(each.nodes)
+    # Nodes that others make in their process have only what is for all of it.
+    manager = by_name(each)["/lifecycle_manager_navigation_robot1"]
+    told = yaml.safe_load(next(it.text for it in manager.parameters if "node_names" in it.text))
+    assert told["/**"] == {"ros__parameters": {"use_sim_time": True}}
     # Nobody says it: neither the launch, nor the fleet file, nor a file of parameters.
     assert [clocks(it) - {False} for it in composed.nodes] == [set()] * len(composed.nodes)
 
@@ -272,14 +277,6 @@ def test_what_windows_are_started_with(clock: bool | None, monkeypatch: pytest.M
     assert nav2._window(None, "a.rviz", RvizText("", "t")) == {
         **usual, "arguments": ["-d", (None, "all/a.rviz", "t")],
     }  # fmt: skip
-
-
-def test_arguments_and_their_defaults() -> None:
-    assert [it[:2] for it in nav2.ARGUMENTS] == [
-        ("fleet", None), ("robots", ""), ("map", ""), ("use_sim_time", ""), ("rviz", "none"),
-        ("robot_state_publisher", "false"), ("autostart", "true"), ("use_respawn", "false"),
-        ("log_level", "info"),
-    ]  # fmt: skip
 
 
 def test_a_node_that_nobody_manages_is_brought_up_here(monkeypatch: pytest.MonkeyPatch) -> None:
