@@ -101,50 +101,44 @@ def report_beside(options: argparse.Namespace, findings: Sequence[Finding], abou
         return False
     if options.format == TEXT:
         colour = is_coloured(options.color, sys.stderr)
-        shown = findings if options.verbose else list(_few_notes([*_one_a_matter(findings)]))
+        shown = findings if options.verbose else list(_few_of_a_kind(findings))
         sys.stderr.write(_text(options, shown, about, NO_RULES, colour=colour))
     else:
         print_bytes(_text(options, findings, about, NO_RULES, colour=False).encode())
     return fails(findings, options.fail_on)
 
 
-def _one_a_matter(findings: Sequence[Finding]) -> Iterator[Finding]:
-    """Yield the findings; of many warnings of one kind in one file with one remedy the first one, with
-    how many more there are. Those of robots are said once for all of these elsewhere."""
+def _few_of_a_kind(findings: Sequence[Finding]) -> Iterator[Finding]:
+    """Yield the findings; of many of one kind in one file the first warning or the first notes, with
+    the lines of the rest."""
     lines: dict[tuple[str, ...], list[int]] = defaultdict(list)
     for it in findings:
-        if it.level == WARNING and it.line and not (it.robot or it.robots):
-            lines[it.code, it.file, it.hint].append(it.line)
-    many = {key: at for key, at in lines.items() if len(at) > FEW_NOTES + 1}
-    met: set[tuple[str, ...]] = set()
+        lines[_kind_of(it)].append(it.line)
+    met: Counter[tuple[str, ...]] = Counter()
     for it in findings:
-        key = (it.code, it.file, it.hint)
-        if key not in many or it.level != WARNING or it.robot or it.robots:
+        kind = _kind_of(it)
+        met[kind] += 1
+        shown = 1 if it.level == WARNING else FEW_NOTES
+        rest = lines[kind][shown:]
+        if not kind or len(lines[kind]) <= FEW_NOTES + 1 or met[kind] <= shown != 1:
             yield it
-        elif key not in met:
-            met.add(key)
-            more = f"{len(many[key]) - 1} more of this kind in the file, at lines"
-            listed = shorten(map(str, many[key][1:]), MOST_LINES)
-            yield it._replace(message=f"{it.message}; {more} {listed} (--verbose shows them)")
-
-
-def _few_notes(findings: Sequence[Finding]) -> Iterator[Finding]:
-    """The findings; of many notes of one kind in one file the first ones, and the lines of the rest."""
-    lines: dict[tuple[str, str], list[int]] = defaultdict(list)
-    for it in findings:
-        if it.level == NOTE and it.line:
-            lines[it.code, it.file].append(it.line)
-    many = {key: at[FEW_NOTES:] for key, at in lines.items() if len(at) > FEW_NOTES + 1}
-    met: Counter[tuple[str, str]] = Counter()
-    for it in findings:
-        key = (it.code, it.file)
-        met[key] += it.level == NOTE and it.line > 0
-        if key not in many or it.level != NOTE or met[key] <= FEW_NOTES:
-            yield it
-        elif met[key] == FEW_NOTES + 1:
-            rest = ", ".join(map(str, many[key]))
-            message = f"there are {len(many[key])} more such notes in the file, at lines {rest}"
+        elif it.level == WARNING and met[kind] == 1:
+            listed = shorten(map(str, rest), MOST_LINES)
+            more = f"{len(rest)} more of this kind in the file, at lines {listed}"
+            yield it._replace(message=f"{it.message}; {more} (--verbose shows them)")
+        elif it.level == NOTE and met[kind] == shown + 1:
+            listed = ", ".join(map(str, rest))
+            message = f"there are {len(rest)} more such notes in the file, at lines {listed}"
             yield it._replace(message=message, hint="see them with --verbose")
+
+
+def _kind_of(it: Finding) -> tuple[str, ...]:
+    """Return what a finding shares with others that are said with it: warnings their remedy, too. Empty
+    for an error, and for a warning of robots, which is said once for all of these elsewhere."""
+    if it.line and it.level == NOTE:
+        return it.level, it.code, it.file
+    alone = not it.line or it.level != WARNING or it.robot or it.robots
+    return () if alone else (it.level, it.code, it.file, it.hint)
 
 
 def _tells_notes(options: argparse.Namespace) -> bool:

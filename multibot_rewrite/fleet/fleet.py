@@ -36,7 +36,7 @@ from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.spelling.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
 from multibot_rewrite.spelling.domain_bridge import with_bridges
 from multibot_rewrite.spelling.plan import expect, named_frames, vacuous
-from multibot_rewrite.spelling.records import GivenNode, Run, Table
+from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table, joined, plugin_nodes
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
 from multibot_rewrite.spelling.ways import merged
@@ -203,7 +203,7 @@ def assemble(
     facts: tuple[NodeFacts, ...],
     naming: Naming,
     release: str,
-    given: Sequence[GivenNode] = (),
+    given: Sequence[Run] = (),
 ) -> Fleet:
     """The fleet of robots that run the same nodes of a release, with parameters that are ``given``."""
     inventories = {it.robot: it.inventory for it in members}

@@ -29,6 +29,7 @@ from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.file.robot_spec import Sources
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.launch.starts import FleetStarts
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.loaded_robot import KeptFiles, LoadedRobot
@@ -96,10 +97,18 @@ class LoadedFleet:
     @cached_property
     def _with_full_names(self) -> Mapping[str, OutputFile]:
         """The same files, parameter files with the full names of nodes whatever the fleet file says."""
+        return {it.path: it for it in self._named.files}
+
+    @cached_property
+    def _named(self) -> Outputs:
         if not self.plan.file.params_style:
-            return self.files
-        file = self.plan.file._replace(params_style="")
-        return {it.path: it for it in make_outputs(self.plan._replace(file=file)).files}
+            return self.made
+        return make_outputs(self.plan._replace(file=self.plan.file._replace(params_style="")))
+
+    @property
+    def starts(self) -> FleetStarts:
+        """All that the launch file of its build starts; raises as ``made``."""
+        return self._named.starts
 
     @cached_property
     def files(self) -> Mapping[str, OutputFile]:

@@ -192,7 +192,8 @@ def _made(
         spawner = its.spawner(name, *paths)
         words = [*spawner["arguments"], *_option_list(options, "arguments")]
         return {**options, **spawner, "arguments": words}
-    also = _own_file(context, its, name, bool(own["describe"]), clock)
+    values = its.start_parameters(name) | (its.description_parameters if own["describe"] else {})
+    also = own_file(context, its, name, {its.table.full_name(name): values}, clock)
     return {
         **options,
         "name": its.table.name(name),
@@ -255,16 +256,18 @@ def _program(
     return later.action(node_class(), made, {"executable": "later", **given})
 
 
-def _own_file(
-    context: Context, robot: LoadedRobot, node: str, describe: bool, clock: bool | None
+def own_file(
+    context: Context,
+    robot: LoadedRobot,
+    node: str,
+    values: Mapping[str, Mapping[str, Any]],
+    clock: bool | None,
 ) -> list[str]:
-    """The path of a file with the node's description, start pose and clock, if it needs one."""
-    values = robot.start_parameters(node)
-    if describe:
-        values |= robot.description_parameters
+    """The path of a file with what no file of the fleet says of a node, by its full name, and with the
+    clock, if it needs one."""
     # Nodes that others make in their process have no values but those for all of it.
     clocks = {} if clock is None else {"/**": {SIM_TIME: clock}}
-    sections = {**clocks, **({robot.table.full_name(node): values} if values else {})}
+    sections = clocks | {name: dict(own) for name, own in values.items() if own}
     text = parameters_text(sections)
     return [written(context, robot, f"{node}.{_OWN}", text)] if sections else []
 

@@ -21,35 +21,25 @@ from multibot_rewrite.companions.rviz.rewrite import RvizText
 from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
 from multibot_rewrite.fleet.outputs.rviz_outputs import robot_windows, window_start
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.fleet.robots.node_names import NodeNames
-from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER as MANAGER
-from multibot_rewrite.knowledge.programs import NAV2, is_unmanaged, known_program
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.programs import NAV2
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
-from multibot_rewrite.launch.actions import (
-    composable_node,
-    container,
-    each_robot,
-    lifecycle_node,
-    node,
-    node_class,
-    place,
-)
+from multibot_rewrite.launch.actions import each_robot, node_class, own_file, place
 from multibot_rewrite.launch.context import (
     SIM_TIME,
     Action,
     Context,
+    RobotRef,
     fleet_of,
+    node_file_of,
     sim_time,
     written,
 )
 from multibot_rewrite.producers.launch.door import is_installed, of_launch, of_launch_ros
-from multibot_rewrite.spelling.start import keywords
+from multibot_rewrite.spelling.start import File, Start, keywords
 
 NONE, ONE, EACH = "none", "one", "each"
-CONTAINER, MAP_SERVER, SHARED_MANAGER = "nav2_container", "map_server", "lifecycle_manager_shared"
-STATE = "robot_state_publisher"
+MAP_SERVER, STATE = "map_server", "robot_state_publisher"
 TRANSITIONS: Mapping[str, int] = MappingProxyType({"configure": 1, "activate": 3})
 _INFO = "costmap_filter_info_server"
 # Nodes of stacks that are called otherwise than what they are.
@@ -112,30 +102,53 @@ def _started(robot: LoadedRobot, context: Context) -> list[Action]:
     if not known:
         hint = "add nav2, nav2_composed, nav2_slam or nav2_slam_composed to stack:"
         raise UsageError(f"robot {robot.name!r} has no node of Nav2; {hint}")
-    hosted = [it for it in known if names.container(it)]
-    alone = [it for it in known if it not in hosted]
-    made = [it for name in alone for it in _alone(robot, name, context)]
-    made += _relays(robot)
-    if hosted:
-        made.append(_container(robot, hosted, context))
-    if _is_on(context, "robot_state_publisher") and STATE in names.nodes:
-        made.append(node(STATE, describe=True, output="screen"))
+    with_state = _is_on(context, "robot_state_publisher") and STATE in names.nodes
+    processes = [names.container(it) or names.full_name(it) for it in known]
+    processes += [names.full_name(STATE)] if with_state else []
+    own = next(it for it in fleet_of(context).starts.robots if it.name == robot.name)
+    starts = {it.full_name: it for it in own.starts}
+    wanted = [starts[it] for it in dict.fromkeys(processes) if it in starts]
+    is_bridged = BRIDGE not in robot.relays or is_installed(BRIDGE)
+    wanted += [it.start for it in robot.relays.values() if is_bridged]
+    made = [one for it in wanted for one in _process(context, robot, it)]
+    if not is_bridged:
+        made.append(of_launch("actions").LogInfo(msg=not_bridged(robot.name)))
     return made
 
 
-def _alone(robot: LoadedRobot, name: str, context: Context) -> list[Action]:
-    """A node in a process of its own; slam_toolbox is brought up here, as by its own launch file."""
-    alone = is_unmanaged(built_in(robot.distro).nodes[kind_of(name)], robot.distro)
-    made = (lifecycle_node if alone else node)(
-        name,
-        files=robot.params_files,
-        output="screen",
-        respawn=_said("use_respawn"),
-        respawn_delay=2.0,
-        arguments=["--ros-args", "--log-level", _said("log_level")],
-        parameters=_own(robot.table, name, context),
-    )
-    return [made, *(_activated(made) if alone and _is_on(context, "autostart") else ())]
+def _process(context: Context, robot: LoadedRobot, it: Start) -> list[Action]:
+    """A process with its components; slam_toolbox is brought up here, as by its own launch file."""
+    actions, words = of_launch_ros("actions"), ["--ros-args", "--log-level", _said("log_level")]
+    given = {**_given(context, robot, it), "output": "screen", "arguments": [*it.arguments, *words]}
+    if it.components:
+        component = of_launch_ros("descriptions").ComposableNode
+        inside = [component(**_given(context, robot, one)) for one in it.components]
+        return [actions.ComposableNodeContainer(**given, composable_node_descriptions=inside)]
+    make = actions.LifecycleNode if it.brought_up else node_class()
+    made = make(**given, respawn=_said("use_respawn"), respawn_delay=2.0)
+    return [made, *(_activated(made) if it.brought_up and _is_on(context, "autostart") else ())]
+
+
+def _given(context: Context, robot: LoadedRobot, it: Start) -> dict[str, Any]:
+    """The keywords of a process or component alone: paths of the files of this launch, one of them with
+    what no file of the fleet says of it, such as the nodes that it manages, and its map."""
+    of, shared = RobotRef(robot.name, _said("fleet")), fleet_of(context, _said("fleet")).table
+    files = [node_file_of(context, one.path, of) for one in it.parameters if isinstance(one, File)]
+    rows = [one for one in it.parameters if not isinstance(one, File)]
+    values = {key: value for row in rows for key, value in row.items()}
+    if "robot_description" in values:
+        values |= robot.description_parameters
+    if "autostart" in values:
+        values["autostart"] = _is_on(context, "autostart")
+    maps = (one.nodes[MAP_SERVER] for one in (robot.table, shared) if MAP_SERVER in one.nodes)
+    file = str(context.launch_configurations.get("map", ""))
+    if file and it.full_name in [one.full_name for one in maps]:
+        values["yaml_filename"] = file
+    clock = sim_time(context, robot, None)
+    name = it.full_name.strip("/").replace("/", ".")
+    own = own_file(context, robot, name, {it.full_name: values}, clock)
+    alone = it._replace(parameters=(), arguments=(), components=())
+    return {**keywords(alone), "parameters": [*files, *own]}
 
 
 def _activated(made: Action) -> Iterator[Action]:
@@ -158,75 +171,12 @@ def _activated(made: Action) -> Iterator[Action]:
     yield change("configure")
 
 
-def _container(robot: LoadedRobot, hosted: list[str], context: Context) -> Action:
-    """The container with its components."""
-    return container(
-        CONTAINER,
-        files=robot.params_files,
-        output="screen",
-        arguments=["--ros-args", "--log-level", _said("log_level")],
-        composable_node_descriptions=[
-            composable_node(it, files=robot.params_files, parameters=_own(robot.table, it, context))
-            for it in hosted
-        ],
-    )
-
-
-def _own(names: NodeNames, name: str, context: Context) -> list[dict[str, Any]]:
-    """What no file says of a node: its map, the nodes that it manages, the topics that it relays."""
-    if name == MAP_SERVER:
-        file = str(context.launch_configurations.get("map", ""))
-        return [{"yaml_filename": file}] if file else []
-    if kind_of(name) == MANAGER:
-        managed = [names.name(it) for it in names.managed.get(name, ())]
-        return [{"autostart": _is_on(context, "autostart"), "node_names": managed}]
-    return []
-
-
-def _relays(robot: LoadedRobot) -> list[Action]:
-    """What brings the robot's tf to /tf; a line where its package is not installed."""
-    if BRIDGE in robot.relays and not is_installed(BRIDGE):
-        return [of_launch("actions").LogInfo(msg=not_bridged(robot.name))]
-    own = {name: it.start._replace(namespace="", name="") for name, it in robot.relays.items()}
-    return [node(name, output="screen", **keywords(it)) for name, it in own.items()]
-
-
 def _shared(context: Context) -> list[Action]:
-    """The nodes that all robots share, with a lifecycle manager of their own."""
+    """The nodes that all robots share, with a lifecycle manager of their own: they have their sections
+    in the files of every robot, and these are alike."""
     fleet = fleet_of(context, _said("fleet"))
-    names = fleet.table
-    found = nodes_of_nav2(names.nodes)
-    if not found:
-        return []
-    made = [_shared_node(fleet, it, context) for it in found]
-    values = {"autostart": _is_on(context, "autostart"), "node_names": found}
-    return [*made, _plain(SHARED_MANAGER, fleet.plan.file.distro, context, [values])]
-
-
-def _shared_node(fleet: LoadedFleet, name: str, context: Context) -> Action:
-    """A shared node has its section in the files of every robot, and they are alike."""
-    (robot, *_), names = fleet.robots, fleet.table
-    files = [
-        written(context, None, f"nodes/{it}", robot.node_text(it)) for it in robot.params_files
-    ]
-    return _plain(name, robot.distro, context, [*files, *_own(names, name, context)])
-
-
-def _plain(name: str, release: str, context: Context, parameters: list[Any]) -> Action:
-    program = known_program(kind_of(name), release)
-    return node_class()(
-        name=name,
-        package=program.package,
-        executable=program.executable,
-        output="screen",
-        parameters=[*parameters, *_clock(context)],
-    )
-
-
-def _clock(context: Context) -> list[dict[str, bool]]:
-    """The parameter that says whose time counts, where somebody says it."""
-    clock = sim_time(context, fleet_of(context, _said("fleet")).robots[0], None)
-    return [] if clock is None else [{SIM_TIME: clock}]
+    shared = (it for it in fleet.starts.shared if kind_of(it.name) in NAV2)
+    return [one for it in shared for one in _process(context, fleet.robots[0], it)]
 
 
 def _rviz(context: Context) -> list[Action]:
@@ -253,7 +203,9 @@ def _rviz(context: Context) -> list[Action]:
 def _window(context: Context, file: str, window: RvizText) -> Action:
     path = written(context, None, f"{window.robot or 'all'}/{file}", window.text)
     given = keywords(window_start(window, path))
-    return node_class()(**given | {"arguments": ["-d", path], "parameters": _clock(context)})
+    clock = sim_time(context, fleet_of(context, _said("fleet")).robots[0], None)
+    clocks = [] if clock is None else [{SIM_TIME: clock}]
+    return node_class()(**given | {"arguments": ["-d", path], "parameters": clocks})
 
 
 def kind_of(name: str) -> str:

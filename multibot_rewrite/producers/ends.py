@@ -11,7 +11,7 @@ from multibot_rewrite.companions.bridge_entry import SERVICE as SERVICE_ROW
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.of_runs import with_names
-from multibot_rewrite.spelling.records import GivenNode, Run
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.targets import expanded
 from multibot_rewrite.system.records import (
     CALLS,
@@ -38,7 +38,7 @@ def either_way(end: End) -> Iterator[End]:
     yield from (end._replace(role=it, sure=MAY) for it in (PUBLISHES, SUBSCRIBES))
 
 
-def run_alone(node: NodeFacts, section: GivenNode | None) -> Run:
+def run_alone(node: NodeFacts, section: Run | None) -> Run:
     """A node of a robot without a name, under the rules of the usual launch files alone; ``section`` is
     what a file sets for it."""
     above, _, name = f"/{node.name}".rpartition("/")

@@ -10,7 +10,7 @@ from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
 from multibot_rewrite.knowledge.records import MOVE_GROUP, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled, lookup
 from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import (
     NOWHERE,
     OFF,
@@ -40,10 +40,10 @@ def virtual_lookups(semantics: Semantics) -> Iterator[Lookup]:
             yield Lookup(f"/{MOVE_GROUP}", it.child, it.parent, it.place)
 
 
-def edges_off(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> Iterator[Edge]:
+def edges_off(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> Iterator[Edge]:
     """What nodes would send, with the parameter that alone switches it off."""
     for it in given:
-        node = known.get(it.known)
+        node = known.get(it.fact.known)
         runs = filled(node, it) if node and node.sends else None
         if node is None or runs is None or runs.sends:
             continue
@@ -52,10 +52,10 @@ def edges_off(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> Ite
             place = _switch(send.condition, runs, it)
             if place:
                 pair = edge_of(frames[send.parent], frames[send.child])
-                yield edge(pair, f"/{it.name}", place, sure=OFF)
+                yield edge(pair, f"/{it.node}", place, sure=OFF)
 
 
-def _switch(condition: str, runs: NodeFacts, given: GivenNode) -> Place | None:
+def _switch(condition: str, runs: NodeFacts, given: Run) -> Place | None:
     """Where the parameter is that alone switches it off."""
     value_of = lookup(runs, given.values)
     off = [it for it in condition.split(AND) if not holds(it, value_of)]

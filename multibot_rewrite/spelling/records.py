@@ -28,26 +28,6 @@ class Given(NamedTuple):
     place: Place
 
 
-class GivenNode(NamedTuple):
-    """What a robot's parameter files set for one node.
-
-    ``name`` is its name without the robot, ``known`` the known node that it is (empty for none),
-    ``type`` the plugin type of a controller. ``values`` are its parameters by dotted name, those of
-    wildcard sections with them. ``manager`` is the controller manager that has it as a controller.
-    ``known`` may be a guess by its parameters: ``unknown_type`` is true if its type is not known,
-    ``like`` the known type that may be meant.
-    """
-
-    name: str
-    known: str
-    type: str
-    values: Mapping[str, Given]
-    place: Place
-    manager: str = ""
-    unknown_type: bool = False
-    like: str = ""
-
-
 NOTHING: Mapping[str, Given] = {}
 
 
@@ -63,6 +43,11 @@ class Run(NamedTuple):
     no stack names have the rules that are ``handed_on``. ``values`` are its parameters, ``texts`` other
     files that a parameter names, ``untold`` parameters whose values only a run tells. ``program`` is
     its package and executable, started with ``arguments`` at ``place``.
+
+    What a robot's files set for a node is one, too: ``fact.known`` is the known node that it is (empty
+    for none), ``program`` the type of a controller, ``host_name`` the manager that has it as one.
+    ``unknown_type`` is true if the type is not known and ``fact.known`` is a guess by its parameters,
+    ``like`` the known type that may be meant.
     """
 
     robot: str
@@ -85,6 +70,8 @@ class Run(NamedTuple):
     program: str = ""
     arguments: tuple[str, ...] = ()
     place: Place = NOWHERE
+    unknown_type: bool = False
+    like: str = ""
 
     @property
     def full_name(self) -> str:

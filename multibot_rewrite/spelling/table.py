@@ -24,7 +24,7 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.spelling.of_runs import with_names
-from multibot_rewrite.spelling.records import GivenNode, Rule, Run, Table
+from multibot_rewrite.spelling.records import Rule, Run, Table
 from multibot_rewrite.spelling.table_checks import (
     PROBE,
     asked_for,
@@ -45,7 +45,7 @@ def build_table(
     nodes: Sequence[NodeFacts],
     naming: Naming,
     plugins: Mapping[str, Sequence[Run]] = NOTHING,
-    given: Iterable[GivenNode] = (),
+    given: Iterable[Run] = (),
     *,
     release: str,
 ) -> Table:
@@ -64,12 +64,12 @@ def _build(
     nodes: Sequence[NodeFacts],
     naming: Naming,
     plugins: Mapping[str, Sequence[Run]],
-    given: Iterable[GivenNode],
+    given: Iterable[Run],
     release: str,
 ) -> Table:
     # Made once: the run of another robot differs only in the robot's name.
     others, once = places_of(PROBE, nodes, naming), frozenset(it.name for it in nodes if it.shared)
-    sections = {it.name: it for it in given}
+    sections = {it.node: it for it in given}
     own = [
         _with_section(run_of(PROBE, it, naming, others, once), sections)
         for it in nodes
@@ -85,7 +85,7 @@ def _build(
     return Table(naming.layout.name, tuple(runs), tuple(problems), release)
 
 
-def _with_section(run: Run, sections: Mapping[str, GivenNode]) -> Run:
+def _with_section(run: Run, sections: Mapping[str, Run]) -> Run:
     """The run with what the robot's own files set for it, and where."""
     found = sections.get(run.node) or sections.get(run.code_name)
     return run._replace(values=found.values, place=found.place) if found else run

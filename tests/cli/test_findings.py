@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -13,8 +14,10 @@ from graph_cases import as_planned, without_node
 from junitparser import JUnitXml
 from paths import FIXTURES
 
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.formats import FORMATS
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
+from multibot_rewrite.cli.report import About, report_beside
 from multibot_rewrite.system.json import from_yaml, to_json
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
@@ -230,3 +233,24 @@ def test_many_warnings_of_one_matter_are_one_line_with_their_number(
         assert capsys.readouterr().err.count("MB901") == count
         urdf_postfix.main([*command, "--format", "json", "--force"])
         assert capsys.readouterr().out.count('"MB901"') == count
+
+
+def test_of_many_notes_three_are_told_and_the_lines_of_the_rest(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Warnings with remedies of their own are told each, and so is what has no line."""
+    notes = [Finding("MR901", NOTE, f"note {at}", file="a.yaml", line=at) for at in range(1, 7)]
+    others = [
+        Finding("MR902", WARNING, f"word {at}", f"do {at}", "a.yaml", at) for at in range(1, 7)
+    ]
+    options = argparse.Namespace(
+        format="text", verbose=False, quiet=False, color="never", fail_on="error",
+        program="multibot", command="build",
+    )  # fmt: skip
+    found = [*notes, notes[0]._replace(message="of the file", line=0), *others]
+    report_beside(options, found, About(["a.yaml"], {}))
+    said = capsys.readouterr().err
+    told = [it for it in range(1, 7) if f"note {it}" in said]
+    assert told == [1, 2, 3] and "of the file" in said
+    assert "there are 3 more such notes in the file, at lines 4, 5, 6" in said
+    assert [it for it in range(1, 7) if f"word {it}" in said] == [*range(1, 7)]

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import pytest
+from given_parameters import run_given
 
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import CALLS, Place
 
 FILE = Place("nav2.yaml", 7)
@@ -23,9 +24,9 @@ def manager(*listed: str) -> NodeFacts:
     return base._replace(name="manager", known="lifecycle_manager", endpoints=tuple(made))
 
 
-def given(name: str, known: str = "", manager: str = "", **values: object) -> GivenNode:
+def given(name: str, known: str = "", manager: str = "", **values: object) -> Run:
     of = {key: Given(value, FILE) for key, value in values.items()}
-    return GivenNode(name, known or name, "", of, FILE, manager)
+    return run_given(name, known or name, "", of, FILE, manager)
 
 
 @pytest.mark.parametrize(

@@ -21,18 +21,18 @@ from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.spelling.records import GivenNode, Run
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Robot
 
 
-def written(files: dict[str, str], node: Run) -> GivenNode | None:
+def written(files: dict[str, str], node: Run) -> Run | None:
     """What the robot's file sets for a node under its full name."""
     file = f"{node.robot}/p.yaml"
     known = built_in_nodes(RELEASE)
     own = f"{node.full_name}:\n  ros__parameters: {{}}\n"
     documents = [read_yaml(text.encode(), file) for text in (own, files[file])]
     found = given_nodes(documents, known)
-    return next((it for it in found if f"/{it.name}" == node.full_name), None)
+    return next((it for it in found if f"/{it.node}" == node.full_name), None)
 
 
 def differences(plan: FleetPlan, files: dict[str, str]) -> Iterator[str]:
@@ -54,9 +54,9 @@ def differences(plan: FleetPlan, files: dict[str, str]) -> Iterator[str]:
         yield from _frames(node, given, robots)
 
 
-def _frames(node: Run, given: GivenNode | None, robots: Sequence[Robot]) -> Iterator[str]:
+def _frames(node: Run, given: Run | None, robots: Sequence[Robot]) -> Iterator[str]:
     """Frames that a node sends by its written file, and the plan does not know of."""
-    facts = built_in(RELEASE).nodes.get(given.known) if given else None
+    facts = built_in(RELEASE).nodes.get(given.fact.known) if given else None
     if facts is None or given is None:
         return
     made = filled(facts, given)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from given_parameters import run_given
 from lxml import etree
 
 from multibot_rewrite.companions.yaml_text import read_yaml
@@ -50,7 +51,7 @@ from multibot_rewrite.producers.transforms import (
     edges_off,
 )
 from multibot_rewrite.spelling.of_runs import ends_of, lookups_of
-from multibot_rewrite.spelling.records import Given, GivenNode, Run
+from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import (
     COMPUTER,
     DEVICE,
@@ -79,9 +80,9 @@ from multibot_rewrite.system.records import (
 AT, THERE = Place("p.yaml", 3), Place("p.yaml", 7)
 
 
-def given(name: str, known: str = "", manager: str = "", **values: object) -> GivenNode:
+def given(name: str, known: str = "", manager: str = "", **values: object) -> Run:
     found = {key: Given(it, THERE) for key, it in values.items()}  # type: ignore[arg-type]
-    return GivenNode(name, known, "", found, AT)._replace(manager=manager)
+    return run_given(name, known, "", found, AT, manager)
 
 
 DRIVER = NodeFacts(

@@ -118,9 +118,9 @@ def _of_nodes(
     robot: RewrittenRobot, evidence: RobotEvidence, known: KnownNodes, shared: Collection[str]
 ) -> Iterator[Address]:
     for node in evidence.given:
-        facts = known.nodes.get(node.known)
+        facts = known.nodes.get(node.fact.known)
         own = {name: it for name, it in node.values.items() if it.place.file not in shared}
-        name = f"/{robot.spec.namespace}/{node.name}"
+        name = f"/{robot.spec.namespace}/{node.node}"
         found = of_parameters(name, facts.params if facts else {}, own)
         simulated = robot.spec.simulator == "gazebo"
         yield from (it for it in found if it.kind != DEVICE or not simulated)

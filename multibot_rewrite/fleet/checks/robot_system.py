@@ -56,7 +56,7 @@ from multibot_rewrite.producers.transforms import (
 )
 from multibot_rewrite.spelling.of_runs import ends_of, lookups_of, with_names
 from multibot_rewrite.spelling.plan import tf_topic
-from multibot_rewrite.spelling.records import GivenNode, Run
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, sent_by, tree_joints
 from multibot_rewrite.spelling.way_checks import is_stand_in
@@ -95,7 +95,7 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
     text = without_simulator(source.source, source.file) if real else source.source
     reading = read(text, source.file, robot.member.vocabulary)
     plain = [_plainly(robot, it) for it in given]
-    sections = {it.name: it for it in plain}
+    sections = {it.node: it for it in plain}
     alone = [run_alone(it, sections.get(it.name)) for it in nodes]
     runs = [it for it in alone if not it.fact.shared]
     plugins = [*_without_controllers(plugin_nodes(reading, ""))]
@@ -300,7 +300,7 @@ def _without_controllers(plugins: Iterable[Run]) -> Iterator[Run]:
 
 def _controlled(
     system: System,
-    given: Sequence[GivenNode],
+    given: Sequence[Run],
     evidence: RobotEvidence,
     exports: Iterable[Exported],
     moveit: Iterable[YamlText],
@@ -330,7 +330,7 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     return export._replace(name=f"{bare}{export.name[len(owner) :]}")
 
 
-def _plainly(robot: RewrittenRobot, given: GivenNode) -> GivenNode:
+def _plainly(robot: RewrittenRobot, given: Run) -> Run:
     """The same of what a launch file fills in for a robot that has such an argument, and of what is
     left of a name without it."""
     own = _own(robot)

@@ -244,7 +244,7 @@ def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
     loaded (ros2_control controller_manager.cpp)."""
     file = given.plan.file
     types = {it: type_ for type_, it in load_known_nodes(file.nodes, file.distro).types.items()}
-    declared = {it.name for it in given.plan.evidence_of(given.robot).given if it.type}
+    declared = {it.node for it in given.plan.evidence_of(given.robot).given if it.program}
     for name, it in given.names.started.items():
         mine = it.way == SPAWNER and it.manager == given.names.name(manager)
         if mine and not {name} & {*given.left, *declared} and given.facts[name].kind in types:
@@ -273,7 +273,7 @@ def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
     inactive."""
     (robot,) = plan.robots
     evidence = plan.evidence_of(robot)
-    own = next((it for it in evidence.given if it.name == controller), None)
+    own = next((it for it in evidence.given if it.node == controller), None)
     params = robot.spec.companions.get("params", ())
     if own and OWN_TYPE in own.values and own.values[OWN_TYPE].place.file in params:
         yield from ("--param-file", File(path_for(robot, own.values[OWN_TYPE].place.file)))

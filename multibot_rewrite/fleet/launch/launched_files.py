@@ -25,7 +25,7 @@ from multibot_rewrite.fleet.outputs.output_file import yaml_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
 from multibot_rewrite.knowledge.records import Param
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Place
 
 PARAMS = "params"
@@ -102,24 +102,24 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
 
 
 def set_by_launch(
-    given: Sequence[GivenNode], started: Mapping[str, LaunchedNode], known: KnownNodes
+    given: Sequence[Run], started: Mapping[str, LaunchedNode], known: KnownNodes
 ) -> Iterator[Finding]:
     """The names that launch files themselves give to known nodes which they start: what build writes
     starts these nodes, too, and has only what stands in parameter files."""
     for node in given:
-        launched = started.get(node.name)
-        if launched is None or node.known not in known.nodes or node.known == _MANAGER:
+        launched = started.get(node.node)
+        if launched is None or node.fact.known not in known.nodes or node.fact.known == _MANAGER:
             continue
-        lost = list(_lost(node, known.nodes[node.known].params.values(), launched.place.file))
+        lost = list(_lost(node, known.nodes[node.fact.known].params.values(), launched.place.file))
         if lost:
-            message = f"the launch file itself gives {node.name} {shorten(lost)}"
+            message = f"the launch file itself gives {node.node} {shorten(lost)}"
             hint = "write them into a parameter file of that node, and list it under params"
             said = f"{message}: what build writes has them not"
             file, line, *_ = launched.place
             yield NOT_REWRITTEN.finding(said, hint, level=WARNING, file=file, line=line)
 
 
-def _lost(node: GivenNode, params: Collection[Param], launch: str) -> Iterator[str]:
+def _lost(node: Run, params: Collection[Param], launch: str) -> Iterator[str]:
     for name, it in node.values.items():
         param = next((one for one in params if is_called(one, name)), None)
         named = param is not None and param.kind in _NAMES and str(it.value) != param.default

@@ -36,8 +36,8 @@ def launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
 
 def _prefix_of(found: RobotEvidence) -> Given | None:
     """What its own robot_state_publisher gets; there may be another one, as of a dock."""
-    every = [it for it in found.given if it.known == STATE_PUBLISHER]
-    own = next((it for it in every if it.name == STATE_PUBLISHER), None)
+    every = [it for it in found.given if it.fact.known == STATE_PUBLISHER]
+    own = next((it for it in every if it.node == STATE_PUBLISHER), None)
     publisher = own or (every[0] if len(every) == 1 else None)
     return publisher.values.get(FRAME_PREFIX) if publisher else None
 

@@ -17,7 +17,7 @@ from multibot_rewrite.producers.evidence.remapped import under_plugin
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, joined
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 
 NOT_SPAWNED = "no spawner of the launch files loads it"
 
@@ -69,7 +69,7 @@ def _own(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
 def nodes_with(
     launched: Launched | None,
     stack: Sequence[NodeFacts],
-    given: Sequence[GivenNode],
+    given: Sequence[Run],
     known: Mapping[str, NodeFacts],
 ) -> RobotNodes:
     """The nodes that a robot runs, by its launch files, its other files and its stacks."""
@@ -89,24 +89,24 @@ def under_plugins(
     return tuple(under_plugin(it, rules, release) for it in nodes)
 
 
-def _spawned(launched: Launched, given: Sequence[GivenNode]) -> dict[str, str]:
+def _spawned(launched: Launched, given: Sequence[Run]) -> dict[str, str]:
     """Controllers of which launch files say whether they run -> the condition; empty for always."""
     found = {name: it.later for name, it in launched.spawned.items()}
-    rest = (it.name for it in given if it.manager and it.name not in found)
+    rest = (it.node for it in given if it.host_name and it.node not in found)
     return found | (dict.fromkeys(rest, NOT_SPAWNED) if found and launched.whole else {})
 
 
-def given_with(launched: Launched | None, given: Sequence[GivenNode]) -> tuple[GivenNode, ...]:
+def given_with(launched: Launched | None, given: Sequence[Run]) -> tuple[Run, ...]:
     """What a robot's files set and what its launch files do: these come last, so they count."""
     if launched is None:
         return tuple(given)
-    started = {it.name: it for it in launched.given}
+    started = {it.node: it for it in launched.given}
     # In the order of the files, so that they can be compared with what is made of them.
-    own = [_both(it, started.pop(it.name)) if it.name in started else it for it in given]
+    own = [_both(it, started.pop(it.node)) if it.node in started else it for it in given]
     return (*own, *started.values())
 
 
-def _both(own: GivenNode, launched: GivenNode) -> GivenNode:
+def _both(own: Run, launched: Run) -> Run:
     """A value that both have keeps its place in the robot's own file."""
     same = {
         k: it
@@ -115,9 +115,9 @@ def _both(own: GivenNode, launched: GivenNode) -> GivenNode:
     }
     values = {**own.values, **launched.values, **same}
     # The file may say what the launch alone does not: the type of a controller.
-    said = launched if launched.type or not own.type else own
-    manager = launched.manager or own.manager
-    return said._replace(values=values, place=own.place, manager=manager)
+    said = launched if launched.program or not own.program else own
+    manager = launched.host_name or own.host_name
+    return said._replace(values=values, place=own.place, host_name=manager)
 
 
 def _filled(order: LaunchOrder, robot: str) -> Iterator[tuple[str, str]]:

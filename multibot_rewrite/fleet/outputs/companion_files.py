@@ -41,7 +41,7 @@ from multibot_rewrite.knowledge.parameter_entries import PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.nodes import children_of
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 
 # The key of a fleet file -> the kind of the files that it names.
 _KINDS = {"params": PARAMS, "moveit": MOVEIT, "behavior_trees": TREE, "lua": LUA}
@@ -147,20 +147,20 @@ def _sent(nodes: Iterable[NodeFacts], links: Iterable[str]) -> Iterator[str]:
     return (it for it in sent if not meant_name(it, links))
 
 
-def _at_run_time(naming: Naming, given: Iterable[GivenNode], known: KnownNodes) -> frozenset[str]:
+def _at_run_time(naming: Naming, given: Iterable[Run], known: KnownNodes) -> frozenset[str]:
     """The nodes that put the robot's name before their frames, by their files and launch files: those
     frames stay bare."""
     if not naming.layout.at_run_time:
         return frozenset()
     return frozenset(
-        node.name.rpartition("/")[2]
+        node.node.rpartition("/")[2]
         for node in given
-        if node.known in known.nodes and any(_prefixes(known, node))
+        if node.fact.known in known.nodes and any(_prefixes(known, node))
     )
 
 
-def _prefixes(known: KnownNodes, node: GivenNode) -> Iterator[str]:
-    params = known.nodes[node.known].params
+def _prefixes(known: KnownNodes, node: Run) -> Iterator[str]:
+    params = known.nodes[node.fact.known].params
     for name, given in node.values.items():
         if given.value and name in params and params[name].kind in RUN_TIME:
             yield name

@@ -16,7 +16,7 @@ from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.owners import own_names
 from multibot_rewrite.fleet.proposal.searching import Found, text_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 
 _OF_ROBOT = ("frame", "link", "joint")
 # With so many times as many names that the robot has not, another file is no rival.
@@ -39,7 +39,7 @@ class Fitting(NamedTuple):
 
 
 def fitting(
-    robot: Looked, path: str, nodes: Sequence[GivenNode], known: KnownNodes, bridges: Iterable[str]
+    robot: Looked, path: str, nodes: Sequence[Run], known: KnownNodes, bridges: Iterable[str]
 ) -> Fitting:
     """How a file goes with a robot: frames, links and joints are those of its description, a sensor's
     topic of several words stands in it or in a bridge."""
@@ -51,13 +51,13 @@ def fitting(
         for kind, value in _named(nodes, known)
         if (value not in own if kind in _OF_ROBOT else _is_strange(value, said))
     }
-    names = frozenset(word for it in nodes for word in (it.name, it.known) if word)
+    names = frozenset(word for it in nodes for word in (it.node, it.fact.known) if word)
     return Fitting(path, names, frozenset(found))
 
 
 def not_started(
     path: str,
-    nodes: Sequence[GivenNode],
+    nodes: Sequence[Run],
     known: KnownNodes,
     launched: Sequence[str],
     given: Set[str],
@@ -67,7 +67,7 @@ def not_started(
     ``given`` are the packages of the nodes that get it from launch files."""
     base, own = os.path.basename(path), package_of(path)
     naming = {package_of(it) for it in launched if base in text_of(it)}
-    packages = {known.nodes[it.known].package for it in nodes if it.known in known.nodes}
+    packages = {known.nodes[it.fact.known].package for it in nodes if it.fact.known in known.nodes}
     if own and own[0] in packages and naming <= {own}:
         return f"it is an example of {own[0]}, and no launch file of another package names it"
     if not nodes and own and given and given <= {own[0], ""}:
@@ -76,13 +76,13 @@ def not_started(
         return ""
     if not nodes:
         return "it is for any node, and no launch file gives it to a node that is known"
-    return "" if given or naming else f"no launch file starts {nodes[0].name}"
+    return "" if given or naming else f"no launch file starts {nodes[0].node}"
 
 
-def _named(nodes: Iterable[GivenNode], known: KnownNodes) -> Iterator[tuple[str, str]]:
+def _named(nodes: Iterable[Run], known: KnownNodes) -> Iterator[tuple[str, str]]:
     """The names in values of known parameters, each with its kind."""
-    for node in (it for it in nodes if it.known in known.nodes):
-        params = [*known.nodes[node.known].params.values()]
+    for node in (it for it in nodes if it.fact.known in known.nodes):
+        params = [*known.nodes[node.fact.known].params.values()]
         for name, given in node.values.items():
             kind = next((it.kind for it in params if is_called(it, name) and not it.own), "")
             is_sensor = kind == "topic" and name.endswith(("scan_topic", ".topic"))

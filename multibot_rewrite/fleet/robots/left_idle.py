@@ -18,27 +18,27 @@ from multibot_rewrite.rules.launch.started import (
     said_of_bond,
 )
 from multibot_rewrite.rules.places import at
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 
 
 def left_idle(
-    nodes: Sequence[NodeFacts], given: Iterable[GivenNode], known: Mapping[str, NodeFacts]
+    nodes: Sequence[NodeFacts], given: Iterable[Run], known: Mapping[str, NodeFacts]
 ) -> Iterator[Finding]:
     """What starts and does nothing, by the robot's own files of parameters."""
-    own = {it.name: it for it in given}
+    own = {it.node: it for it in given}
     yield from _unlisted(nodes, own)
     yield from _unbonded(nodes, own)
     running = {it.name for it in nodes if not it.when}
     for it in own.values():
-        facts = known.get(it.known)
-        if it.manager and it.name in running and facts and moves_nothing(facts, it):
-            message = f"controller {it.name} gets no parameter that names a joint"
+        facts = known.get(it.fact.known)
+        if it.host_name and it.node in running and facts and moves_nothing(facts, it):
+            message = f"controller {it.node} gets no parameter that names a joint"
             yield at(
                 no_joints, it.place, message, "write them into a section of its name", level=WARNING
             )
 
 
-def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, GivenNode]) -> Iterator[Finding]:
+def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
     """Where a file has the list; a manager of the stack alone lists what the stack starts."""
     managers = [it for it in nodes if it.kind == LIFECYCLE_MANAGER]
     place = next((own[it.name].place for it in managers if it.name in own), None)
@@ -50,7 +50,7 @@ def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, GivenNode]) -> Itera
             yield at(not_listed, place, message, "add it to node_names", level=WARNING)
 
 
-def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, GivenNode]) -> Iterator[Finding]:
+def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
     """Where a file has the list, and a node on it keeps no bond with its manager."""
     for manager in (it for it in nodes if it.kind == LIFECYCLE_MANAGER and it.name in own):
         given, listed = own[manager.name], _listed([manager])

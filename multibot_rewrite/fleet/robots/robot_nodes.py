@@ -55,7 +55,7 @@ from multibot_rewrite.producers.launch.of_robot import without_robot
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Edge, Origin, Place
 
 WORLD = "world"
@@ -82,7 +82,7 @@ class RobotEvidence(NamedTuple):
     has in the place of defaults, the transforms that a simulator sends, and whether a node of its files
     sends one of these, which no bridge file of its own has."""
 
-    given: tuple[GivenNode, ...]
+    given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]
     nodes: tuple[NodeFacts, ...]
     findings: tuple[Finding, ...]
@@ -151,11 +151,11 @@ def robot_nodes(
 
 
 def _as_written(
-    nodes: Iterable[NodeFacts], own: Iterable[GivenNode], known: KnownNodes, release: str
+    nodes: Iterable[NodeFacts], own: Iterable[Run], known: KnownNodes, release: str
 ) -> Iterator[NodeFacts]:
     """The nodes, with the topics of costmaps as the robot's files will have them: absolute, where the
     node does not resolve a relative one in the robot's namespace."""
-    outside = {it.name: frozenset(_outside(it, known, release)) for it in own}
+    outside = {it.node: frozenset(_outside(it, known, release)) for it in own}
     for it in nodes:
         moved = outside.get(it.name, frozenset())
         ends = (_absolute(end) if end.parameter in moved else end for end in it.endpoints)
@@ -163,11 +163,11 @@ def _as_written(
 
 
 def _made_by_arguments(
-    nodes: Iterable[NodeFacts], given: Iterable[GivenNode], topics: Mapping[str, str]
+    nodes: Iterable[NodeFacts], given: Iterable[Run], topics: Mapping[str, str]
 ) -> Iterator[NodeFacts]:
     """Yield the nodes with the topics of their parameters that arguments of the xacro make, by their
     full names, as the robot's files will have them: they are the robot's already."""
-    values = {it.name: it.values for it in given}
+    values = {it.node: it.values for it in given}
     for it in nodes:
         own = values.get(it.name, {})
         ends = (_in_full(end, topics) if end.parameter in own else end for end in it.endpoints)
@@ -179,11 +179,11 @@ def _in_full(end: Endpoint, topics: Mapping[str, str]) -> Endpoint:
     return end._replace(name=name, fixed=BY_ARGUMENT, own=True) if name else end
 
 
-def _outside(it: GivenNode, known: KnownNodes, release: str) -> Iterator[str]:
+def _outside(it: Run, known: KnownNodes, release: str) -> Iterator[str]:
     """The parameters of a node whose relative topics are resolved outside of its robot's namespace."""
-    if it.known not in known.nodes:
+    if it.fact.known not in known.nodes:
         return
-    params = [one for one in known.nodes[it.known].params.values() if one.absolute]
+    params = [one for one in known.nodes[it.fact.known].params.values() if one.absolute]
     for name in it.values if params else ():
         plugin = it.values.get(f"{name.rpartition('.')[0]}.plugin")
         below = plugin is not None and is_below_costmap(str(plugin.value))
@@ -215,9 +215,9 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
     return not of_one or bool(spec.companions.get("bridge")) or is_bridged(member.inventory)
 
 
-def _standing(nodes: Iterable[NodeFacts], given: Iterable[GivenNode]) -> tuple[NodeFacts, ...]:
+def _standing(nodes: Iterable[NodeFacts], given: Iterable[Run]) -> tuple[NodeFacts, ...]:
     """The nodes without controllers of wheels that a stack has for robots that drive."""
-    named = {it.name for it in given}
+    named = {it.node for it in given}
     return tuple(
         it for it in nodes if it.name in named or not (it.host == MANAGER and it.when and it.sends)
     )
@@ -234,11 +234,11 @@ def _of_srdf(
         )
 
 
-def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:
+def _known(given: Iterable[Run], file: FleetFile) -> dict[str, NodeFacts]:
     """The known nodes; those that the robot's files name as their installed packages declare them."""
     facts = known_nodes(file.nodes, file.distro, file.nodl)
     nodes = dict(facts.library.nodes)
-    named = {it.known for it in given} & nodes.keys()
+    named = {it.fact.known for it in given} & nodes.keys()
     return nodes | {name: declared(facts, nodes[name]) for name in named}
 
 
@@ -248,7 +248,7 @@ def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
 
 
 def _manager_in_plugin(
-    stack: Iterable[NodeFacts], own: Iterable[GivenNode], member: Member, release: str
+    stack: Iterable[NodeFacts], own: Iterable[Run], member: Member, release: str
 ) -> Iterator[NodeFacts]:
     """The controller manager that a plugin of the description makes, as the stack of the plugin has
     it: where a file of the robot sets it, or a stack has controllers; none where a stack has it."""
@@ -258,7 +258,7 @@ def _manager_in_plugin(
     wide = (it.section for it in member.reading.nodes if it.section.process_wide)
     names = {name for it in wide for name in it.names}
     library = built_in(release)
-    if any(it.host == MANAGER for it in nodes) or any(it.known == MANAGER for it in own):
+    if any(it.host == MANAGER for it in nodes) or any(it.fact.known == MANAGER for it in own):
         made = (it for name in library.stacks for it in stack_of(library, name) if it.plugin)
         yield from [it for it in made if it.name == MANAGER and it.plugin in names][:1]
 

@@ -185,12 +185,12 @@ def _own_odometry(plan: FleetPlan, robot: RewrittenRobot) -> str:
     own = (edges for (name, _), edges in plan.fleet.edges.items() if name == robot.spec.namespace)
     frames = {frame for edges in own for it in edges for frame in (it.parent, it.child)}
     for node in plan.evidence_of(robot).given:
-        told = {} if node.known or node.name in described else node.values
+        told = {} if node.fact.known or node.node in described else node.values
         for name, it in told.items():
             value = it.value
             is_frame = ODOMETRY_FRAME.search(name) and isinstance(value, str) and value
             if is_frame and spell(robot.names, "frame", str(value)) not in frames:
-                return f"{node.name}, whose {name} is {value!r} ({it.place.file}:{it.place.line}),"
+                return f"{node.node}, whose {name} is {value!r} ({it.place.file}:{it.place.line}),"
     return ""
 
 

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.knowledge.records import Claim, NodeFacts
 from multibot_rewrite.producers.evidence.claims import claims_of
 from multibot_rewrite.producers.evidence.hardware import COMMAND, STATE
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 
 _JOINTS = "<joints|joint|joint_names|joint_name|dof_names>"
 _INTERFACES = "<command_interfaces|command_interface|interface_name|interface_names>"
@@ -24,12 +24,12 @@ GUESSED = (
 )
 
 
-def alternatives(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> dict[str, str]:
+def alternatives(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> dict[str, str]:
     """Controllers that command what another one commands -> the condition under which they run."""
     by_owner: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for controller in (it for it in given if it.manager):
+    for controller in (it for it in given if it.host_name):
         for owner in dict.fromkeys(_commanded(controller, known)):
-            by_owner[controller.manager, owner].append(controller.name)
+            by_owner[controller.host_name, owner].append(controller.node)
     found: dict[str, str] = {}
     for names in (it for it in by_owner.values() if len(it) > 1):
         for name in names:
@@ -38,9 +38,9 @@ def alternatives(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> 
     return found
 
 
-def _commanded(controller: GivenNode, known: Mapping[str, NodeFacts]) -> Iterator[str]:
+def _commanded(controller: Run, known: Mapping[str, NodeFacts]) -> Iterator[str]:
     """The joints, sensors and gpios that it commands."""
-    node = known.get(controller.known)
+    node = known.get(controller.fact.known)
     for it in claims_of(node.claims if node else GUESSED, controller):
         if it.kind == COMMAND:
             yield it.name.rpartition("/")[0]

@@ -16,7 +16,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.conditions import Values, holds
 from multibot_rewrite.knowledge.records import Claim
-from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import Place
 
 TYPE, COMMAND = "type", "command"
@@ -43,9 +43,9 @@ class _Made(NamedTuple):
     place: Place | None
 
 
-def claims_of(claims: Iterable[Claim], node: GivenNode) -> Iterator[Claimed]:
+def claims_of(claims: Iterable[Claim], node: Run) -> Iterator[Claimed]:
     """The interfaces that a controller claims with its parameters, each once."""
-    yield from claimed(claims, {**node.values, TYPE: Given(node.type, node.place)})
+    yield from claimed(claims, {**node.values, TYPE: Given(node.program, node.place)})
 
 
 def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Claimed]:
@@ -60,10 +60,10 @@ def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Cl
     yield from found.values()
 
 
-def claimed_twice(claims: Iterable[Claim], node: GivenNode) -> Iterator[tuple[Claimed, Place]]:
+def claimed_twice(claims: Iterable[Claim], node: Run) -> Iterator[tuple[Claimed, Place]]:
     """Command interfaces that two parameters of a controller name; the second with the place of the
     first."""
-    values, first = {**node.values, TYPE: Given(node.type, node.place)}, dict[str, Place]()
+    values, first = {**node.values, TYPE: Given(node.program, node.place)}, dict[str, Place]()
     for claim in (it for it in claims if it.kind == COMMAND):
         for made in _names(claim.template, _Made("", claim.condition, None), values):
             if made.place and holds(made.condition, _lookup(values)):

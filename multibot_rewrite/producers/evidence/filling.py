@@ -15,7 +15,7 @@ from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.knowledge.conditions import ALSO, Values, chosen_type, holds, verdict
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
-from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import Origin
 
 _ID = re.compile(r"<([a-z_ ]+)>")
@@ -28,7 +28,7 @@ _TYPE = re.compile(r"/(?:msg|srv|action)/")
 Ids = Mapping[str, str]
 
 
-def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) -> NodeFacts:
+def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeFacts:
     """``node`` with the names that its parameters set, under the name that it has there.
 
     ``known`` is the node without what a stack makes of it: where the parameters do not say more, what
@@ -45,7 +45,7 @@ def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) ->
     made = [it for raw, own in each for it in _endpoint(node, raw, own, values, value_of)] + alone
     with_frames = node._replace(frames=tuple(_frame(it, values) for it in node.frames))
     return with_frames._replace(
-        name=given.name,
+        name=given.node,
         endpoints=tuple(dict.fromkeys(made)),
         sends=tuple(sent_with(with_frames, values)),
         origin=Origin(place=given.place),

@@ -16,7 +16,7 @@ from multibot_rewrite.knowledge.records import UNKNOWN, NodeFacts
 from multibot_rewrite.producers.evidence.alternatives import GUESSED, alternatives
 from multibot_rewrite.producers.evidence.claims import claims_of
 from multibot_rewrite.producers.evidence.filling import filled
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Origin
 
 MANAGER = "controller_manager"
@@ -41,7 +41,7 @@ class RobotNodes(NamedTuple):
 
 def nodes_of(
     stack: Sequence[NodeFacts],
-    given: Sequence[GivenNode],
+    given: Sequence[Run],
     known: Mapping[str, NodeFacts],
     spawned: Mapping[str, str] = ALWAYS,
 ) -> RobotNodes:
@@ -51,44 +51,44 @@ def nodes_of(
     files say whether they run.
     """
     # No supported release has a node that is called as before: nothing reads its section.
-    given = [it for it in given if it.name.rpartition("/")[2] not in plugin_bases()[NODE].older]
+    given = [it for it in given if it.node.rpartition("/")[2] not in plugin_bases()[NODE].older]
     sections = {it.name: _section_of(it, given) for it in stack}
     left, kept = _left_out(stack, given, sections, known)
     either = {**alternatives(given, known), **spawned}
     nodes = [_of_stack(it, sections[it.name], known, either, spawned) for it in kept]
-    names = {it.name for it in filter(None, sections.values())}
-    of_stack = {it.place.file for it in given if it.name in names}
+    names = {it.node for it in filter(None, sections.values())}
+    of_stack = {it.place.file for it in given if it.node in names}
     sent = {child for node in kept for child in children_of(node)}
-    more = [it for it in given if it.name not in names and _may_run(it, known)]
+    more = [it for it in given if it.node not in names and _may_run(it, known)]
     meant = dict(_meant([it for it in stack if it not in kept], more, known))
     for it in more:
-        if it.name in meant:
-            entry = known[it.known]
-            nodes.append(filled(entry, it)._replace(when=meant[it.name].when, known=entry.kind))
+        if it.node in meant:
+            entry = known[it.fact.known]
+            nodes.append(filled(entry, it)._replace(when=meant[it.node].when, known=entry.kind))
             continue
-        node = _added(it, known, either.get(it.name, ""))
-        doubtful = not it.manager and (it.place.file in of_stack or sent & {*children_of(node)})
+        node = _added(it, known, either.get(it.node, ""))
+        doubtful = not it.host_name and (it.place.file in of_stack or sent & {*children_of(node)})
         nodes.append(node._replace(sends=()) if doubtful else node)
     doubtful_types = (*_unknown(given), *_of_another_release(given, known))
     findings = sorted((*left, *doubtful_types), key=lambda it: (it.file, it.line))
     return RobotNodes(tuple(nodes), tuple(findings))
 
 
-def _section_of(node: NodeFacts, given: Sequence[GivenNode]) -> GivenNode | None:
+def _section_of(node: NodeFacts, given: Sequence[Run]) -> Run | None:
     """What the files set for a node of a stack; its section may be below a namespace."""
-    exact = (it for it in given if it.name == node.name)
-    below = (it for it in given if it.name.endswith(f"/{node.name}"))
+    exact = (it for it in given if it.node == node.name)
+    below = (it for it in given if it.node.endswith(f"/{node.name}"))
     return next(exact, None) or next(below, None)
 
 
 def _left_out(
     stack: Sequence[NodeFacts],
-    given: Sequence[GivenNode],
-    sections: Mapping[str, GivenNode | None],
+    given: Sequence[Run],
+    sections: Mapping[str, Run | None],
     known: Mapping[str, NodeFacts],
 ) -> tuple[list[Finding], list[NodeFacts]]:
     """Notes of the nodes that the files contradict, and the other nodes of the stacks."""
-    controllers = [it for it in given if it.manager]
+    controllers = [it for it in given if it.host_name]
     findings: list[Finding] = []
     kept = []
     for node in stack:
@@ -100,22 +100,22 @@ def _left_out(
 
 
 def _meant(
-    stack: Iterable[NodeFacts], given: Sequence[GivenNode], known: Mapping[str, NodeFacts]
+    stack: Iterable[NodeFacts], given: Sequence[Run], known: Mapping[str, NodeFacts]
 ) -> Iterator[tuple[str, NodeFacts]]:
     """The one node of the files that stands for each of these nodes of the stack; of several, as two
     filters with rules of their own, it is not known which."""
     for node in stack:
-        found = [it.name for it in given if not it.manager and _stands_for(it, node, known)]
+        found = [it.node for it in given if not it.host_name and _stands_for(it, node, known)]
         if len(found) == 1:
             yield found[0], node
 
 
-def _stands_for(given: GivenNode, node: NodeFacts, known: Mapping[str, NodeFacts]) -> bool:
+def _stands_for(given: Run, node: NodeFacts, known: Mapping[str, NodeFacts]) -> bool:
     """Does a file have a node of a stack under another name, as ekf_node for ekf_filter_node, or
     another program of the package that sends the same, as ukf_filter_node?"""
-    if given.known == node.name:
+    if given.fact.known == node.name:
         return True
-    entry = known.get(given.known)
+    entry = known.get(given.fact.known)
     same = entry is not None and entry.package == node.package and entry.sends == node.sends
     return same and bool(node.sends)
 
@@ -126,15 +126,15 @@ def children_of(node: NodeFacts) -> Iterator[str]:
     yield from (frames[it.child] for it in node.sends)
 
 
-def _may_run(given: GivenNode, known: Mapping[str, NodeFacts]) -> bool:
+def _may_run(given: Run, known: Mapping[str, NodeFacts]) -> bool:
     """Is it a controller that a file declares, or a known node with a process of its own?"""
-    node = known.get(given.known)
-    return bool(given.manager) or (node is not None and not node.host)
+    node = known.get(given.fact.known)
+    return bool(given.host_name) or (node is not None and not node.host)
 
 
 def _of_stack(
     node: NodeFacts,
-    section: GivenNode | None,
+    section: Run | None,
     known: Mapping[str, NodeFacts],
     either: Mapping[str, str],
     spawned: Mapping[str, str],
@@ -144,48 +144,47 @@ def _of_stack(
     if section is None:
         return node
     made = filled(node, section, known.get(node.known))
-    asked = "" if section.manager else node.when
-    when = spawned.get(section.name, asked or either.get(section.name, ""))
+    asked = "" if section.host_name else node.when
+    when = spawned.get(section.node, asked or either.get(section.node, ""))
     return made._replace(name=node.name, when=when)
 
 
-def _added(given: GivenNode, known: Mapping[str, NodeFacts], either: str) -> NodeFacts:
+def _added(given: Run, known: Mapping[str, NodeFacts], either: str) -> NodeFacts:
     """A controller that a file declares runs, unless ``either`` says which other runs in its place;
     another node that has parameters may run."""
-    node = known.get(given.known)
+    node = known.get(given.fact.known)
     if node is None:
-        package = given.type.partition("/")[0]
+        package = given.program.partition("/")[0]
         return UNKNOWN._replace(
-            name=given.name,
+            name=given.node,
             package=package,
             host=MANAGER,
             when=either,
             origin=Origin(place=given.place),
         )
-    runs = given.manager or node.name == MANAGER
+    runs = given.host_name or node.name == MANAGER
     when = either or node.when if runs else f"its parameters are in {given.place.file}"
     return filled(node, given)._replace(when=when)
 
 
-def _not_declared(node: NodeFacts, beside: GivenNode) -> Finding:
+def _not_declared(node: NodeFacts, beside: Run) -> Finding:
     file, line, _ = beside.place
     message = f"{node.name} of the stack is declared in no file; it is left out"
-    hint = f"declare it beside {beside.name}, or name a stack without it"
+    hint = f"declare it beside {beside.node}, or name a stack without it"
     return NOT_DECLARED.finding(message, hint, file=file, line=line, column=1)
 
 
-def _unknown(given: Sequence[GivenNode]) -> Iterator[Finding]:
+def _unknown(given: Sequence[Run]) -> Iterator[Finding]:
     for it in given:
-        if it.manager and not (it.type or it.known):
-            message = f"controller {it.name} is spawned, and no file says its type"
+        if it.host_name and not (it.program or it.fact.known):
+            message = f"controller {it.node} is spawned, and no file says its type"
             hint = "name the file with its type under params, or as --param-file of the spawner"
             yield NO_TYPE.finding(message, hint, file=it.place.file, line=it.place.line, column=1)
-        if it.manager and it.unknown_type:
-            message = f"controller {it.name} is of type {it.type}, which is not known"
+        if it.host_name and it.unknown_type:
+            message = f"controller {it.node} is of type {it.program}, which is not known"
             described = "describe it in a file of nodes (docs/stacks.md)"
-            taken = (
-                f"the plan takes it for a {it.known}" if it.known else "the plan has its name alone"
-            )
+            meant = it.fact.known
+            taken = f"the plan takes it for a {meant}" if meant else "the plan has its name alone"
             hint = f"{described}; {taken}{_guess(it)}"
             hint = f"did you mean {it.like}?" if it.like else hint
             yield UNKNOWN_TYPE.finding(
@@ -193,19 +192,17 @@ def _unknown(given: Sequence[GivenNode]) -> Iterator[Finding]:
             )
 
 
-def _of_another_release(
-    given: Sequence[GivenNode], known: Mapping[str, NodeFacts]
-) -> Iterator[Finding]:
+def _of_another_release(given: Sequence[Run], known: Mapping[str, NodeFacts]) -> Iterator[Finding]:
     for it in given:
-        if it.manager and it.known and not it.unknown_type and it.known not in known:
-            message = f"controller {it.name} is of type {it.type}, which this release lacks"
+        if it.host_name and it.fact.known and not it.unknown_type and it.fact.known not in known:
+            message = f"controller {it.node} is of type {it.program}, which this release lacks"
             hint = "the manager cannot load it; use a type of the release, or name the right distro"
             yield UNKNOWN_TYPE.finding(
                 message, hint, file=it.place.file, line=it.place.line, column=1
             )
 
 
-def _guess(controller: GivenNode) -> str:
+def _guess(controller: Run) -> str:
     """What a controller of an unknown type claims, if its parameters have their usual names."""
     names = list(dict.fromkeys(it.name for it in claims_of(GUESSED, controller)))
     if not names:

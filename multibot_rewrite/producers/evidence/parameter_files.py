@@ -34,7 +34,8 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, names_below, pairs
 from multibot_rewrite.knowledge.parameters import KnownNodes
-from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.knowledge.records import UNKNOWN
+from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import Place
 
@@ -66,7 +67,7 @@ def given_nodes(
     documents: Iterable[YamlText],
     known: KnownNodes,
     managers: Collection[str] = (),
-) -> list[GivenNode]:
+) -> list[Run]:
     """The nodes that these files have sections for, and the controllers that they declare.
     ``managers`` are controller managers that are not called as usual.
 
@@ -207,7 +208,7 @@ def _values(sections: Sequence[_Section]) -> dict[str, Given]:
 
 def _node(
     name: str, sections: Sequence[_Section], controller: _Controller | None, known: KnownNodes
-) -> GivenNode:
+) -> Run:
     own = _own(sections, name)
     values = _values(own)
     named = [it for it in own if it.name]
@@ -216,8 +217,14 @@ def _node(
     body = named[-1].raw.body if named else None
     found = identify_node(last, body, known, {last: type_} if type_ else {})
     place = controller.type.place if controller else named[0].place
-    manager = controller.manager if controller else ""
     unknown = bool(type_) and type_ not in known.types
     like = nearest(type_, known.types, SLIP) if unknown else ""
-    node = found.name if found else ""
-    return GivenNode(name, node, type_, values, place, manager, unknown, like)
+    return Run(
+        *("", name, "", last, (), UNKNOWN._replace(known=found.name if found else "")),
+        host_name=controller.manager if controller else "",
+        values=values,
+        program=type_,
+        place=place,
+        unknown_type=unknown,
+        like=like,
+    )

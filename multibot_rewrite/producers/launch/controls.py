@@ -13,7 +13,7 @@ from multibot_rewrite.producers.evidence.claims import claims_of
 from multibot_rewrite.producers.evidence.hardware import exported
 from multibot_rewrite.producers.launch.launched import file_of
 from multibot_rewrite.producers.launch.records import LaunchGraph
-from multibot_rewrite.spelling.records import GivenNode, Run
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import CLAIMS, EXPORTS, Interface
 
 _DESCRIPTION = "robot_description"
@@ -62,7 +62,6 @@ def _exports(manager: str, text: str, graph: LaunchGraph) -> Iterator[Interface]
 
 
 def _claims(it: Run) -> Iterator[Interface]:
-    given = GivenNode(it.name, it.fact.known, it.program, it.values, it.place)
-    for claim in claims_of(it.fact.claims, given):
+    for claim in claims_of(it.fact.claims, it):
         place = claim.place if claim.place and claim.place.file else it.place
         yield Interface(claim.kind, claim.name, it.full_name, CLAIMS, place)

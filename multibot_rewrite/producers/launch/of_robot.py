@@ -32,7 +32,7 @@ from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph,
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
 
 # The name of a file for what a launch file gives itself.
@@ -46,7 +46,7 @@ class Launched(NamedTuple):
     they start a simulator, or what is for one."""
 
     nodes: tuple[NodeFacts, ...]
-    given: tuple[GivenNode, ...]
+    given: tuple[Run, ...]
     started: Mapping[str, LaunchedNode]
     spawned: Mapping[str, Spawned]
     whole: bool
@@ -87,7 +87,7 @@ def with_launched(
     unknown = [(it.node, it.facts.name) for it in pairs if not it.facts.is_known]
     return Launched(
         (*kept, *nodes.values(), *hosted),
-        tuple({it.name: it for it in reversed(given)}.values()),
+        tuple({it.node: it for it in reversed(given)}.values()),
         {it.facts.name: it.node for it in pairs},
         dict(_under_manager(spawned, pairs, words, release)),
         graph.whole,
@@ -215,25 +215,25 @@ def _controllers(
     pairs: Iterable[_Pair],
     words: Collection[str],
     parameters: KnownNodes,
-) -> Iterator[GivenNode]:
+) -> Iterator[Run]:
     """What the launch files set for the controllers that they spawn."""
     own = {_full_name(it.node, it.facts): it.node.parameters for it in pairs}
     places = {_stripped(it.full_name.strip("/"), words): it.place for it in spawned}
     for manager, texts in texts_of(spawned, own):
         above = _stripped(manager.strip("/"), words)
         documents = [document_of(it.file, it.text) for it in texts if has_sections(it)]
-        found: dict[str, GivenNode] = {}
+        found: dict[str, Run] = {}
         for it in given_nodes(documents, parameters):
-            name = _stripped(it.name, words)
+            name = _stripped(it.node, words)
             if name in places:
                 found[name] = _joined(found.get(name, it), it)
         for name, it in found.items():
-            yield _placed(it, places[name])._replace(name=name, manager=above)
+            yield _placed(it, places[name])._replace(node=name, host_name=above)
 
 
-def _joined(one: GivenNode, other: GivenNode) -> GivenNode:
+def _joined(one: Run, other: Run) -> Run:
     """A controller as it is started, with the type that a manager of any namespace declares."""
-    return one if one.type else other._replace(values=one.values)
+    return one if one.program else other._replace(values=one.values)
 
 
 def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:
@@ -242,7 +242,7 @@ def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:
 
 def _given(
     pair: _Pair, inside: Iterable[NodeFacts], words: Collection[str], parameters: KnownNodes
-) -> Iterator[GivenNode]:
+) -> Iterator[Run]:
     """What the launch file's parameters set for a node, the nodes in it and its controllers."""
     # Sections for any node count, too, so each node gets one of its own.
     first = ParameterText("", f"{_full_name(pair.node, pair.facts)}:\n  ros__parameters: {{}}\n")
@@ -252,11 +252,11 @@ def _given(
     names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
     for it in given_nodes(documents, parameters):
         mine = without_robot(it, words)
-        if mine.name in names or mine.manager == pair.facts.name:
+        if mine.node in names or mine.host_name == pair.facts.name:
             yield _of_any_robot(_placed(mine, pair.node.place), pair.node.namespace, words)
 
 
-def _of_any_robot(given: GivenNode, namespace: str, words: Collection[str]) -> GivenNode:
+def _of_any_robot(given: Run, namespace: str, words: Collection[str]) -> Run:
     """Parameters that a launch file filled for a robot, without it: ``/scan`` of ``/robot1/scan``."""
     own = [f"/{it}/" for it in words if f"{namespace}/".startswith(f"/{it}/")]
     if not own:
@@ -273,7 +273,7 @@ def _without(value: Any, above: str) -> Any:
     return f"/{value.removeprefix(above)}" if is_name else value
 
 
-def _placed(given: GivenNode, place: Place) -> GivenNode:
+def _placed(given: Run, place: Place) -> Run:
     """What a launch file gives itself is where that starts the node."""
     values = {
         name: it if it.place.file != _OWN else it._replace(place=place)
@@ -282,10 +282,10 @@ def _placed(given: GivenNode, place: Place) -> GivenNode:
     return given._replace(values=values, place=place if given.place.file == _OWN else given.place)
 
 
-def without_robot(given: GivenNode, words: Collection[str]) -> GivenNode:
+def without_robot(given: Run, words: Collection[str]) -> Run:
     """A node of a file that is for one robot, without the namespace of that robot."""
-    name, manager = (_stripped(it, words) for it in (given.name, given.manager))
-    return given._replace(name=name, manager=manager)
+    name, manager = (_stripped(it, words) for it in (given.node, given.host_name))
+    return given._replace(node=name, host_name=manager)
 
 
 def _stripped(name: str, words: Collection[str]) -> str:

@@ -52,7 +52,7 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import with_static_transform
-from multibot_rewrite.spelling.records import GivenNode, Rules, Run
+from multibot_rewrite.spelling.records import Rules, Run
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.ways import COSTMAP_HAS_RULES_OF_ITS_PARENT
 from multibot_rewrite.system.records import PUBLISHES, TOPIC
@@ -272,28 +272,28 @@ def _started(
     handed_on = it.container and has_release(COSTMAP_HAS_RULES_OF_ITS_PARENT, known.release)
     for full, own in {name: facts or UNKNOWN, **hosted}.items():
         above, _, last = full.rpartition("/")
-        given = GivenNode(full.strip("/"), "", "", values_for(full, documents), it.place)
         rules = it.remappings if full == name or handed_on else home
-        arguments = it.arguments if full == name else ()
-        yield Run(
-            *("", last, above or "/", last, rules, _with_values(own, given, arguments)),
+        run = Run(
+            *("", full.strip("/"), above or "/", last, rules, own),
             process=it.container or process,
             process_namespace=(container or it).namespace,
             process_rules=home,
-            values=given.values,
+            values=values_for(full, documents),
             texts=tuple(text.text for text in it.parameters if not has_sections(text)),
             untold=tuple(text.untold for text in it.parameters if text.untold),
             program=f"{it.package}/{it.executable}",
-            arguments=arguments,
+            arguments=it.arguments if full == name else (),
             place=it.place,
         )
+        yield run._replace(node=last, fact=_with_values(run))
 
 
-def _with_values(facts: NodeFacts, given: GivenNode, words: Sequence[str] = ()) -> NodeFacts:
-    if not facts.is_known:
-        return facts
-    made = as_named(filled(facts, given)._replace(known=facts.kind), words, given.values)
-    return with_static_transform(made, words)
+def _with_values(run: Run) -> NodeFacts:
+    """Return what is known of a node with its parameters and arguments."""
+    if not run.has_fact:
+        return run.fact
+    made = filled(run.fact, run)._replace(known=run.fact.kind)
+    return with_static_transform(as_named(made, run.arguments, run.values), run.arguments)
 
 
 def _controllers(
@@ -321,27 +321,28 @@ def _controllers(
         for it in {it.name: it for it in active}.values():
             mine = _given_to(it, given)
             wide = manager.rules if forwarded.of_manager else ()
-            fact = _with_values(known.nodes.get(mine.known, UNKNOWN), mine)
+            fact = known.nodes.get(mine.fact.known, UNKNOWN)
             yield Run(
-                *("", it.name, manager.namespace, it.name, (*wide, *it.rules), fact),
+                *("", it.name, manager.namespace, it.name, (*wide, *it.rules)),
+                fact=_with_values(mine._replace(fact=fact)),
                 process=manager.process,
                 process_namespace=manager.namespace,
                 values=mine.values,
-                program=mine.type or UNTYPED,
+                program=mine.program or UNTYPED,
                 place=it.place,
             )
 
 
-def _given_to(controller: Spawned, given: Sequence[GivenNode]) -> GivenNode:
+def _given_to(controller: Spawned, given: Sequence[Run]) -> Run:
     """What the files set for a controller; a manager of any namespace may have its type. A type in its
     own section counts, though nobody knows it."""
-    mine = next(it for it in given if f"/{it.name}" == controller.full_name)
+    mine = next(it for it in given if f"/{it.node}" == controller.full_name)
     own = mine.values.get(OWN_TYPE)
-    if not mine.type and own and isinstance(own.value, str):
-        mine = mine._replace(type=own.value)
-    typed = (it for it in given if it.type and it.name.rpartition("/")[2] == controller.name)
-    declared = mine if mine.type else next(typed, mine)
-    return declared._replace(name=mine.name, values={**declared.values, **mine.values})
+    if not mine.program and own and isinstance(own.value, str):
+        mine = mine._replace(program=own.value)
+    typed = (it for it in given if it.program and it.node.rpartition("/")[2] == controller.name)
+    declared = mine if mine.program else next(typed, mine)
+    return declared._replace(node=mine.node, values={**declared.values, **mine.values})
 
 
 def _without_manager(lost: Sequence[Spawned]) -> Iterator[LaunchNote]:

@@ -31,7 +31,7 @@ from multibot_rewrite.producers.evidence.moveit import (
 )
 from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in, shown
 from multibot_rewrite.rules.places import remark, remark_at
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
 
@@ -40,7 +40,7 @@ def undeclared_controller(file: NamedFile) -> Iterator[Finding]:
     """Controllers of ``moveit_simple_controller_manager``; nothing where no file declares any."""
     found = [*managers(file.document.root)] if file.document else []
     given = beside(file).given if found else ()
-    declared = {it.name.rpartition("/")[2]: it for it in given if it.manager}
+    declared = {it.node.rpartition("/")[2]: it for it in given if it.host_name}
     for manager in found if declared else ():
         yield from _without_body(file, manager)
         for key, body in controllers_of(manager):
@@ -60,7 +60,7 @@ def _without_body(file: NamedFile, manager: yaml.Node) -> Iterator[Finding]:
 
 
 def _of_one(
-    file: NamedFile, key: yaml.ScalarNode, body: yaml.Node, declared: Mapping[str, GivenNode]
+    file: NamedFile, key: yaml.ScalarNode, body: yaml.Node, declared: Mapping[str, Run]
 ) -> Iterator[Finding]:
     name = str(key.value)
     controller = declared.get(name.rpartition("/")[2])
@@ -75,13 +75,13 @@ def _of_one(
             near = nearest(joint.value, own)
             hint = did_you_mean_at(near, own.get(near) or next(iter(own.values())))
             yield from _lacks(joint, f"joint {joint.value} of {name}", hint)
-    facts = beside(file).known.get(controller.known)
+    facts = beside(file).known.get(controller.fact.known)
     if facts is not None and not controller.unknown_type:
         yield from _action(key, body, controller, facts)
 
 
 def _action(
-    key: yaml.ScalarNode, body: yaml.Node, controller: GivenNode, facts: NodeFacts
+    key: yaml.ScalarNode, body: yaml.Node, controller: Run, facts: NodeFacts
 ) -> Iterator[Finding]:
     """The action that MoveIt calls, if the controller serves others alone."""
     ends = (it for it in facts.endpoints if (it.kind, it.role) == (ACTION, SERVES))
@@ -105,7 +105,7 @@ def _lacks(node: yaml.Node, name: str, hint: str) -> Iterator[Finding]:
         yield remark_at(node, f"MoveIt uses {name}, which no parameter file of the robot has", hint)
 
 
-def _own_joints(controller: GivenNode) -> dict[str, Place]:
+def _own_joints(controller: Run) -> dict[str, Place]:
     """The joints of a controller; none where its parameters do not list any."""
     found: dict[str, Place] = {}
     for given in filter(None, map(controller.values.get, ("joints", "joint"))):
@@ -118,25 +118,25 @@ def _own_joints(controller: GivenNode) -> dict[str, Place]:
 def section_of_no_controller(file: NamedFile) -> Iterator[Finding]:
     """Nothing is said where no parameter file of the robot declares a controller."""
     given, known = beside(file)
-    declared = {it.name: it for it in given if it.manager}
+    declared = {it.node: it for it in given if it.host_name}
     bare = [name for name, it in declared.items() if not it.values]
     loose = [*_undeclared((it for it in given if is_in(file, it.place)), known)]
     for it in loose:
-        alike = [one for one in loose if one.known == it.known]
-        same = [name for name in bare if declared[name].known == it.known]
+        alike = [one for one in loose if one.fact.known == it.fact.known]
+        same = [name for name in bare if declared[name].fact.known == it.fact.known]
         # The one section of a kind, and the one controller of that kind that has none.
-        near = nearest(it.name, bare) or (same[0] if len(alike) == len(same) == 1 else "")
+        near = nearest(it.node, bare) or (same[0] if len(alike) == len(same) == 1 else "")
         if not declared or not (near or file.is_certain):
             continue
         place = declared[near or next(iter(declared))].place
         hint = f"declare it as at {shown(place)}, or leave it out"
         hint = did_you_mean_at(near, place) if near else hint
-        message = f"{it.name} has parameters of a controller that nothing declares"
+        message = f"{it.node} has parameters of a controller that nothing declares"
         yield remark(it.place._replace(column=1), message, hint, WARNING if near else NOTE)
 
 
-def _undeclared(given: Iterable[GivenNode], known: Mapping[str, NodeFacts]) -> Iterator[GivenNode]:
+def _undeclared(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> Iterator[Run]:
     for it in given:
-        node = known.get(it.known)
-        if not it.manager and TYPE not in it.values and node and node.host == MANAGER:
+        node = known.get(it.fact.known)
+        if not it.host_name and TYPE not in it.values and node and node.host == MANAGER:
             yield it

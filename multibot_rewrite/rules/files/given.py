@@ -18,14 +18,14 @@ from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import NOWHERE, Place
 
 
 class Beside(NamedTuple):
     """What all parameter files of a robot set for nodes, and the nodes that are known by name."""
 
-    given: tuple[GivenNode, ...]
+    given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]
 
 
@@ -38,7 +38,7 @@ def beside(file: NamedFile) -> Beside:
     return found
 
 
-def given_in(file: NamedFile) -> tuple[GivenNode, ...]:
+def given_in(file: NamedFile) -> tuple[Run, ...]:
     """What is set for nodes where the file is for a certain robot, else what the file sets."""
     if file.is_certain:
         return beside(file).given
@@ -48,7 +48,7 @@ def given_in(file: NamedFile) -> tuple[GivenNode, ...]:
 def is_set_beside(file: NamedFile, title: str, name: str) -> bool:
     """Does a parameter file of the robot have it for the node of a section, or of its plugin?"""
     node = _last(title.partition(":")[0])
-    return any(name in it.values for it in beside(file).given if _last(it.name) == node)
+    return any(name in it.values for it in beside(file).given if _last(it.node) == node)
 
 
 def _last(name: str) -> str:
@@ -72,7 +72,7 @@ def shown(place: Place) -> str:
     return str(place._replace(file=alike(place.file, os.curdir)))
 
 
-def _given(file: NamedFile, documents: Iterable[YamlText]) -> tuple[GivenNode, ...]:
+def _given(file: NamedFile, documents: Iterable[YamlText]) -> tuple[Run, ...]:
     """Nothing where a file cannot be read: that is told where it is linted itself."""
     try:
         return tuple(given_nodes(documents, built_in_nodes(file.context.distro)))

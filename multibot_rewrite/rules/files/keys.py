@@ -86,7 +86,7 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
                 # A word with a dot has its parameters below several names.
                 near = nearest(word, left) if word.partition(".")[0] not in own else ""
                 if near and near.translate(_DIGITS) != word.translate(_DIGITS):
-                    message = f"{node.name} has {word} in {parameter}, without parameters"
+                    message = f"{node.node} has {word} in {parameter}, without parameters"
                     hint = did_you_mean_at(near, own[near])
                     yield remark(value.place._replace(column=1), message, hint)
 

@@ -141,7 +141,7 @@ def prefix_only(file: NamedFile) -> Iterator[Finding]:
 def _default_prefixes(file: NamedFile, section: ParamSection) -> Iterator[Finding]:
     every = section.node.defaults if section.node else ()
     open_ = [it.path for it in every if not expressible(file.context, it.kind)]
-    given = [it for it in given_in(file) if it.name == section.path] if open_ else []
+    given = [it for it in given_in(file) if it.node == section.path] if open_ else []
     there = {path for it in given for path in it.values}
     for path in open_:
         if path not in there:

@@ -23,7 +23,7 @@ from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_of
 from multibot_rewrite.rules.declaration import LAUNCH, launch_rule
 from multibot_rewrite.rules.places import at
-from multibot_rewrite.spelling.records import GivenNode, Run
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVICE, SUBSCRIBES
 
 START_MANAGER = (
@@ -145,13 +145,13 @@ def no_joints(launched: Launched) -> Iterator[Finding]:
             continue
         if it.program == UNTYPED:
             continue
-        if moves_nothing(facts, GivenNode(it.name, facts.known, it.program, it.values, it.place)):
+        if moves_nothing(facts, it):
             message = f"controller {it.full_name} gets no parameter that names a joint"
             hint = f"write its parameters in a section {it.full_name}"
             yield at(no_joints, it.place, message, hint)
 
 
-def moves_nothing(facts: NodeFacts, given: GivenNode) -> bool:
+def moves_nothing(facts: NodeFacts, given: Run) -> bool:
     """Does a controller command the joints that its parameters name, and do these name none? A joint
     without an interface is named."""
     commands = [claim for claim in facts.claims if claim.kind == COMMAND]

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import yaml
+from given_parameters import run_given
 from lxml import etree
 from small_robots import PACKAGE, init, robot, taken
 
@@ -18,7 +19,7 @@ from multibot_rewrite.fleet.proposal.fitting import fitting
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import NOWHERE
 
 
@@ -394,7 +395,7 @@ def test_names_in_parameters_are_held_against_the_description() -> None:
     )
     looked = Looked("r.urdf", root=etree.fromstring(text))
     for node, name, value, strange in NAMES:
-        given = GivenNode(node, node, "", {name: Given(value, NOWHERE)}, NOWHERE)  # type: ignore[arg-type]
+        given = run_given(node, node, "", {name: Given(value, NOWHERE)}, NOWHERE)  # type: ignore[arg-type]
         found = fitting(looked, "p.yaml", [given], known, ())
         assert (found.nodes, bool(found.strange)) == ({node}, strange), (name, value)
 

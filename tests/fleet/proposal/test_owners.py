@@ -6,11 +6,13 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
+from given_parameters import run_given
 
 from multibot_rewrite.fleet.proposal import fitting, owners
 from multibot_rewrite.fleet.proposal.fitting import Fitting
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.knowledge.records import Param
+from multibot_rewrite.system.records import NOWHERE
 
 
 @pytest.mark.parametrize(
@@ -81,7 +83,7 @@ def test_the_names_of_a_robot_in_known_parameters() -> None:
     """Frames, links and joints, and the topics of sensors; what a launch file fills in is none."""
     given = {name: SimpleNamespace(value=it) for name, it in VALUES.items()}
     known = SimpleNamespace(nodes={"amcl": SimpleNamespace(params={it.path: it for it in KNOWN})})
-    nodes = [SimpleNamespace(known=it, values=given) for it in ("amcl", "nobody")]
+    nodes = [run_given("", it, "", given, NOWHERE) for it in ("amcl", "nobody")]  # type: ignore[arg-type]
     found = list(fitting._named(nodes, known))  # type: ignore[arg-type]
     assert found == [
         ("topic", "/a/scan"), ("topic", "/b/scan"), ("frame", "base_link"), ("joint", "j1"),

@@ -4,20 +4,21 @@
 from __future__ import annotations
 
 import pytest
+from given_parameters import run_given
 
 from multibot_rewrite.producers.evidence.alternatives import alternatives
-from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import Place
 
 HERE = Place("c.yaml", 3)
 
 
-def controller(name: str, joints: list[str], manager: str = "controller_manager") -> GivenNode:
+def controller(name: str, joints: list[str], manager: str = "controller_manager") -> Run:
     """One of a type that is not known, with the usual parameters."""
     commands = ["position"] if joints else []
     words = {"joints": joints, "command_interfaces": commands, "state_interfaces": ["effort"]}
     values = {key: Given(list(its), HERE) for key, its in words.items()}
-    return GivenNode(name, "", "acme/Arm", values, HERE, manager)
+    return run_given(name, "", "acme/Arm", values, HERE, manager)
 
 
 ARM, HAND = controller("arm", ["a", "b"]), controller("hand", ["c"])
@@ -33,15 +34,15 @@ SERVO, ALL = controller("servo", ["b"]), controller("all", ["a", "b", "c"])
         ([ARM, HAND, SERVO], {"arm": "servo", "servo": "arm"}),
         ([ARM, HAND, ALL], {"arm": "all", "hand": "all", "all": "arm"}),
         # Two managers have hardware of their own.
-        ([ARM, SERVO._replace(manager="left/controller_manager")], {}),
+        ([ARM, SERVO._replace(host_name="left/controller_manager")], {}),
         # No controllers at all: nodes with such parameters.
-        ([ARM._replace(manager=""), SERVO._replace(manager="")], {}),
+        ([ARM._replace(host_name=""), SERVO._replace(host_name="")], {}),
         # It reads joints and commands none.
         ([ARM, controller("reader", [])], {}),
     ],
 )
 def test_controllers_of_one_joint_exclude_each_other(
-    given: list[GivenNode], others: dict[str, str]
+    given: list[Run], others: dict[str, str]
 ) -> None:
     told = {name: f"{other} does not command the same joints" for name, other in others.items()}
     assert alternatives(given, {}) == told

@@ -23,8 +23,8 @@ def claims(type_: str, parameters: str, release: str = "jazzy") -> set[str]:
         f"it:\n  ros__parameters: {{{parameters}}}\n"
     )
     given = given_in(text, release, "c.yaml")
-    (it,) = (node for node in given if node.manager)
-    node = load_nodes(release)[it.known]
+    (it,) = (node for node in given if node.host_name)
+    node = load_nodes(release)[it.fact.known]
     return {f"{found.kind} {found.name}" for found in claims_of(node.claims, it)}
 
 
@@ -446,6 +446,6 @@ def test_a_command_that_two_parameters_name_is_told_with_both_places() -> None:
         "it:\n  ros__parameters:\n    left_wheel_names: [w]\n    right_wheel_names: [w]\n"
     )
     given = given_in(text, file="c.yaml")
-    (it,) = (node for node in given if node.manager)
-    found = [*claimed_twice(load_nodes("jazzy")[it.known].claims, it)]
+    (it,) = (node for node in given if node.host_name)
+    found = [*claimed_twice(load_nodes("jazzy")[it.fact.known].claims, it)]
     assert found == [(Claimed("command", "w/velocity", Place("c.yaml", 7)), Place("c.yaml", 6))]

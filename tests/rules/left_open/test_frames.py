@@ -8,6 +8,7 @@ from pathlib import Path
 import open_findings
 import pytest
 from closed_robot import FILES
+from given_parameters import run_given
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -18,7 +19,7 @@ from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.transforms import edge, edges_off
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
-from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import Edge, Place, System, edge_of
@@ -87,15 +88,15 @@ def test_a_tree_that_the_rewrite_has_cut_is_an_error(tmp_path: Path) -> None:
 HERE = Place("ekf.yaml", 5)
 
 
-def ekf(name: str = "ekf", **values: object) -> GivenNode:
+def ekf(name: str = "ekf", **values: object) -> Run:
     given = {it: Given(value, HERE) for it, value in values.items()}  # type: ignore[arg-type]
-    return GivenNode(name, "ekf_filter_node", "", given, HERE)  # type: ignore[arg-type]
+    return run_given(name, "ekf_filter_node", "", given, HERE)  # type: ignore[arg-type]
 
 
 OFF = ekf(publish_tf=False, odom_frame="odom", base_link_frame="base", world_frame="odom")
 
 
-def off(*given: GivenNode) -> list[Edge]:
+def off(*given: Run) -> list[Edge]:
     return list(edges_off(given, load_nodes(NEWEST_LTS)))
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from given_parameters import run_given
 from lxml import etree
 
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -11,7 +12,7 @@ from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.evidence.hardware import exported
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.rules.system.interfaces import Missing, missing
-from multibot_rewrite.spelling.records import Given, GivenNode
+from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import Place
 
 SYSTEM = """<robot name="r">
@@ -34,12 +35,12 @@ DRIVE = load_nodes(NEWEST_LTS)["ekf_filter_node"]._replace(
 KNOWN = {"drive": DRIVE}
 
 
-def controller(*joints: str, name: str = "base", manager: str = "controller_manager") -> GivenNode:
+def controller(*joints: str, name: str = "base", manager: str = "controller_manager") -> Run:
     values = {"joints": Given(list(joints), Place("c.yaml", 9))}
-    return GivenNode(name, "drive", "acme/Drive", values, FILE, manager)
+    return run_given(name, "drive", "acme/Drive", values, FILE, manager)
 
 
-def lacking(*given: GivenNode, text: str = SYSTEM) -> list[Missing]:
+def lacking(*given: Run, text: str = SYSTEM) -> list[Missing]:
     exports = exported(etree.fromstring(text), "r.urdf")
     return list(missing(control_system(given, KNOWN, exports).interfaces))
 

@@ -17,7 +17,7 @@ from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.rules.system.interfaces import claims_any
 from multibot_rewrite.rules.system.states import interface_commanded_twice
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import Place
@@ -36,7 +36,7 @@ two:
 KNOWN = load_nodes("jazzy")
 
 
-def given(text: str) -> list[GivenNode]:
+def given(text: str) -> list[Run]:
     return given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
 
 

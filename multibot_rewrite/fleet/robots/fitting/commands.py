@@ -22,7 +22,7 @@ from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.system.words import PLAIN
 
@@ -82,7 +82,7 @@ def of_one_type(
     nodes: Sequence[NodeFacts],
     own: Collection[str],
     free: Collection[str],
-    given: Sequence[GivenNode],
+    given: Sequence[Run],
     known: Mapping[str, NodeFacts],
     spec: RobotSpec,
 ) -> list[NodeFacts]:
@@ -107,14 +107,14 @@ def _choices(
     nodes: Iterable[NodeFacts],
     own: Collection[str],
     free: Collection[str],
-    given: Sequence[GivenNode],
+    given: Sequence[Run],
     known: Mapping[str, NodeFacts],
 ) -> Iterator[_Choice]:
     for node in nodes:
         ends = [*_either(known.get(node.kind, node)), *_either(node)]
         if ends:
             last = f"/{node.name}"
-            sections = (it.values for it in given if f"/{it.name}".endswith(last))
+            sections = (it.values for it in given if f"/{it.node}".endswith(last))
             values = next(sections, usual_values(node))
             chosen = chosen_type(ends[0].types, lookup(node, values)) or ends[0].type
             is_set = not _switches(ends).isdisjoint(values)

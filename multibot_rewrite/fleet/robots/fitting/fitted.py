@@ -27,7 +27,7 @@ from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.records import MOVE_GROUP, TWIST_MUX, NodeFacts
 from multibot_rewrite.producers.evidence.filling import sent_with
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
-from multibot_rewrite.spelling.records import GivenNode
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Edge
 
 _BY_FILE = "open: file"
@@ -48,10 +48,10 @@ def described(member: Member, spec: RobotSpec) -> Described:
     return Described(sent_by_plugins(member, spec), offered_topics(member, spec), root_link(member))
 
 
-def free_nodes(own: Iterable[str], given: Iterable[GivenNode]) -> frozenset[str]:
+def free_nodes(own: Iterable[str], given: Iterable[Run]) -> frozenset[str]:
     """Return those of the nodes that no parameter file has a section for: what they are set to is the
     build's to choose."""
-    filed = [f"/{it.name}" for it in given]
+    filed = [f"/{it.node}" for it in given]
     return frozenset(it for it in own if not any(one.endswith(f"/{it}") for one in filed))
 
 
@@ -59,7 +59,7 @@ def fitted(
     nodes: Sequence[NodeFacts],
     own: Collection[str],
     free: Collection[str],
-    given: Sequence[GivenNode],
+    given: Sequence[Run],
     known: Mapping[str, NodeFacts],
     has: Described,
     spec: RobotSpec,
