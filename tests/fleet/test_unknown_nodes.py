@@ -71,11 +71,15 @@ def test_a_node_is_started_as_its_launch_file_does(
 ) -> None:
     it = started(
         tmp_path,
-        """Node(package='seer', executable='seer_node', name='eyes', namespace=NS,
-             arguments=['--fast', NS], remappings=[('scan', 'front')], additional_env={'CUDA': '0', 'WHO': NS},
-             parameters=[{'rate': 5, 'gain': 0.5, 'words': ['a', 'b'], 'deep': {'on': True},
-                          'text': '7', 'model': '/opt/seer/m.onnx', 'topic': ['/', NS, '/scan'],
-                          'use_sim_time': True}])""",
+        """Node(
+            package='seer', executable='seer_node', name='eyes', namespace=NS,
+            arguments=['--fast', NS], remappings=[('scan', 'front')],
+            additional_env={'CUDA': '0', 'WHO': NS},
+            parameters=[{
+                'rate': 5, 'gain': 0.5, 'words': ['a', 'b'], 'deep': {'on': True}, 'text': '7',
+                'model': '/opt/seer/m.onnx', 'topic': ['/', NS, '/scan'], 'use_sim_time': True,
+            }],
+        )""",
     )["seer_node"]
     assert (it["package"], it["name"], it["namespace"]) == ("seer", "eyes", "/robot2")
     assert values(it) == {
@@ -137,3 +141,17 @@ def test_two_nodes_without_a_name_are_told_apart(tmp_path: Path) -> None:
     """In a layout without namespaces both would have the name of their code."""
     body = "Node(package='seer', executable='seer_node')"
     assert started(tmp_path, body, layout="postfix")["seer_node"]["name"] == "seer_node_robot2"
+
+
+def test_a_section_of_a_node_that_nobody_starts_is_told_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Not what is for every node, a known node, or one that the launch file starts."""
+    rows = ("/**", "amcl", "eyes", "lonely", "/*/other")
+    text = "".join(f"{it}:\n  ros__parameters: {{gain: 1.0}}\n" for it in rows)
+    body = "Node(package='seer', executable='seer_node', name='eyes')"
+    started(tmp_path, body, "companions: {params: own.yaml}", own=text)
+    told = [it for it in capsys.readouterr().err.splitlines() if "MF858" in it]
+    assert [it.removeprefix(f"{tmp_path}/").partition(";")[0] for it in told] == [
+        "own.yaml:7:1: note: MF858 nobody is known to start lonely, other"
+    ]
