@@ -155,3 +155,23 @@ def test_a_section_of_a_node_that_nobody_starts_is_told_once(
     assert [it.removeprefix(f"{tmp_path}/").partition(";")[0] for it in told] == [
         "own.yaml:7:1: note: MF858 nobody is known to start lonely, other"
     ]
+
+
+@pytest.mark.parametrize(
+    ("ends", "kept"),
+    [
+        ("", {"rate": 5, "base": "base_link"}),
+        ("publishes: {seen: std_msgs/msg/String},", {"rate": 5}),
+    ],
+)
+def test_a_node_that_only_the_user_describes_keeps_it(
+    ends: str, kept: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of a value that holds a name, and that is not written, it is told, and of no other."""
+    rows = f"programs: [seer_node], {ends} params: {{base: {{kind: frame}}}}"
+    described = f"nodes: {{eyes: {{package: seer, {rows}}}}}"
+    own = "{'rate': 5, 'base': 'base_link'}"
+    body = f"Node(package='seer', executable='seer_node', name='eyes', parameters=[{own}])"
+    it = started(tmp_path, body, "nodes: own.yaml", own=described)["seer_node"]
+    assert values(it) == {**kept, "use_sim_time": False}
+    assert ("MF824" in capsys.readouterr().err) == ("base" not in kept)

@@ -144,11 +144,11 @@ def robot_nodes(
     named = _made_by_arguments(written, given, topics) if topics else written
     marked, shared = apart(tuple(named), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
-    lost = set_by_launch(given, started, parameters)
+    handed = _for_any(spec, launched.handed_on) if launched else NOTHING
+    lost = set_by_launch(given, started, parameters, handed)
     said = (*notes, *findings, *shared, *lost)
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    handed = _for_any(spec, launched.handed_on) if launched else NOTHING
     placing = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
     is_placed = placing or is_led_elsewhere(member, spec)
     more = unsimulated, arguments, frames, has.sent, is_placed, handed

@@ -15,8 +15,9 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.knowledge.controller_ways import controller_way
-from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.remapped import remapped
@@ -83,7 +84,7 @@ def with_launched(
     given = list(_controllers(spawned, pairs, words, parameters))
     given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
     unknown = {it.facts.name: it.node for it in pairs if not it.facts.is_known}
-    handed = {name: handed_on(it, name) for name, it in unknown.items()}
+    handed = {it.facts.name: _handed(it, parameters) for it in pairs if _is_own(it, release)}
     return Launched(
         (*kept, *nodes.values(), *hosted),
         tuple({it.name: it for it in reversed(given)}.values()),
@@ -94,6 +95,20 @@ def with_launched(
         any(it.package in programs().simulators for it in graph.nodes),
         handed,
     )
+
+
+def _is_own(it: _Pair, release: str) -> bool:
+    """Does nobody know the node, or a file of nodes of the user's own alone?"""
+    known = it.facts.known
+    return known not in built_in(release).nodes if known else not it.facts.is_known
+
+
+def _handed(it: _Pair, known: KnownNodes) -> HandedOn:
+    """What its launch file gives a node, without names: another rule tells those that are known."""
+    own, facts = handed_on(it.node, it.facts.name), known.nodes.get(it.facts.known)
+    params = facts.params.values() if facts else ()
+    plain = {key: v for key, v in own.values.items() if not any(is_called(p, key) for p in params)}
+    return own._replace(values=plain)
 
 
 def _managers(pairs: Iterable[_Pair]) -> dict[str, None]:
