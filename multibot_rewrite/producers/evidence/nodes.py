@@ -31,7 +31,7 @@ UNKNOWN_TYPE = declare("MF802", "controller-type-not-known", WARNING, formats=("
 
 
 NO_TYPE = declare("MF825", "spawned-controller-without-type", NOTE, formats=("fleet",))
-NOBODY = declare("MF858", "section-of-a-node-that-nobody-starts", NOTE, formats=("params",))
+NOBODY = declare("MF858", "section-of-an-unknown-node", NOTE, formats=("params",))
 ALWAYS: Mapping[str, str] = {}
 
 
@@ -176,7 +176,7 @@ def _nobody(given: Iterable[GivenNode]) -> Iterator[Finding]:
     for file, nodes in groupby(given, lambda it: it.place.file):
         first, *rest = nodes
         own = shorten([it.name for it in (first, *rest)])
-        message = f"nobody is known to start {own}; the plan has no such node"
+        message = f"no launch file and no stack starts {own}; the plan has no such node"
         hint = (
             "name its launch file under launch:, or describe it in a file of nodes (docs/stacks.md)"
         )
