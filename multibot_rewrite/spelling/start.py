@@ -37,6 +37,7 @@ class Text(NamedTuple):
 
 # A file of parameters, or their values.
 Parameters: TypeAlias = File | Mapping[str, Any]
+NOTHING: Mapping[str, str] = {}
 
 
 class Start(NamedTuple):
@@ -46,7 +47,7 @@ class Start(NamedTuple):
     ``components`` are loaded into it: each has its class as ``plugin`` and no ``executable``.
     ``brought_up`` is true if its node has a life cycle that nobody else configures and activates.
     It starts if the launch argument ``condition`` is true and the package ``needs`` is installed,
-    where these are not empty.
+    where these are not empty. ``environment`` is what is set for it.
     """
 
     package: str
@@ -61,6 +62,7 @@ class Start(NamedTuple):
     plugin: str = ""
     condition: str = ""
     needs: str = ""
+    environment: Mapping[str, str] = NOTHING
 
     @property
     def full_name(self) -> str:
@@ -104,7 +106,9 @@ def spawner_of(it: Started, *words: str | File) -> Start:
 def shell_line(it: Start) -> str:
     """Return the line that starts a process without components."""
     program = _COMMANDS.get((it.package, it.executable))
-    return shlex.join([*(program or ("ros2", "run", it.package, it.executable)), *it.words])
+    environment = (f"{name}={value}" for name, value in it.environment.items())
+    run = program or ("ros2", "run", it.package, it.executable)
+    return shlex.join([*environment, *run, *it.words])
 
 
 def keywords(it: Start) -> dict[str, Any]:
@@ -119,6 +123,7 @@ def keywords(it: Start) -> dict[str, Any]:
         "remappings": list(it.remappings),
         "arguments": list(it.arguments),
         "composable_node_descriptions": [keywords(one) for one in it.components],
+        "additional_env": it.environment,
     }
     return {name: one for name, one in given.items() if one}
 

@@ -151,7 +151,10 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
 
 
 def _is_needed(given: _Given, it: NodeFacts) -> bool:
-    """A node under a condition: what nobody else sends is needed."""
+    """A node under a condition: what nobody else sends is needed, and what only has no name runs."""
+    own = given.plan.evidence_of(given.robot).handed_on.get(it.name)
+    if own is not None and own.is_unnamed:
+        return True
     topic = it.when.removeprefix(f"{UNSENT}: ")
     if topic == it.when:
         return False
@@ -174,6 +177,7 @@ def _started(given: _Given, name: str) -> Start:
     program = _program(given, name)
     assert program is not None
     made = start_of(it, program, _parameters(given, name))
+    made = _with_own(given.plan, given.robot, made, name)
     return made._replace(
         arguments=(*made.arguments, *_options(given, facts)),
         components=tuple(_components(given, name)),
@@ -195,7 +199,25 @@ def _components(given: _Given, container: str) -> Iterator[Start]:
         if it.way == COMPONENT and it.node.fact.container == container:
             program = _program(given, name)
             assert program is not None
-            yield start_of(it, program, _parameters(given, name))
+            made = start_of(it, program, _parameters(given, name))
+            yield _with_own(given.plan, given.robot, made, name)
+
+
+def _with_own(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> Start:
+    """A process or component with what a launch file gives it that nobody knows; a description in it
+    is the robot's."""
+    evidence = plan.evidence_of(robot)
+    if name not in evidence.handed_on:
+        return it
+    own = evidence.handed_on[name].for_robot(robot.spec.name)
+    texts = {"robot_description": Text(_description(robot))}
+    values = {key: texts.get(key, one) for key, one in own.values.items()}
+    return it._replace(
+        name="" if own.is_unnamed and it.name == name.rpartition("/")[2] else it.name,
+        parameters=(*it.parameters, *([values] if values else [])),
+        arguments=(*it.arguments, *own.arguments),
+        environment=own.environment,
+    )
 
 
 def _options(given: _Given, facts: NodeFacts) -> Iterator[str | File]:
@@ -331,7 +353,7 @@ def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -
             started.append(it.node.name)
         if plan.file.cell and name == MOVE_GROUP:
             files = [File(parameters_path(plan.file.cell))]
-        yield start_of(it, program, tuple(files))
+        yield _with_own(plan, first, start_of(it, program, tuple(files)), name)
     if started:
         manager = known_program(LIFECYCLE_MANAGER, plan.file.distro)
         values = {"autostart": True, "node_names": started}

@@ -24,6 +24,7 @@ from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
 from multibot_rewrite.knowledge.records import Param
+from multibot_rewrite.producers.launch.handed_on import HandedOn
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Place
@@ -102,15 +103,20 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
 
 
 def set_by_launch(
-    given: Sequence[Run], started: Mapping[str, LaunchedNode], known: KnownNodes
+    given: Sequence[Run],
+    started: Mapping[str, LaunchedNode],
+    known: KnownNodes,
+    handed: Mapping[str, HandedOn],
 ) -> Iterator[Finding]:
     """The names that launch files themselves give to known nodes which they start: what build writes
-    starts these nodes, too, and has only what stands in parameter files."""
+    starts these nodes, too, and has only what stands in parameter files and what is handed on."""
     for node in given:
         launched = started.get(node.node)
         if launched is None or node.fact.known not in known.nodes or node.fact.known == _MANAGER:
             continue
-        lost = list(_lost(node, known.nodes[node.fact.known].params.values(), launched.place.file))
+        params = known.nodes[node.fact.known].params.values()
+        kept = handed[node.node].values if node.node in handed else ()
+        lost = [it for it in _lost(node, params, launched.place.file) if it not in kept]
         if lost:
             message = f"the launch file itself gives {node.node} {shorten(lost)}"
             hint = "write them into a parameter file of that node, and list it under params"

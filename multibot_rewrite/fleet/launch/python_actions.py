@@ -92,6 +92,8 @@ def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
         yield "remappings=["
         yield from (f"    ({value(old)}, {value(new)})," for old, new in it.remappings)
         yield "],"
+    if it.environment:
+        yield from lines("additional_env=", it.environment, ",")
     if not it.plugin:
         yield "output='screen',"
 

@@ -17,6 +17,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import NO_FRAMES, Frames
 from multibot_rewrite.description.readback.nodes import wheels_in
 from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.fleet import facts_of, known_nodes
@@ -51,7 +52,8 @@ from multibot_rewrite.knowledge.stacks import built_in, load_stack
 from multibot_rewrite.producers.ends import BRIDGE_NODE
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.launch.of_robot import without_robot
+from multibot_rewrite.producers.launch.handed_on import HandedOn
+from multibot_rewrite.producers.launch.of_robot import NOTHING, without_robot
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
@@ -79,8 +81,9 @@ class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
     where its files and stacks disagree, the controllers that its launch files spawn, whether these
     start all of its nodes and no simulator, the arguments of all that they start, the frames that it
-    has in the place of defaults, the transforms that a simulator sends, and whether a node of its files
-    sends one of these, which no bridge file of its own has."""
+    has in the place of defaults, the transforms that a simulator sends, whether a node of its files
+    sends one of these, which no bridge file of its own has, and what its launch files hand on to nodes
+    that nobody knows."""
 
     given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]
@@ -92,6 +95,7 @@ class RobotEvidence(NamedTuple):
     frames: Frames = NO_FRAMES
     simulated: tuple[Edge, ...] = ()
     is_placed: bool = False
+    handed_on: Mapping[str, HandedOn] = NOTHING
 
 
 def robot_nodes(
@@ -140,14 +144,21 @@ def robot_nodes(
     named = _made_by_arguments(written, given, topics) if topics else written
     marked, shared = apart(tuple(named), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
-    lost = set_by_launch(given, started, parameters)
+    handed = _for_any(spec, launched.handed_on) if launched else NOTHING
+    lost = set_by_launch(given, started, parameters, handed)
     said = (*notes, *findings, *shared, *lost)
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
     placing = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
     is_placed = placing or is_led_elsewhere(member, spec)
-    more = unsimulated, arguments, frames, has.sent, is_placed
+    more = unsimulated, arguments, frames, has.sent, is_placed, handed
     return RobotEvidence(given, known, marked, said, spawned, *more)
+
+
+def _for_any(spec: RobotSpec, handed: Mapping[str, HandedOn]) -> dict[str, HandedOn]:
+    """What a launch hands on for any robot: it may be asked for one by name."""
+    by_name = any(ROBOT in value for it in spec.launch for _, value in it.arguments)
+    return {name: it.for_any(spec.name) if by_name else it for name, it in handed.items()}
 
 
 def _as_written(

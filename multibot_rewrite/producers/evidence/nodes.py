@@ -7,10 +7,12 @@ A file and a stack that disagree: the file wins, and the disagreement is a note.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.plugin_classes import NODE, plugin_bases
 from multibot_rewrite.knowledge.records import UNKNOWN, NodeFacts
 from multibot_rewrite.producers.evidence.alternatives import GUESSED, alternatives
@@ -29,6 +31,7 @@ UNKNOWN_TYPE = declare("MF802", "controller-type-not-known", WARNING, formats=("
 
 
 NO_TYPE = declare("MF825", "spawned-controller-without-type", NOTE, formats=("fleet",))
+NOBODY = declare("MF858", "section-of-an-unknown-node", NOTE, formats=("params",))
 ALWAYS: Mapping[str, str] = {}
 
 
@@ -69,8 +72,11 @@ def nodes_of(
         node = _added(it, known, either.get(it.node, ""))
         doubtful = not it.host_name and (it.place.file in of_stack or sent & {*children_of(node)})
         nodes.append(node._replace(sends=()) if doubtful else node)
+    nobody = _nobody(
+        it for it in given if it.node not in names and not (it.host_name or it.fact.known)
+    )
     doubtful_types = (*_unknown(given), *_of_another_release(given, known))
-    findings = sorted((*left, *doubtful_types), key=lambda it: (it.file, it.line))
+    findings = sorted((*left, *nobody, *doubtful_types), key=lambda it: (it.file, it.line))
     return RobotNodes(tuple(nodes), tuple(findings))
 
 
@@ -165,6 +171,18 @@ def _added(given: Run, known: Mapping[str, NodeFacts], either: str) -> NodeFacts
     runs = given.host_name or node.name == MANAGER
     when = either or node.when if runs else f"its parameters are in {given.place.file}"
     return filled(node, given)._replace(when=when)
+
+
+def _nobody(given: Iterable[Run]) -> Iterator[Finding]:
+    """Sections of nodes that nobody knows and nobody starts, once for each file."""
+    for file, nodes in groupby(given, lambda it: it.place.file):
+        first, *rest = nodes
+        own = shorten([it.node for it in (first, *rest)])
+        message = f"no launch file and no stack starts {own}; the plan has no such node"
+        hint = (
+            "name its launch file under launch:, or describe it in a file of nodes (docs/stacks.md)"
+        )
+        yield NOBODY.finding(message, hint, file=file, line=first.place.line, column=1)
 
 
 def _not_declared(node: NodeFacts, beside: Run) -> Finding:

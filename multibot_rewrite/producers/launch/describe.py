@@ -135,7 +135,15 @@ def node(action: Any, here: Visit) -> LaunchedNode:
         _kept_words(package, executable, given.own),
         here.later,
         place_of(action, here.place.file, (package, executable)),
+        _environment(action, here),
     )
+
+
+def _environment(action: Any, here: Visit) -> tuple[tuple[str, str], ...]:
+    """What is set for a process: launch keeps it as pairs, its stand-in as it is given."""
+    given = getattr(action, "additional_env", None) or ()
+    pairs = given.items() if isinstance(given, Mapping) else given
+    return tuple((text(name, here.context), text(value, here.context)) for name, value in pairs)
 
 
 def _described(package: str, words: tuple[str, ...]) -> Iterator[ParameterText]:
@@ -175,7 +183,8 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
     namespace = given.namespace or "/"
     names = (run[0], run[1], given.name, namespace)
     kept = _kept_words(run[0], run[1], given.own)
-    yield LaunchedNode(*names, given.rules, values, "", kept, here.later, here.place)
+    more = here.later, here.place, _environment(action, here)
+    yield LaunchedNode(*names, given.rules, values, "", kept, *more)
 
 
 def _kept_words(package: str, executable: str, words: Iterable[str]) -> tuple[str, ...]:

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.launch.handed_on import HandedOn
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.system.records import NOT_READ, Place
 
@@ -19,10 +21,13 @@ _WITHOUT_VALUES = "the node is in the plan without what the file sets"
 
 
 def launch_findings(
-    graph: LaunchGraph, unknown: Iterable[tuple[LaunchedNode, str]], left: Iterable[NodeFacts]
+    graph: LaunchGraph,
+    unknown: Mapping[str, LaunchedNode],
+    handed: Mapping[str, HandedOn],
+    left: Iterable[NodeFacts],
 ) -> Iterator[Finding]:
-    """What of launch files is not known, launched nodes that are not, each with its name, and nodes of
-    stacks that are left out."""
+    """What of launch files is not known, launched nodes that are not, by their names, with what is
+    handed on to them, and nodes of stacks that are left out."""
     if graph.stood_in:
         place = Place(next((it.place.file for it in graph.nodes), ""), 1)
         yield NOT_WHOLE.finding(STOOD_IN, "", **_place(place))._replace(level=NOTE)
@@ -31,9 +36,11 @@ def launch_findings(
             _WITHOUT_VALUES if note.parameters else "the nodes that it starts are not in the plan"
         )
         yield NOT_WHOLE.finding(note.message, hint, **_place(note.place))
-    for it, name in unknown:
+    for name, it in unknown.items():
         message = f"node {name} ({it.package} {it.executable}) is not known"
         hint = "describe it in a file of nodes (docs/stacks.md); the plan has its name alone"
+        if handed[name].names:
+            hint = f"{hint}, build hands on as they are: {shorten(handed[name].names)}"
         yield NOT_KNOWN.finding(message, hint, **_place(it.place))
     for node in left:
         if not node.when:

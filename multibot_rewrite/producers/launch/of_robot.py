@@ -9,24 +9,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_topic_name, expand
-from multibot_rewrite.companions.params.sections import raw_sections
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.knowledge.controller_ways import controller_way
-from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.remapped import remapped
 from multibot_rewrite.producers.launch.bridges import bridge_rows
 from multibot_rewrite.producers.launch.findings import launch_findings
+from multibot_rewrite.producers.launch.handed_on import HandedOn, handed_on
 from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
+from multibot_rewrite.producers.launch.parameter_texts import OWN, document_of, has_sections
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
@@ -35,15 +34,14 @@ from multibot_rewrite.producers.launch.static_transforms import with_static_tran
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
 
-# The name of a file for what a launch file gives itself.
-_OWN = "parameters of a launch file"
 NO_NAME = "the launch file gives it no name"
+NOTHING: Mapping[str, HandedOn] = {}
 
 
 class Launched(NamedTuple):
     """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
-    its name, the controllers that are spawned by theirs, if that is all that runs, findings, and if
-    they start a simulator, or what is for one."""
+    its name, the controllers that are spawned by theirs, if that is all that runs, findings, if they
+    start a simulator, or what is for one, and what those that nobody knows are given by their names."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[Run, ...]
@@ -52,6 +50,7 @@ class Launched(NamedTuple):
     whole: bool
     findings: tuple[Finding, ...]
     simulated: bool = False
+    handed_on: Mapping[str, HandedOn] = NOTHING
 
 
 class _Pair(NamedTuple):
@@ -84,16 +83,32 @@ def with_launched(
     inside = [*hosted, *(it for it in kept if it.host)]
     given = list(_controllers(spawned, pairs, words, parameters))
     given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
-    unknown = [(it.node, it.facts.name) for it in pairs if not it.facts.is_known]
+    unknown = {it.facts.name: it.node for it in pairs if not it.facts.is_known}
+    handed = {it.facts.name: _handed(it, parameters) for it in pairs if _is_own(it, release)}
     return Launched(
         (*kept, *nodes.values(), *hosted),
         tuple({it.node: it for it in reversed(given)}.values()),
         {it.facts.name: it.node for it in pairs},
         dict(_under_manager(spawned, pairs, words, release)),
         graph.whole,
-        (*launch_findings(graph, unknown, left), *lost),
+        (*launch_findings(graph, unknown, handed, left), *lost),
         any(it.package in programs().simulators for it in graph.nodes),
+        handed,
     )
+
+
+def _is_own(it: _Pair, release: str) -> bool:
+    """Does nobody know the node, or a file of nodes of the user's own alone?"""
+    known = it.facts.known
+    return known not in built_in(release).nodes if known else not it.facts.is_known
+
+
+def _handed(it: _Pair, known: KnownNodes) -> HandedOn:
+    """What its launch file gives a node, without names: another rule tells those that are known."""
+    own, facts = handed_on(it.node, it.facts.name), known.nodes.get(it.facts.known)
+    params = facts.params.values() if facts else ()
+    plain = {key: v for key, v in own.values.items() if not any(is_called(p, key) for p in params)}
+    return own._replace(values=plain)
 
 
 def _managers(pairs: Iterable[_Pair]) -> dict[str, None]:
@@ -148,7 +163,7 @@ def _pair(
     base = known_node(it, stack, known)
     own = own_name(it, base)
     name = it.name or own or last_word(it)
-    facts = base or UNKNOWN._replace(name=name, package=it.package, endpoints=_named_by(it))
+    facts = base or _unknown(it, name)
     unnamed = "" if it.name or own else NO_NAME
     rows = bridge_rows(it, words)
     found = facts._replace(
@@ -163,6 +178,12 @@ def _pair(
         is_known=facts.is_known or bool(rows),
     )
     return _Pair(it, found)
+
+
+def _unknown(it: LaunchedNode, name: str) -> NodeFacts:
+    """What a launch file says of a node that nobody knows: what runs it, and its rules."""
+    run = {"component": it.executable} if it.container else {"programs": (it.executable,)}
+    return UNKNOWN._replace(name=name, package=it.package, endpoints=_named_by(it), **run)
 
 
 def _named_by(it: LaunchedNode) -> tuple[Endpoint, ...]:
@@ -276,10 +297,10 @@ def _without(value: Any, above: str) -> Any:
 def _placed(given: Run, place: Place) -> Run:
     """What a launch file gives itself is where that starts the node."""
     values = {
-        name: it if it.place.file != _OWN else it._replace(place=place)
+        name: it if it.place.file != OWN else it._replace(place=place)
         for name, it in given.values.items()
     }
-    return given._replace(values=values, place=place if given.place.file == _OWN else given.place)
+    return given._replace(values=values, place=place if given.place.file == OWN else given.place)
 
 
 def without_robot(given: Run, words: Collection[str]) -> Run:
@@ -291,21 +312,6 @@ def without_robot(given: Run, words: Collection[str]) -> Run:
 def _stripped(name: str, words: Collection[str]) -> str:
     above, slash, rest = name.partition("/")
     return rest if slash and above in words else name
-
-
-@lru_cache(maxsize=64)
-def has_sections(it: ParameterText) -> bool:
-    """Is it a parameter file with sections of nodes?"""
-    try:
-        return any(True for _ in raw_sections(document_of(it.file, it.text)))
-    except InputError:
-        return False
-
-
-@lru_cache(maxsize=64)
-def document_of(file: str, text: str) -> YamlText:
-    """A parameter file, or with no ``file`` what a launch file sets itself; raises InputError."""
-    return read_yaml(text.encode(), file or _OWN)
 
 
 def _in_process(node: NodeFacts, host: LaunchedNode) -> NodeFacts:

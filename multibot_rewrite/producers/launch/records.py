@@ -59,7 +59,8 @@ class LaunchedNode(NamedTuple):
 
     ``executable`` is the plugin of a component, ``name`` is empty where the node has its own.
     ``container`` is the full name of the node that a component is loaded into. ``later`` says what
-    starts it if not the launch itself. ``place`` is where the launch file has it.
+    starts it if not the launch itself. ``place`` is where the launch file has it. ``environment`` is
+    what is set for its process.
     """
 
     package: str
@@ -72,6 +73,7 @@ class LaunchedNode(NamedTuple):
     arguments: tuple[str, ...]
     later: str
     place: Place
+    environment: tuple[tuple[str, str], ...] = ()
 
 
 class LaunchNote(NamedTuple):
@@ -228,5 +230,6 @@ def _node(values: Mapping[str, Any]) -> LaunchedNode:
             "parameters": tuple(ParameterText(*it) for it in values["parameters"]),
             "arguments": tuple(values["arguments"]),
             "place": Place(*values["place"]),
+            "environment": tuple((name, value) for name, value in values["environment"]),
         }
     )

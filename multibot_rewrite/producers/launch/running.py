@@ -42,7 +42,8 @@ from multibot_rewrite.producers.launch.models import (
     models_of,
     rules_of,
 )
-from multibot_rewrite.producers.launch.of_robot import document_of, has_sections, passes
+from multibot_rewrite.producers.launch.of_robot import passes
+from multibot_rewrite.producers.launch.parameter_texts import document_of, has_sections
 from multibot_rewrite.producers.launch.records import (
     AT_AN_END,
     LaunchedNode,
