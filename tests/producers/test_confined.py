@@ -112,6 +112,24 @@ def test_what_a_launch_file_may_do(kept: Path, monkeypatch: pytest.MonkeyPatch) 
     assert there(kept) == before
 
 
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        (
+            "__import__('threading').Thread(target=print).start()",
+            "it starts a thread (a.launch.py:1)",
+        ),
+        ("bytearray(1 << 40)", "it needs more memory than it gets (a.launch.py:1)"),
+    ],
+)
+def test_what_the_fences_stop_in_other_words_is_named(line: str, said: str, kept: Path) -> None:
+    """Python has no word of its own for it, and launch would read the file: --trust is the way."""
+    (kept / "own/a.launch.py").write_text(f"{line}\n")
+    (found,) = read_launch_files([LaunchOrder(str(kept / "own/a.launch.py"))], 60.0)
+    assert f"cannot be read: {said}; " in str(found)
+    assert str(found).endswith("give --trust if you trust it (SECURITY.md)")
+
+
 ROBOT = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="n"
  default="d"/><link name="$(arg n)"/><link name="${LINK}"/></robot>"""
 USES = """\

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite import InputError
 from multibot_rewrite.producers.launch.failures import (
     failure,
     is_certain,
@@ -43,6 +44,9 @@ def caused(error: BaseException, cause: BaseException) -> BaseException:
          "it ends itself (sys.exit(3)); give it the arguments that it reads from the command line"
          " (NAME:=VALUE)"),
         (ValueError("two\n lines"), "ValueError: two lines"),
+        (MemoryError(),
+         "it needs more memory than it gets; give --trust if you trust it (SECURITY.md)"),
+        (InputError("a.yaml:1:2: it is wrong; correct it"), "a.yaml:1:2: it is wrong; correct it"),
         (FileNotFoundError(2, "No such file", "/a/../b.yaml"),
          "FileNotFoundError: [Errno 2] No such file: '/b.yaml'"),
         (RuntimeError("Unrecognized entity of the type: rosparam"),
@@ -79,6 +83,7 @@ def test_whether_a_value_is_not_set() -> None:
     [
         (SyntaxError("x"), True), (NameError("x"), True), (RecursionError("x"), True),
         (FileNotFoundError("x"), True), (SystemExit(1), True), (ValueError("x"), False),
+        (MemoryError(), True), (InputError("a.yaml:1:2: x"), True),
         (caused(RuntimeError("x"), NameError("y")), True),
         (caused(NameError("x"), ValueError("y")), False),
         (RuntimeError("Unknown substitution: arg"), True),

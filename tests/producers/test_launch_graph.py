@@ -550,6 +550,16 @@ def test_a_launch_file_that_cannot_be_read_is_one_line(
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(("made", "said"), [("None", "nothing"), ("[1]", "a value of type list")])
+def test_a_launch_file_that_makes_no_description(made: str, said: str, tmp_path: Path) -> None:
+    file = tmp_path / "odd.launch.py"
+    file.write_text(f"def generate_launch_description():\n    return {made}\n")
+    with pytest.raises(InputError) as caught:
+        launch_graph(LaunchOrder(str(file), trusted=True))
+    why = f"its generate_launch_description() returns {said}; return a LaunchDescription"
+    assert str(caught.value) == f"{file}: the launch file cannot be read: {why}"
+
+
 def test_a_launch_without_nodes_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="starts no node"):
         read(tmp_path, '        Node(package="a", executable="b", condition=IfCondition("0")),')

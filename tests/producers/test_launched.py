@@ -28,6 +28,7 @@ from multibot_rewrite.producers.launch.records import (
     orders_in_words,
     orders_of,
 )
+from multibot_rewrite.producers.launch.running import full_name
 from multibot_rewrite.system.records import Place
 
 PUBLISHER = "robot_state_publisher"
@@ -218,6 +219,31 @@ def test_a_node_that_nothing_is_known_of_has_its_name_alone() -> None:
     assert runs(found)["d"].endpoints == () and runs(found)["d"].when == ""
     # Its code decides the name.
     assert runs(launched(started("acme", "driver")))["driver"].when
+
+
+@pytest.mark.parametrize(
+    ("name", "namespace", "said"),
+    [
+        ("a-b", "/", "name 'a-b', which ROS refuses: character 2, '-', is not"),
+        ("été", "/", "name 'été', which ROS refuses: character 1, 'é', is not"),
+        ("a", "/own/r-1/", "namespace '/own/r-1/', which ROS refuses: character 7, '-', is not"),
+        ("", "a//b", "namespace 'a//b', which ROS refuses: "),
+    ],
+)
+def test_names_that_ros_refuses_are_told_with_their_line(
+    name: str, namespace: str, said: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        launched(started("acme", "driver", name, namespace=namespace))
+    assert str(caught.value).startswith(f"{AT}: a node has the {said}")
+
+
+@pytest.mark.parametrize("program", ["v4l2-camera.py", "v4l2.camera", "own::v4l2-camera"])
+def test_the_name_of_a_program_is_made_one_that_ros_takes(program: str) -> None:
+    """It stands for a name that its code alone knows."""
+    node = started("acme", program, container="/box" if "::" in program else "")
+    assert "v4l2_camera" in runs(launched(node))
+    assert full_name(node, None) == "/v4l2_camera"
 
 
 def test_what_an_event_starts_is_optional_and_a_spawner_is_no_node() -> None:

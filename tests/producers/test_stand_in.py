@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from paths import FIXTURES
 
+from multibot_rewrite import InputError
 from multibot_rewrite.producers.launch import includes, places, visit
 from multibot_rewrite.producers.launch.entities import Entity, root_of
 from multibot_rewrite.producers.launch.read_files import descriptions_in
@@ -627,4 +628,9 @@ def test_what_is_repeated_in_xml(context: LaunchContext, tmp_path: Path) -> None
 
 def test_elements_that_have_no_end_are_told_in_our_words() -> None:
     with pytest.raises(SyntaxError, match="nested deeper than in any launch file"):
-        root_of(b"<launch>" * 1_000 + b"</launch>" * 1_000)
+        root_of(b"<launch>" * 1_000 + b"</launch>" * 1_000, "a.launch.xml")
+
+
+def test_yaml_that_has_a_fault_is_told_with_its_file() -> None:
+    with pytest.raises(InputError, match=r"^b\.launch\.yaml:2:1: not valid YAML: "):
+        root_of(b"launch:\n]", "b.launch.yaml")

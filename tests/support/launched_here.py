@@ -41,7 +41,9 @@ _CHANGED = (
 
 def read_here(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
     """From now on ``launch_graph`` asks no other process; ``folder`` gets its temporary files."""
-    monkeypatch.setattr(child, "read_launch_files", lambda orders, _: [_read(*orders, folder)])
+    monkeypatch.setattr(
+        child, "read_launch_files", lambda orders, _: [_read(it, folder) for it in orders]
+    )
 
 
 def _read(order: LaunchOrder, folder: Path) -> LaunchGraph | InputError:

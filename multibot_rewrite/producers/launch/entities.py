@@ -55,12 +55,12 @@ class Entity:
             raise ValueError(f"Unexpected attribute(s) found in `{self.tag}`: {names}")
 
 
-def root_of(data: bytes) -> Entity:
-    """The root of a launch file; raises what launch raises for another file."""
+def root_of(data: bytes, file: str) -> Entity:
+    """Return the root of a launch ``file``; raises what launch raises for another one."""
     if data.lstrip().startswith(b"<"):
         root = _of_xml(_parsed(data))
     else:
-        root = _of_document(compose_yaml(data.decode(), "the launch file"))
+        root = _of_document(compose_yaml(data.decode(), file))
     if root.tag != "launch":
         raise RuntimeError("Expected 'launch' as root tag")
     return root

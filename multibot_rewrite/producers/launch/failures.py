@@ -9,6 +9,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.producers.launch.package_files import ROOTS
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
@@ -30,7 +31,8 @@ _NO_TEXT, _REQUIRED = "Failed to normalize given item", "missing required argume
 _NO_VALUE = lazy_compile(
     r"launch configuration '([\w.-]+)' does not exist|Required launch argument \"([\w.-]+)\" was not"
 )
-_REFUSED = "a launch file may compute and read; give --trust if you trust it (SECURITY.md)"
+_TRUST = "give --trust if you trust it (SECURITY.md)"
+_REFUSED = f"a launch file may compute and read; {_TRUST}"
 # The file as Python has it, in launch and in its stand-in; without a description it makes none.
 _MODULE = "launch_file"
 _MAKES = "generate_launch_description"
@@ -50,6 +52,8 @@ def failure(error: BaseException) -> str:
         return not_installed(name)
     if isinstance(error, RecursionError):
         return "it includes or calls itself without an end"
+    if isinstance(error, InputError):
+        return str(error)
     if known := _known(error):
         return known
     text = " ".join(f"{type(error).__name__}: {error}".split())
@@ -71,14 +75,23 @@ def _known(error: BaseException) -> str:
     if name := _no_value(error):
         hint = f"give it with {name}:=VALUE, or where this is included"
         return f"the launch configuration {name!r} is not set; {hint}"
-    if isinstance(error, PermissionError):
-        return f"{error}{_line(error)}; {_REFUSED}"
+    if stopped := _stopped(error):
+        return stopped
     if isinstance(error, FileNotFoundError) and _is_program(str(error.filename)):
         return f"it starts the program {error.filename!r} itself, which is not installed here"
     if isinstance(error, SystemExit):
         hint = "give it the arguments that it reads from the command line (NAME:=VALUE)"
         return f"it ends itself (sys.exit({error.code!r})); {hint}"
     return _lacking(error)
+
+
+def _stopped(error: BaseException) -> str:
+    """What the fences stop, and how to lift them; empty for another fault."""
+    if isinstance(error, MemoryError):
+        return f"it needs more memory than it gets{_line(error)}; {_TRUST}"
+    if _is_of_thread(error):
+        return f"it starts a thread{_line(error)}; {_REFUSED}"
+    return f"{error}{_line(error)}; {_REFUSED}" if isinstance(error, PermissionError) else ""
 
 
 def _lacking(error: BaseException) -> str:
@@ -124,6 +137,13 @@ def _variable(error: BaseException) -> str:
     return next((it for it in asked if it not in os.environ), "")
 
 
+def _is_of_thread(error: BaseException) -> bool:
+    """Did Python's own module refuse to start a thread?"""
+    frame = _frame(error)
+    of_module = frame is not None and frame.f_globals.get("__name__") == "threading"
+    return of_module and isinstance(error, RuntimeError)
+
+
 def _is_program(name: str) -> bool:
     return bool(name) and "/" not in name and "." not in name
 
@@ -156,14 +176,18 @@ def _no_value(error: BaseException) -> str:
 
 
 def is_of_file(error: BaseException) -> bool:
-    """Does launch not read the file either? It is no program or XML, it is of ROS 1, or it asks for
-    what is not there."""
-    own = (SyntaxError, NameError, RecursionError, FileNotFoundError, PermissionError, SystemExit)
+    """Does launch not read the file either? It is no program, XML or YAML, it is of ROS 1, or it asks
+    for what is not there or what the fences refuse."""
+    own = (
+        *(SyntaxError, NameError, RecursionError, FileNotFoundError, PermissionError),
+        *(SystemExit, MemoryError, InputError),
+    )
     old = _OF_ROS_1.search(str(error)) is not None
     return (
         isinstance(error.__cause__ or error, own)
         or is_without(error)
         or old
+        or _is_of_thread(error)
         or bool(_variable(error))
     )
 

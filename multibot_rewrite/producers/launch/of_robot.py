@@ -24,7 +24,12 @@ from multibot_rewrite.producers.evidence.remapped import remapped
 from multibot_rewrite.producers.launch.bridges import bridge_rows
 from multibot_rewrite.producers.launch.findings import launch_findings
 from multibot_rewrite.producers.launch.handed_on import HandedOn, handed_on
-from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
+from multibot_rewrite.producers.launch.known_node import (
+    check_names,
+    guessed_name,
+    known_node,
+    own_name,
+)
 from multibot_rewrite.producers.launch.parameter_texts import OWN, document_of, has_sections
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
@@ -162,7 +167,8 @@ def _pair(
 ) -> _Pair:
     base = known_node(it, stack, known)
     own = own_name(it, base)
-    name = it.name or own or last_word(it)
+    check_names(it)
+    name = it.name or own or guessed_name(it)
     facts = base or _unknown(it, name)
     unnamed = "" if it.name or own else NO_NAME
     rows = bridge_rows(it, words)

@@ -69,7 +69,7 @@ def _lines(file: str) -> dict[tuple[str, str], int]:
     if not os.path.isfile(file):
         return {}
     try:
-        every = [*root_of(read_bytes(file)).every()]
+        every = [*root_of(read_bytes(file), file).every()]
     except (ValueError, TypeError, RuntimeError, SyntaxError, InputError):
         return {}
     return {_started(it.values): it.line for it in reversed(every) if it.tag in _ELEMENTS}

@@ -32,6 +32,9 @@ from multibot_rewrite.producers.launch.unknown_modules import add_unknown
 from multibot_rewrite.producers.launch.visit import visit_all
 from multibot_rewrite.system.records import Place
 
+# What launch asks a description for.
+_ASKED = "get_launch_arguments_with_include_launch_description_actions"
+
 
 class UnreadableError(Exception):
     """The launch file itself cannot be read; the message says why. ``of_file`` says that launch would
@@ -158,12 +161,20 @@ def _described(order: LaunchOrder) -> Any:
     """The description that the file makes."""
     sources = of_launch("launch_description_sources")
     source = sources.AnyLaunchDescriptionSource(os.path.abspath(order.file))
-    return source.get_launch_description(of_launch().LaunchContext(noninteractive=True))
+    made = source.get_launch_description(of_launch().LaunchContext(noninteractive=True))
+    if not hasattr(made, _ASKED):
+        what = f"its generate_launch_description() returns {_what(made)}"
+        raise UnreadableError(f"{what}; return a LaunchDescription")
+    return made
+
+
+def _what(made: object) -> str:
+    return "nothing" if made is None else f"a value of type {type(made).__name__}"
 
 
 def _check_given(description: Any, order: LaunchOrder) -> None:
     """Raises UnreadableError without an argument that the file itself has to be given."""
-    found = description.get_launch_arguments_with_include_launch_description_actions()
+    found = getattr(description, _ASKED)()
     for it, includes in found:
         free = (
             order.every

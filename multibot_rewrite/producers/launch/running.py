@@ -33,7 +33,7 @@ from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE, given_nodes, values_for
 from multibot_rewrite.producers.launch.deciding import as_named
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
-from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
+from multibot_rewrite.producers.launch.known_node import guessed_name, known_node, own_name
 from multibot_rewrite.producers.launch.models import (
     Model,
     Models,
@@ -254,7 +254,7 @@ def _has_clock(words: Sequence[str]) -> bool:
 
 def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
     """The full name of a launched node; by its code where the launch file has none."""
-    return expand(it.name or own_name(it, facts) or last_word(it), it.namespace, "")
+    return expand(it.name or own_name(it, facts) or guessed_name(it), it.namespace, "")
 
 
 def _started(

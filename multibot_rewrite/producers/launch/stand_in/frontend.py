@@ -40,7 +40,7 @@ class Form(NamedTuple):
 
 def description_in(path: str) -> Any:
     """The launch description of a file in XML or YAML; raises what launch raises for a wrong one."""
-    made = [_made(it) for it in root_of(read_bytes(path)).below]
+    made = [_made(it) for it in root_of(read_bytes(path), path).below]
     return import_module("launch").LaunchDescription(made)
 
 
