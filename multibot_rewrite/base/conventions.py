@@ -137,6 +137,8 @@ PARTS = frozenset({
 
 # Nodes of a simulator, one for all robots: gazebo_ros gazebo_ros_init.cpp.
 WORLD_NODES = frozenset({"gazebo"})
+# Nodes that a person starts, whatever a launch file does: what is built starts none of them.
+BY_HAND = ("teleop_twist_keyboard", "rviz2")
 
 
 def tool_patterns() -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE, USUAL_FRAMES
+from multibot_rewrite.base.conventions import BY_HAND, SENT_BY_EVERY_NODE, USUAL_FRAMES
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.spelling.of_runs import each_once, ends_of
 from multibot_rewrite.spelling.records import Table
@@ -97,12 +97,13 @@ def _by_robot(
 
 
 def _own_nodes(table: Table, maybe_real: Container[str]) -> dict[str, dict[str, Sure]]:
-    """By robot: the full names of its nodes, each with whether it runs; those for all robots do."""
+    """By robot: the full names of its nodes, each with whether it runs."""
     found: dict[str, dict[str, Sure]] = {}
     for it in table.runs:
         own = found.setdefault(it.robot, {})
-        may = it.fact.when or (it.written and it.robot in maybe_real)
-        own[it.full_name] = MAY if it.robot and may else own.get(it.full_name, RUNS)
+        may = it.robot and (it.fact.when or (it.written and it.robot in maybe_real))
+        may = may or it.node in BY_HAND
+        own[it.full_name] = MAY if may else own.get(it.full_name, RUNS)
     return found
 
 

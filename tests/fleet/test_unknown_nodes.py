@@ -175,3 +175,16 @@ def test_a_node_that_only_the_user_describes_keeps_it(
     it = started(tmp_path, body, "nodes: own.yaml", own=described)["seer_node"]
     assert values(it) == {**kept, "use_sim_time": False}
     assert ("MF824" in capsys.readouterr().err) == ("base" not in kept)
+
+
+def test_what_a_person_starts_may_be_missing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The plan says so, since what is built starts no window and no keyboard."""
+    body = """Node(package='rviz2', executable='rviz2'),
+        Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard', namespace=NS)"""
+    programs = started(tmp_path, body)
+    assert not {"rviz2", "teleop_twist_keyboard"} & programs.keys()
+    built = tmp_path / "out"
+    assert main(["check-launch", f"{built}/fleet.launch.py", "--plan", f"{built}/plan.yaml"]) == 0
+    assert ": as planned" in capsys.readouterr().err

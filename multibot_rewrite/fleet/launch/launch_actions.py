@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterator, Mapping
 
+from multibot_rewrite.base.conventions import BY_HAND
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.checks.lacking import CARTOGRAPHER
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
@@ -57,7 +58,7 @@ from multibot_rewrite.system.records import PUBLISHES
 
 STATE = "robot_state_publisher"
 # Started by hand, or once for all robots.
-_BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
+_BY_HAND = (*BY_HAND, "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
 _DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/stacks.md)"
 _NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
