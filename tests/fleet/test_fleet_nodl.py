@@ -11,6 +11,7 @@ from plans import ends_of
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.system.records import surely
 
 QOS = "qos: {history: KEEP_ALL, reliability: RELIABLE}"
 DOCUMENT = (
@@ -31,7 +32,7 @@ def fleet(folder: Path, nodl: str = "interfaces", document: str = DOCUMENT, more
 
 def planned(folder: Path) -> dict[str, str]:
     plan = read_plan((folder / "out" / "plan.yaml").read_bytes(), "plan.yaml")
-    return {it.name: it.type for it in ends_of(plan, "/robot1/amcl")}
+    return {it.name: it.type for it in ends_of(surely(plan), "/robot1/amcl")}
 
 
 @pytest.mark.more

@@ -24,7 +24,7 @@ from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parame
 from multibot_rewrite.producers.ends import bridge_ends, run_alone
 from multibot_rewrite.producers.evidence.hardware import Exported
 from multibot_rewrite.producers.interfaces import control_system
-from multibot_rewrite.producers.launch.known_node import known_node, last_word, own_name
+from multibot_rewrite.producers.launch.known_node import guessed_name, known_node, own_name
 from multibot_rewrite.producers.launch.launched import file_of
 from multibot_rewrite.producers.launch.models import Model, Models
 from multibot_rewrite.producers.launch.node_transforms import prefix_of
@@ -555,6 +555,6 @@ def test_a_node_of_a_stack_comes_first_with_the_ends_of_its_program() -> None:
 
 def test_the_own_name_of_a_program() -> None:
     it = launched("acme", "acme::Driver")
-    assert last_word(it) == "Driver"
+    assert guessed_name(it) == "Driver"
     assert own_name(it, None) == ""
     assert own_name(it, KNOWN["driver"]) == "driver"

@@ -16,7 +16,7 @@ from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, once
-from multibot_rewrite.system.records import OFF, SUBSCRIBES, TOPIC, End
+from multibot_rewrite.system.records import OFF, RUNS, SUBSCRIBES, TOPIC, End
 
 _MAP = "map"
 _ODOM = "odom"
@@ -44,12 +44,14 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
 
 
 def _starts_at(seen: Index, node: str) -> End | None:
-    """Where the node reads a start pose; None for one that needs none."""
+    """Where the node surely reads a start pose; None for one that needs none."""
     return next(
         (
             it
             for it in seen.by_node.get(node, ())
-            if it.role == SUBSCRIBES and words.is_start_pose(seen.plain(it.name), it.type)
+            if it.role == SUBSCRIBES
+            and it.sure == RUNS
+            and words.is_start_pose(seen.plain(it.name), it.type)
         ),
         None,
     )
