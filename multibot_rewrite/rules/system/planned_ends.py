@@ -33,6 +33,7 @@ from multibot_rewrite.system.index import TF, Index, ends_of
 from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,
+    RUNS,
     SERVES,
     SERVICE,
     SUBSCRIBES,
@@ -105,8 +106,11 @@ def _planned_for_several(plan: Index, seen: Index) -> Iterator[Finding]:
     relays, there, robot_of = copying_nodes(plan.system), seen.by_key, plan.robot_of
     of_one = plan.of_names.exact
     for key in plan.by_key:
-        if key[3] not in of_one and key in there and key[0] in robot_of and key[0] not in relays:
-            users[key[3]].append(there[key])
+        end = there.get(key)
+        if not end or end.sure != RUNS or key[3] in of_one:
+            continue
+        if key[0] in robot_of and key[0] not in relays:
+            users[key[3]].append(end)
     for name, ends in users.items():
         robots = unique(plan.robot_of[it.node] for it in ends)
         rule = _rule_of(plan, ends[0]) if len(robots) > 1 and not plan.robot(name) else None
