@@ -67,7 +67,8 @@ OF_DESCRIPTIONS = {
 # A description and a stack -> the codes of warnings about what the description lacks.
 LACKING = {
     # Its one sensor is a colour camera: no scanner, no depth.
-    ("sdf", "rtabmap"): {"MG303"}
+    ("sdf", "rtabmap"): {"MG303"},
+    **{("sdf", it): set() for it in ("slam_toolbox", "nav2_slam", "nav2_slam_composed")},
 }
 
 
