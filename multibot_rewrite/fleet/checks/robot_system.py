@@ -96,7 +96,7 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
     reading = read(text, source.file, robot.member.vocabulary)
     plain = [_plainly(robot, it) for it in given]
     sections = {it.node: it for it in plain}
-    alone = [run_alone(it, sections.get(it.name)) for it in nodes]
+    alone = [_meant(run_alone(it, sections.get(it.name))) for it in nodes]
     runs = [it for it in alone if not it.fact.shared]
     plugins = [*_without_controllers(plugin_nodes(reading, ""))]
     tree = [it for _, it in tree_joints(robot.member.sent.root)]
@@ -201,6 +201,11 @@ def _system(runs: Iterable[Run], rows: Iterable[End] = (), edges: Iterable[Edge]
     for it in bridged:
         nodes.setdefault(it.node, Node(it.node, known=BRIDGE_NODE))
     return System(tuple(nodes.values()), tuple(ends), tuple(edges), DRIVERS)
+
+
+def _meant(run: Run) -> Run:
+    """Return the node without its condition where a file has parameters for it: it is meant to run."""
+    return run if run.place == NOWHERE else run._replace(fact=run.fact._replace(when=""))
 
 
 def _node(run: Run) -> Node:
