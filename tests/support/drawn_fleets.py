@@ -848,6 +848,17 @@ CAUSES = {
         ),
         lambda fleet: fleet.data.get("use_sim_time") is True and not simulated(fleet),
     ),
+    # Its controller manager has the simulator's time, whatever the file says.
+    "the machine's time beside the simulator's": Cause(
+        lambda data, _: (
+            data.update(use_sim_time=False),
+            _first(data).update(description="gz_arm.urdf", simulator="gazebo"),
+        ),
+        lambda fleet: (
+            fleet.data.get("use_sim_time") is False
+            and any(kind in IN_SIMULATOR for _, kind in simulated(fleet))
+        ),
+    ),
     "a node in the simulator has another domain": Cause(
         lambda data, _: (
             data.update(domains={row["name"]: 7 + at for at, row in enumerate(data["robots"])}),

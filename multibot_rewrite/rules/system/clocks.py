@@ -15,7 +15,7 @@ from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system.index import Index, nodes_of, once
 from multibot_rewrite.system.parameters import parameter_text
-from multibot_rewrite.system.records import PUBLISHES, SIM_TIME, TOPIC, without_clock
+from multibot_rewrite.system.records import PUBLISHES, RUNS, SIM_TIME, TOPIC, without_clock
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 # They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
@@ -54,10 +54,10 @@ def _clocks(seen: Index) -> tuple[str, ...]:
 
 
 def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
-    """The nodes that subscribe to the clock, by robot."""
+    """The nodes that surely subscribe to the clock, by robot."""
     ends = seen.by_name.get((TOPIC, CLOCK))
     found: dict[str, list[str]] = defaultdict(list)
-    for node in nodes_of(ends.subscribers) if ends else ():
+    for node in nodes_of(it for it in ends.subscribers if it.sure == RUNS) if ends else ():
         if not is_viewer(node) and not seen.is_tool(node):
             found[seen.robot(node)].append(node)
     return found
