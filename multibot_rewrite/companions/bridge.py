@@ -33,8 +33,7 @@ from multibot_rewrite.companions.bridge_entry import (
     text_in,
 )
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.engine import splices_of
-from multibot_rewrite.companions.engine import text_of as spelled_text
+from multibot_rewrite.companions.engine import splices_of, text_of as spelled_text
 from multibot_rewrite.companions.kinds import BRIDGE
 from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.placeholders import without_robot

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.rosnames import check_full_name, check_topic_name, expand
+from multibot_rewrite.base.rosnames import check_name_in_code
 from multibot_rewrite.knowledge.conditions import CHOSEN, OPEN_KIND, words_in
 from multibot_rewrite.knowledge.fact_words import (
     FACT_KEYS,
@@ -88,7 +88,7 @@ def checked_endpoint(item: YamlItem, endpoint: Endpoint) -> Endpoint:
     """The endpoint, if its name and types are valid; no rule reaches a name made at run time."""
     for name in filter(None, (endpoint.name, endpoint.remapped)):
         text = _MADE.sub("x", name) if "<" in name else name
-        fault = check_topic_name(text) or check_full_name(expand(text, "/", "node"))
+        fault = check_name_in_code(text)
         if fault:
             wrong(item, f"name {name!r}: {fault.reason}")
     for type_ in filter(None, (endpoint.type, *endpoint.also)):

@@ -49,8 +49,7 @@ from multibot_rewrite.rules.with_plan import one_for_a_cause
 from multibot_rewrite.system.index import NO_COUNTS, Index, beside, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.patterns import fitted
-from multibot_rewrite.system.records import System, doubts
-from multibot_rewrite.system.records import clocks as time_by_node
+from multibot_rewrite.system.records import System, clocks as time_by_node, doubts
 from multibot_rewrite.system.tf_copies import without_bridged
 
 _MODULES = (

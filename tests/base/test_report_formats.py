@@ -11,8 +11,7 @@ import pytest
 
 from multibot_rewrite.base.findings import codes
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.formats import Report, rendered
-from multibot_rewrite.base.findings.formats import markdown as in_markdown
+from multibot_rewrite.base.findings.formats import Report, markdown as in_markdown, rendered
 from multibot_rewrite.base.findings.formats.shared import by_file, counts, inside, path_below
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import Edit, UsageError

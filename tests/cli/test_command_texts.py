@@ -16,6 +16,7 @@ from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
 from multibot_rewrite.base.model import InputError, ProofError, Unusable, UsageError
 from multibot_rewrite.cli import (
     adopt,
+    fleet as commands_of_fleets,
     inspect,
     learn,
     live,
@@ -29,7 +30,6 @@ from multibot_rewrite.cli import (
     unplanned,
     xacro_arguments,
 )
-from multibot_rewrite.cli import fleet as commands_of_fleets
 from multibot_rewrite.cli.options import Command, Example, OptionGroup, argument, choice, switch
 from multibot_rewrite.cli.ros2_verb import MultibotCommand
 from multibot_rewrite.cli.tables import Grid, render

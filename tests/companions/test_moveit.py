@@ -6,8 +6,7 @@ from __future__ import annotations
 import pytest
 import yaml
 from beside import findings_of
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError

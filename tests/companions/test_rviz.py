@@ -8,8 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from rviz_robots import robots_of
 
 from multibot_rewrite.base.findings.finding import Finding

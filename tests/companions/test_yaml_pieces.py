@@ -10,8 +10,14 @@ import yaml
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions import kinds
-from multibot_rewrite.companions.bridge_entry import below as below_of
-from multibot_rewrite.companions.bridge_entry import faults, model_of, models, row_of, text_in
+from multibot_rewrite.companions.bridge_entry import (
+    below as below_of,
+    faults,
+    model_of,
+    models,
+    row_of,
+    text_in,
+)
 from multibot_rewrite.companions.template import (
     NAMESPACE_SLOT,
     TAG_SLOT,

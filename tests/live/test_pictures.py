@@ -17,8 +17,7 @@ import nav2_graphs
 import pytest
 from counted_steps import growth
 from graph_calls import to_json, to_yaml
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from lxml import html
 from page_calls import (
     CLASH,

@@ -13,8 +13,7 @@ from threading import Thread
 
 import pytest
 import yaml
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from parsed import sources
 
 from multibot_rewrite import knowledge
@@ -29,8 +28,7 @@ from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines
 from multibot_rewrite.lint.config.baseline import read_baseline
-from multibot_rewrite.system.json import from_json, from_yaml
-from multibot_rewrite.system.json import from_json as from_json_plan
+from multibot_rewrite.system.json import from_json, from_json as from_json_plan, from_yaml
 
 NODES = Path(knowledge.__file__).parent / "nodes"
 

@@ -12,7 +12,7 @@ from functools import lru_cache
 
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import bind, check_topic_name, expand, resolve_bound
+from multibot_rewrite.base.rosnames import bind, check_name_in_code, expand, resolve_bound
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.companions.names.rename_map import spell
@@ -57,7 +57,7 @@ def spell_topic(
     context: Context, node: str, kind: str, value: str, reach: str, facts: Facts
 ) -> TopicText:
     """What a topic or service named by a parameter of ``node`` (the stack's name) becomes."""
-    if not is_plain(value) or value.startswith("~") or check_topic_name(value):
+    if not is_plain(value) or value.startswith("~") or check_name_in_code(value):
         return TopicText(value)
     outside = _is_outside(context, node, reach, facts)
     meant = _in_full(node, value, reach) if outside else value

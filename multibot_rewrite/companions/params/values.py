@@ -18,8 +18,7 @@ from multibot_rewrite.companions.names.by_kind import SPELLERS, is_component, is
 from multibot_rewrite.companions.names.node_topics import Facts, TopicText
 from multibot_rewrite.companions.names.placeholders import filled, is_robot
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared
-from multibot_rewrite.companions.params.guessed import in_doubt
-from multibot_rewrite.companions.params.guessed import stays as guessed_stays
+from multibot_rewrite.companions.params.guessed import in_doubt, stays as guessed_stays
 from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.sites import Site, found_in

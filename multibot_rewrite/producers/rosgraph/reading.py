@@ -21,11 +21,9 @@ from multibot_rewrite.producers.rosgraph.messages import (
     Action,
     Duration,
     Graph,
+    Node as NodeMessage,
     Service,
     Topic,
-)
-from multibot_rewrite.producers.rosgraph.messages import (
-    Node as NodeMessage,
 )
 from multibot_rewrite.system.record_values import record_from
 from multibot_rewrite.system.records import (

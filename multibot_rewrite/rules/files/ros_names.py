@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.markup import IN_SUBSTITUTION
-from multibot_rewrite.base.rosnames import check_node_name, check_topic_name
+from multibot_rewrite.base.rosnames import check_name_in_code, check_node_name
 from multibot_rewrite.companions.engine import GRAPH
 from multibot_rewrite.companions.kinds import EVERY, MOVEIT, PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
@@ -38,7 +38,7 @@ def invalid_names(file: NamedFile) -> Iterator[Finding]:
 def _fault(site: Site) -> str:
     if site.kind not in GRAPH or not site.text or not is_filled(site.text):
         return ""
-    found = check_topic_name(site.text)
+    found = check_name_in_code(site.text)
     return found.reason if found else ""
 
 

@@ -11,8 +11,7 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.models import Model
 from multibot_rewrite.producers.launch.running import DESCRIPTION
-from multibot_rewrite.rules.launch import ending, models, rows, started
-from multibot_rewrite.rules.launch import words as rules_of_words
+from multibot_rewrite.rules.launch import ending, models, rows, started, words as rules_of_words
 from multibot_rewrite.rules.system.interfaces import (
     interface_claimed_twice,
     interface_not_exported,

@@ -26,7 +26,7 @@ from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVICE, SUBSCRIBES
 
-START_MANAGER = (
+_START_MANAGER = (
     "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
     "that starts it beside this one"
 )
@@ -56,7 +56,8 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
 
 def _no_manager(launched: Launched) -> Iterator[Finding]:
     """An error where another manager is there, or all is known: the nodes and the description. A launch
-    file without a description may be one of several."""
+    file without a description may be one of several. Its ``names`` are the manager that is missing, and
+    the one that may be meant."""
     there = [it.full_name for it in launched.nodes if _is(it, MANAGER)]
     described = bool(launched.models.found) and not launched.models.lost
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
@@ -66,9 +67,10 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
         names = ", ".join(dict.fromkeys(it.name for it in mine))
         message = f"nothing starts {manager}: {names} will not be loaded"
         if near := nearest(manager, there) or next(iter(there), ""):
-            yield at(no_manager, mine[0].place, message, f"did you mean {near}?")
+            hint = f"did you mean {near}?"
+            yield at(no_manager, mine[0].place, message, hint, names=(manager, near))
         elif described and _is_known(launched):
-            yield at(no_manager, mine[0].place, message, START_MANAGER)
+            yield at(no_manager, mine[0].place, message, _START_MANAGER, names=(manager,))
         else:
             hint = _ELSEWHERE if _is_known(launched) else _UNSURE
             yield at(no_manager, mine[0].place, message, hint, level=INCONCLUSIVE)
