@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.formats.shared import counts, in_words
+from multibot_rewrite.base.findings.formats.plain import counts, in_words
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError, VocabularyError
 from multibot_rewrite.base.releases import (

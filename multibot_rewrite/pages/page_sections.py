@@ -8,7 +8,7 @@ from collections.abc import Hashable, Iterable, Mapping
 from typing import TypeVar
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
-from multibot_rewrite.base.findings.formats.shared import in_words
+from multibot_rewrite.base.findings.formats.plain import in_words
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName, Scene
 from multibot_rewrite.pages.states import FAULTY, MISSING, OK, Targets
