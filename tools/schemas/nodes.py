@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
-from multibot_rewrite.knowledge.endpoint_entries import ENDPOINT_KEYS
+from multibot_rewrite.knowledge.node_entries import ENDPOINT_KEYS
 from multibot_rewrite.knowledge.node_library import (
     ENTRY_KEYS,
     ENTRY_OF_NODE,

@@ -15,10 +15,15 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.knowledge.fact_words import SOURCE_KEY
 from multibot_rewrite.knowledge.node_entries import read_claims
 from multibot_rewrite.knowledge.records import MANAGER, Claim, NodeFacts
-from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines, table, table_of, word
+from multibot_rewrite.knowledge.yaml_with_lines import (
+    SOURCE_KEY,
+    read_yaml_with_lines,
+    table,
+    table_of,
+    word,
+)
 from multibot_rewrite.producers.evidence.claims import claimed
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Origin, Place

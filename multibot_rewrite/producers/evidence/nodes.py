@@ -13,7 +13,7 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.knowledge.plugin_classes import NODE, plugin_bases
+from multibot_rewrite.knowledge.declared import NODE, plugin_bases
 from multibot_rewrite.knowledge.records import UNKNOWN, NodeFacts
 from multibot_rewrite.producers.evidence.alternatives import GUESSED, alternatives
 from multibot_rewrite.producers.evidence.claims import claims_of

@@ -24,11 +24,11 @@ from multibot_rewrite.companions.params.sections import (
     controller_types,
 )
 from multibot_rewrite.companions.yaml_text import pairs
-from multibot_rewrite.knowledge.declared import declared_by
-from multibot_rewrite.knowledge.plugin_classes import (
+from multibot_rewrite.knowledge.declared import (
     NODE,
     Base,
     canonical,
+    declared_by,
     packages,
     plugin_bases,
 )
