@@ -8,8 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.naming import Naming, make_naming
-from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.naming import Naming, Policy, make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.sources.read import Source

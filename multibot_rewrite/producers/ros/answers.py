@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 
-from multibot_rewrite.system.parameters import Answer
-from multibot_rewrite.system.questions import Question, questions
+from multibot_rewrite.system.parameters import Answer, Question, questions
 from multibot_rewrite.system.records import System
 
 # States and parameters change without the graph: nodes are asked for them again after so long.

@@ -32,10 +32,9 @@ from multibot_rewrite.producers.ros.request import ENDED, SO_FAR, Request, from_
 from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
 from multibot_rewrite.producers.ros.worker import Send, run_worker
 from multibot_rewrite.system import environment
+from multibot_rewrite.system.environment import LOCALHOST
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.parameters import Answer, with_answers
-from multibot_rewrite.system.questions import ANSWER_SECONDS, Question
-from multibot_rewrite.system.reach import LOCALHOST
+from multibot_rewrite.system.parameters import ANSWER_SECONDS, Answer, Question, with_answers
 from multibot_rewrite.system.records import (
     CHANGING,
     EXPECTED,
