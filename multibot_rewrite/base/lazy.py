@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Regular expressions that are compiled when first used, since a run needs only few of them, and parts
-of patterns that read XML, Python and substitutions, each in linear time."""
+of patterns that read XML, Python and substitutions, each in linear time.
+
+A search for something without an end would start again at the next place that looks like its start.
+What has no end therefore goes to the end of the text, or stops where the next one starts.
+"""
 
 from __future__ import annotations
 

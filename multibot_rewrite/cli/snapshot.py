@@ -24,12 +24,12 @@ from multibot_rewrite.knowledge.nodl.writing import NodlFile, file_name
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.learning.choosing import choose_nodes, helpers_without_owner, left_out
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
+from multibot_rewrite.live.learning.nodes_file import to_nodl
 from multibot_rewrite.live.learning.nodes_file import to_yaml as to_nodes_yaml
-from multibot_rewrite.live.learning.nodl_file import to_nodl
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.rosgraph.writing import to_yaml
+from multibot_rewrite.system.environment import machines
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.reach import machines
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,

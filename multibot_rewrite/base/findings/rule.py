@@ -1,5 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A rule: its code, level and check. Its words and examples are its page, ``rules/pages/CODE.md``."""
+"""A rule: its code, level and check. Its words and examples are its page, ``rules/pages/CODE.md``.
+
+A page says what is found, why that hurts, the fix, and has examples. Below the title are three
+paragraphs, the second begins with ``**Why.**``, the third with ``**Fix.**``. Then come fenced blocks,
+each below its title: ``Bad``, ``Fixed`` (what ``--fix`` makes), ``Good``, and ``Beside it, `NAME` ``
+for each other file. ``Bad (line N)`` says where the finding is.
+"""
 
 from __future__ import annotations
 

@@ -20,17 +20,15 @@ from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.live.learning.choosing import (
-    Helpers,
-    check_seen_name,
-    helpers_of,
-    namespace_prefix,
-)
-from multibot_rewrite.live.learning.folding import (
     EndpointId,
+    Helpers,
     Seen,
+    check_seen_name,
     fold_actions,
     fold_images,
     fold_parts,
+    helpers_of,
+    namespace_prefix,
 )
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.system.records import (

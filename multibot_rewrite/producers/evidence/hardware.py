@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A description -> the interfaces that its ros2_control systems export, and the nodes of its hardware.
+"""A description -> the interfaces that its ros2_control systems export and its controllers claim, and
+the nodes of its hardware.
 
 Sources: ros2_control hardware_interface component_parser.cpp (``<joint>``, ``<sensor>`` and ``<gpio>``
 of a ``<ros2_control>``; an interface is called ``OWNER/INTERFACE``). What the code of a plugin exports
@@ -8,7 +9,7 @@ besides, and the nodes that it makes, are in ``hardware.yaml``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from lxml.etree import _Element
@@ -24,11 +25,25 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     table_of,
     word,
 )
-from multibot_rewrite.producers.evidence.claims import claimed
-from multibot_rewrite.spelling.records import Given
-from multibot_rewrite.system.records import Origin, Place
+from multibot_rewrite.producers.evidence.claims import (
+    COMMAND,
+    Claimed,
+    claimed,
+    claimed_twice,
+    claims_of,
+)
+from multibot_rewrite.spelling.records import Given, Run
+from multibot_rewrite.system.records import (
+    CLAIMS,
+    EXPORTS,
+    STATE,
+    Controller,
+    Interface,
+    Origin,
+    Place,
+    System,
+)
 
-COMMAND, STATE = "command", "state"
 OWNERS = ("joint", "sensor", "gpio")
 _TABLE = "hardware.yaml"
 
@@ -119,3 +134,45 @@ def _plugins() -> Mapping[str, _Plugin]:
         )
         for name, keys in found.items()
     }
+
+
+ACTIVE = "active"
+
+
+def control_system(
+    given: Sequence[Run],
+    known: Mapping[str, NodeFacts],
+    exports: Iterable[Exported],
+    active: Collection[str] = (),
+) -> System:
+    """The controllers that files declare, and all interfaces; ``active`` are those that launch files
+    start so."""
+    declared = [it for it in given if it.host_name]
+    own = [Interface(it.kind, it.name, f"/{MANAGER}", EXPORTS, it.place) for it in exports]
+    for it in declared:
+        own += (_claim(claim, it) for claim in _claims(it, known))
+    return System(
+        controllers=tuple(_controller(it, known, active) for it in declared),
+        interfaces=tuple(own),
+    )
+
+
+def _controller(it: Run, known: Mapping[str, NodeFacts], active: Collection[str]) -> Controller:
+    claims = (claim.name for claim in _claims(it, known) if claim.kind == COMMAND)
+    is_active = it.node in active
+    name = it.node.rpartition("/")[2]
+    return Controller(
+        f"/{it.host_name}", name, ACTIVE if is_active else "", tuple(claims) * is_active
+    )
+
+
+def _claims(it: Run, known: Mapping[str, NodeFacts]) -> Iterator[Claimed]:
+    """What a controller claims, and once more what two of its parameters name."""
+    node = known.get(it.fact.known)
+    if node is not None:
+        yield from claims_of(node.claims, it)
+        yield from (claim for claim, _ in claimed_twice(node.claims, it))
+
+
+def _claim(claim: Claimed, it: Run) -> Interface:
+    return Interface(claim.kind, claim.name, f"/{it.node}", CLAIMS, claim.place or it.place)

@@ -17,7 +17,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from multibot_rewrite.producers.ros import ros
-from multibot_rewrite.producers.ros.worker import Send, run_worker
+from multibot_rewrite.producers.ros.request import Send, run_worker
 from multibot_rewrite.system.parameters import (
     GET_PARAMETERS,
     GET_STATE,
