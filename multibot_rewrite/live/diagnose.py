@@ -10,8 +10,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import LAYOUTS, Layout
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
-from multibot_rewrite.producers.bags.read import RECORDER
-from multibot_rewrite.producers.bags.recording import is_recorded
+from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.rules.check import ABSENCE, inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.domains import in_domain
 from multibot_rewrite.rules.system.differing import COMPARED
