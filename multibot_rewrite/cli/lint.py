@@ -130,7 +130,7 @@ def _check_shared(
     findings: Sequence[Finding],
 ) -> None:
     """Raise UsageError for a name of ``--shared`` that is in none of the files and changes nothing."""
-    from multibot_rewrite.cli.shared_names import check_shared  # few ask for it
+    from multibot_rewrite.cli.rewrite_use import check_shared  # few ask for it
 
     def linted(naming: Mapping[str, Any]) -> list[Finding]:
         changed = with_options(configured_alone, **{**given(options), **naming})

@@ -28,7 +28,14 @@ from multibot_rewrite.cli import (
     unplanned,
 )
 from multibot_rewrite.cli import fleet as commands_of_fleets
-from multibot_rewrite.cli.options import Command, Example, OptionGroup, argument, choice, switch
+from multibot_rewrite.cli.declared.shared import (
+    Command,
+    Example,
+    OptionGroup,
+    argument,
+    choice,
+    switch,
+)
 from multibot_rewrite.cli.ros2_verb import MultibotCommand
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments

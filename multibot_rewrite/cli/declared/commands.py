@@ -15,8 +15,6 @@ from multibot_rewrite.cli.declared.shared import (
     RESULT_OUTPUT,
     TRUST,
     VOCABULARY,
-)
-from multibot_rewrite.cli.options import (
     Command,
     Example,
     OptionGroup,

@@ -20,8 +20,8 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.declared import NODE, plugin_bases
 from multibot_rewrite.knowledge.records import UNKNOWN, Claim, NodeFacts
-from multibot_rewrite.producers.evidence.claims import claims_of
 from multibot_rewrite.producers.evidence.filling import filled
+from multibot_rewrite.producers.evidence.hardware import claims_of
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import COMMAND, STATE, Origin
 

@@ -22,7 +22,7 @@ from multibot_rewrite.companions.moveit.file_kind import NAMES
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
-from multibot_rewrite.producers.evidence.claims import TYPE
+from multibot_rewrite.producers.evidence.hardware import TYPE
 from multibot_rewrite.producers.evidence.semantics import (
     JOINTS,
     controllers_of,

@@ -32,7 +32,7 @@ from multibot_rewrite.knowledge.declared import (
     packages,
     plugin_bases,
 )
-from multibot_rewrite.producers.evidence.claims import TYPE
+from multibot_rewrite.producers.evidence.hardware import TYPE
 from multibot_rewrite.rules.files.demands import Demand, demands
 from multibot_rewrite.rules.files.given import is_set_beside
 from multibot_rewrite.rules.files.section_facts import Setting, sections
