@@ -14,8 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import ATTRIBUTES, SILENT
+from multibot_rewrite.base.lazy import ATTRIBUTES, SILENT, lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 
 _STAGE = "http://playerstage.sourceforge.net/gazebo/xmlschema/#"

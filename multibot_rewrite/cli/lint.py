@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.formats.shared import counts, in_words
+from multibot_rewrite.base.findings.formats.plain import counts, in_words
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError, VocabularyError
 from multibot_rewrite.base.releases import (
@@ -129,7 +129,7 @@ def _check_shared(
     findings: Sequence[Finding],
 ) -> None:
     """Raise UsageError for a name of ``--shared`` that is in none of the files and changes nothing."""
-    from multibot_rewrite.cli.shared_names import check_shared  # few ask for it
+    from multibot_rewrite.cli.rewrite_use import check_shared  # few ask for it
 
     def linted(naming: Mapping[str, Any]) -> list[Finding]:
         changed = with_options(configured_alone, **{**given(options), **naming})

@@ -20,11 +20,12 @@ from multibot_rewrite.live.rehearsal import (
     Stub,
     bridge_stub,
     domain_bridge_stubs,
+    staged,
+    stages,
     stub_nodes,
     with_own_types,
     with_substitutes,
 )
-from multibot_rewrite.live.staged import staged, stages
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.domains import check_domains
 from multibot_rewrite.spelling.transforms import Edges, with_odometry

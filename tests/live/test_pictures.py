@@ -38,7 +38,7 @@ from page_calls import (
 from plans import own as nodes_of
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
+from multibot_rewrite.pages.svg import NODE_ROW, ROW, lay_out
 from multibot_rewrite.system.records import Edge, Node, System, surely
 
 # What a page is made of.

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, locate
+from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.loose_xml import DASHES, DEFAULT, LATE, slips
-from multibot_rewrite.base.markup import without_comments
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.releases import releases_with
 from multibot_rewrite.description.checks.hazards import hazards

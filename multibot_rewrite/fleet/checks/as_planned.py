@@ -34,7 +34,7 @@ from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.spelling.ways import HOST, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.questions import LIST_CONTROLLERS
+from multibot_rewrite.system.parameters import LIST_CONTROLLERS
 from multibot_rewrite.system.records import (
     RUNS,
     SERVES,

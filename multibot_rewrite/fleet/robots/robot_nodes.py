@@ -39,7 +39,7 @@ from multibot_rewrite.fleet.robots.fitting.transforms import (
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.nodl.facts import declared
+from multibot_rewrite.knowledge.nodl.lookup import declared
 from multibot_rewrite.knowledge.parameters import (
     KnownNodes,
     is_absolute,

@@ -10,9 +10,9 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 
+from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import check_name_in_code
-from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.knowledge.conditions import ALSO, Values, chosen_type, holds, verdict
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.spelling.records import Given, Run

@@ -16,7 +16,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.checks.shapes import reach_of
-from multibot_rewrite.knowledge.plugin_classes import canonical
+from multibot_rewrite.knowledge.declared import canonical
 from multibot_rewrite.rules.files.bounds import polygon_of
 from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
 from multibot_rewrite.rules.places import remark_at

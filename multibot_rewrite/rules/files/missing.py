@@ -10,7 +10,7 @@ import yaml
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.knowledge.declared import Declared
-from multibot_rewrite.producers.evidence.claims import TYPE
+from multibot_rewrite.producers.evidence.hardware import TYPE
 from multibot_rewrite.rules.files.demands import demands, value_of
 from multibot_rewrite.rules.files.given import is_set_beside
 from multibot_rewrite.rules.files.parameter_facts import of_release

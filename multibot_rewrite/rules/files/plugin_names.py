@@ -24,15 +24,15 @@ from multibot_rewrite.companions.params.sections import (
     controller_types,
 )
 from multibot_rewrite.companions.yaml_text import pairs
-from multibot_rewrite.knowledge.declared import declared_by
-from multibot_rewrite.knowledge.plugin_classes import (
+from multibot_rewrite.knowledge.declared import (
     NODE,
     Base,
     canonical,
+    declared_by,
     packages,
     plugin_bases,
 )
-from multibot_rewrite.producers.evidence.claims import TYPE
+from multibot_rewrite.producers.evidence.hardware import TYPE
 from multibot_rewrite.rules.files.demands import Demand, demands
 from multibot_rewrite.rules.files.given import is_set_beside
 from multibot_rewrite.rules.files.section_facts import Setting, sections

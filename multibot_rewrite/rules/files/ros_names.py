@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.base.markup import IN_SUBSTITUTION
+from multibot_rewrite.base.lazy import IN_SUBSTITUTION
 from multibot_rewrite.base.rosnames import check_name_in_code, check_node_name
 from multibot_rewrite.companions.engine import GRAPH
 from multibot_rewrite.companions.kinds import EVERY, MOVEIT, PARAMS

@@ -17,7 +17,7 @@ from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import expand, resolve_bound
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
-from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
+from multibot_rewrite.producers.evidence.hardware import COMMAND, claims_of
 from multibot_rewrite.producers.launch import spawner_managers
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_of

@@ -11,8 +11,8 @@ from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, why_other_name
 from multibot_rewrite.rules.system.planned import matches, unplanned_nodes
+from multibot_rewrite.system.environment import Machines, hidden_from_here, machines, why_not_seen
 from multibot_rewrite.system.index import Index, once
-from multibot_rewrite.system.reach import Machines, hidden_from_here, machines, why_not_seen
 from multibot_rewrite.system.records import SERVES, Robot, alternatives
 
 

@@ -12,7 +12,7 @@ from urllib.parse import quote
 from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding, locate
 from multibot_rewrite.base.findings.formats import Report
-from multibot_rewrite.base.findings.formats.shared import (
+from multibot_rewrite.base.findings.formats.plain import (
     calls,
     circumstances,
     file_of,
@@ -34,7 +34,7 @@ _ROOT = "%SRCROOT%"
 _ROOT_SAID = "The folder in which the command was started: the root of the repository."
 
 
-def render(findings: Sequence[Finding], report: Report) -> str:
+def as_sarif(findings: Sequence[Finding], report: Report) -> str:
     """One run with every rule, the files that were linted, and a result for each finding."""
     numbers = {code: number for number, code in enumerate(report.rules)}
     driver = {

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO, rule
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import ATTRIBUTES
+from multibot_rewrite.base.lazy import ATTRIBUTES, lazy_compile
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.checks.audit import loosely_written
 from multibot_rewrite.description.checks.problem import Problem

@@ -8,8 +8,7 @@ from collections.abc import Iterator, Mapping
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import IN_EXPRESSION
+from multibot_rewrite.base.lazy import IN_EXPRESSION, lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 
 # What people call the parameter that is put in front of a robot's names.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JSON schema of a file of a system: ``python -m multibot_rewrite.system.schema``."""
+"""The JSON schema of a file of a system: ``python -m tools.schemas.system``."""
 
 from __future__ import annotations
 
