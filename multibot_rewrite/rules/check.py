@@ -13,35 +13,8 @@ from multibot_rewrite.base.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.producers.bags.recording import is_recorded
-from multibot_rewrite.rules.system import (
-    clocks,
-    commands,
-    demands,
-    differing,
-    enclaves,
-    equal_robots,
-    frame_ids,
-    interfaces,
-    likes,
-    localized,
-    lookups,
-    matching,
-    names,
-    nodes,
-    planned_ends,
-    planned_frames,
-    planned_nodes,
-    planned_states,
-    refused,
-    relays,
-    sharing,
-    stamps,
-    states,
-    tf_pieces,
-    tf_topics,
-    transforms,
-    unsent,
-)
+from multibot_rewrite.rules.declaration import rules_in
+from multibot_rewrite.rules.system import clocks, differing, frame_ids, likes, localized
 from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.rules.system.names import topic_names_miss
 from multibot_rewrite.rules.system.planned import missing
@@ -53,14 +26,7 @@ from multibot_rewrite.system.records import System, doubts
 from multibot_rewrite.system.records import clocks as time_by_node
 from multibot_rewrite.system.tf_copies import without_bridged
 
-_MODULES = (
-    *(nodes, names, matching, commands, relays, sharing, transforms, tf_topics, tf_pieces),
-    *(frame_ids, lookups, localized, refused, stamps, clocks, states, equal_robots, likes),
-    *(differing, unsent, interfaces, enclaves, planned_nodes, planned_ends, demands),
-    *(planned_states, planned_frames),
-)
-_FOUND = (it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule))
-RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
+RULES = {it.code: it for it in sorted(rules_in("system"), key=lambda it: it.code)}
 _LACKS = likes.lacks_what_its_likes_have
 # Findings about something missing: an incomplete view cannot prove them.
 ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import wraps
+from importlib import import_module
+from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -99,6 +101,17 @@ def of_robots(
             yield from find(file)
 
     return found
+
+
+def rules_in(package: str, *apart: str) -> list[Rule]:
+    """Return the rules in the modules of a package below this one, without the modules ``apart``. A
+    module is its own package; a rule that several modules have is there once."""
+    name = f"{__package__}.{package}"
+    whole = import_module(name)
+    inside = (it.name for it in iter_modules(getattr(whole, "__path__", ())))
+    modules = [import_module(f"{name}.{it}") for it in inside if it not in apart]
+    found = (it for one in (whole, *modules) for it in vars(one).values() if isinstance(it, Rule))
+    return list({id(it): it for it in found}.values())
 
 
 NOT_EXPORTED = declare(

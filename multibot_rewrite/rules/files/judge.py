@@ -16,50 +16,18 @@ from multibot_rewrite.rules.description import rewriting
 from multibot_rewrite.rules.description.files import reading, shape, values
 from multibot_rewrite.rules.description.multirobot import named_robots
 from multibot_rewrite.rules.description.names import ros_names as description_names
+from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.files import (
-    bridges,
-    chains,
-    controllers,
-    costmaps,
     declared,
     demands,
-    joystick,
-    keys,
-    limits,
     missing,
-    moveit,
     names,
     plugin_names,
     rcl_rules,
-    releases,
-    robot_words,
     ros_names,
-    rviz,
     same_for_all,
-    sections,
-    wheels,
 )
 from multibot_rewrite.rules.system import clocks
-
-THEMES = (
-    names,
-    ros_names,
-    robot_words,
-    keys,
-    controllers,
-    releases,
-    bridges,
-    rviz,
-    moveit,
-    sections,
-    same_for_all,
-    wheels,
-    demands,
-    costmaps,
-    chains,
-    joystick,
-    limits,
-)
 
 
 def _each(
@@ -118,8 +86,7 @@ def codes() -> frozenset[str]:
 
 
 def _every() -> Iterator[Rule]:
-    yield from (it for theme in THEMES for it in vars(theme).values() if isinstance(it, Rule))
-    yield from SHARED
+    yield from (*rules_in("files"), *SHARED)
 
 
 def judged(file: NamedFile, rules: Iterable[Rule]) -> Iterator[Finding]:
