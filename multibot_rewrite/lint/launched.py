@@ -30,11 +30,7 @@ from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.described import in_use, may_stop
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.bridges import expands, is_bridge, told_rows
-from multibot_rewrite.producers.launch.launched import (
-    InSimulator,
-    Launched,
-    file_of,
-)
+from multibot_rewrite.producers.launch.launched import InSimulator, Launched, file_of
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.rules.files.bridges import (
     GzTopic,

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import wraps
 from importlib import import_module
 from pkgutil import iter_modules
@@ -18,8 +18,12 @@ if TYPE_CHECKING:
 
 _Check = TypeVar("_Check", bound=Callable[..., Any])
 _Compare = Callable[["Index", "Index"], Iterator[Finding]]
+_FileCheck = Callable[["NamedFile"], Iterator[Finding]]
 # How pictures show what a finding is about; "" is violet for an error, blue for a warning.
 Drawn = Literal["", "missing", "leak", "cross-talk", "unexpected"]
+# The robots of an example.
+TWO = ("robot1", "robot2")
+OF_TWO: Mapping[str, object] = {"robots": TWO}
 # What the examples of a rule are written in: lines of a system, and of its plan.
 SYSTEM, LAUNCH = "system", "launch"
 
@@ -89,9 +93,7 @@ def launch_rule(code: str, name: str, *, level: str = ERROR) -> Callable[[_Check
     return rule(code, name, level, formats=(LAUNCH,))
 
 
-def of_robots(
-    find: Callable[[NamedFile], Iterator[Finding]],
-) -> Callable[[NamedFile], Iterator[Finding]]:
+def of_robots(find: _FileCheck) -> _FileCheck:
     """A rule about what several robots get: asked of a file that is for a certain robot, and of one
     alone where robots are named."""
 
@@ -112,6 +114,14 @@ def rules_in(package: str, *apart: str) -> list[Rule]:
     modules = [import_module(f"{name}.{it}") for it in inside if it not in apart]
     found = (it for one in (whole, *modules) for it in vars(one).values() if isinstance(it, Rule))
     return list({id(it): it for it in found}.values())
+
+
+def robots_rule(
+    code: str, name: str, level: str, *formats: str, options: Mapping[str, object] = OF_TWO
+) -> Callable[[_FileCheck], Rule]:
+    """Make a function a rule about what several robots get of a file, asked as ``of_robots`` says."""
+    about = {"formats": formats, "options": options}
+    return lambda find: declare(code, name, level, of_robots(find), **about)
 
 
 NOT_EXPORTED = declare(

@@ -22,12 +22,7 @@ from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.params.lacking_sections import lacking_sections
-from multibot_rewrite.companions.params.name_sites import (
-    NO_NAMES,
-    Page,
-    SectionNames,
-    find_names,
-)
+from multibot_rewrite.companions.params.name_sites import NO_NAMES, Page, SectionNames, find_names
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
@@ -35,9 +30,7 @@ from multibot_rewrite.companions.params.sections import (
     raw_sections,
     without_own,
 )
-from multibot_rewrite.companions.params.shared_defaults import (
-    default_lines,
-)
+from multibot_rewrite.companions.params.shared_defaults import default_lines
 from multibot_rewrite.companions.params.values import ParamsJob, clock_splices, name_splices
 from multibot_rewrite.companions.sites import SECTION, Site, site_at
 from multibot_rewrite.companions.template import (

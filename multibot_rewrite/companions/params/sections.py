@@ -19,13 +19,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context, full_name
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
-from multibot_rewrite.companions.yaml_text import (
-    YamlText,
-    anchors,
-    line_of,
-    names_below,
-    pairs,
-)
+from multibot_rewrite.companions.yaml_text import YamlText, anchors, line_of, names_below, pairs
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters
 from multibot_rewrite.knowledge.stacks import apart_nodes, is_apart

@@ -13,12 +13,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
 from multibot_rewrite.companions.params.name_sites import SectionNames
-from multibot_rewrite.companions.params.sections import (
-    ParamSection,
-    RawSection,
-    flattened,
-    is_for,
-)
+from multibot_rewrite.companions.params.sections import ParamSection, RawSection, flattened, is_for
 from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob, frames_stay
 from multibot_rewrite.companions.yaml_blocks import line_start, newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, quoted

@@ -14,14 +14,7 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.sections import MANAGER, PARAMETERS
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
-from multibot_rewrite.knowledge.declared import (
-    DECLARED,
-    DEMANDED,
-    READ,
-    YAML,
-    Declared,
-    stands_for,
-)
+from multibot_rewrite.knowledge.declared import DECLARED, DEMANDED, READ, YAML, Declared, stands_for
 from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_facts import facts_of_node, of_parameter, of_release
 from multibot_rewrite.rules.files.plugin_names import older_nodes

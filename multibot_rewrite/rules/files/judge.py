@@ -12,11 +12,11 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.rules import declaration
+from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.description import rewriting
 from multibot_rewrite.rules.description.files import reading, shape, values
 from multibot_rewrite.rules.description.multirobot import named_robots
 from multibot_rewrite.rules.description.names import ros_names as description_names
-from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.files import (
     declared,
     demands,

@@ -12,7 +12,7 @@ from multibot_rewrite.companions.kinds import MOVEIT
 from multibot_rewrite.companions.moveit.rewrite import asks_below_root
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.sites import slot_of
-from multibot_rewrite.rules.declaration import of_robots
+from multibot_rewrite.rules.declaration import robots_rule
 from multibot_rewrite.rules.places import remark
 
 
@@ -33,14 +33,13 @@ def groups_without_srdf(file: NamedFile) -> Iterator[Finding]:
         yield remark(site, message, "name the SRDF under srdf:")
 
 
-@rule(
+@robots_rule(
     "MB893",
     "moveit-one-controller-manager",
     WARNING,
-    formats=(MOVEIT,),
+    MOVEIT,
     options={"build": True, "layout": "postfix"},
 )
-@of_robots
 def one_controller_manager(file: NamedFile) -> Iterator[Finding]:
     """Places that select a controller manager which no robot has."""
     if file.document is None or file.context.names.naming.topics == NAMESPACE:

@@ -27,7 +27,7 @@ from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.description.checks.mentions import mentioned
 from multibot_rewrite.knowledge.parameters import built_in_nodes
-from multibot_rewrite.rules.declaration import of_robots
+from multibot_rewrite.rules.declaration import of_robots, robots_rule
 from multibot_rewrite.rules.files.declared import unknown_parameters
 from multibot_rewrite.rules.places import remark
 
@@ -278,10 +278,7 @@ def _is_interface(file: NamedFile, value: str) -> bool:
     return interface != "" and any(is_declared(names, kind, it) for kind in kinds for it in chain)
 
 
-@rule(
-    "MB887", "included-file", WARNING, formats=(LUA, TREE), options={"robots": ("robot1", "robot2")}
-)
-@of_robots
+@robots_rule("MB887", "included-file", WARNING, LUA, TREE)
 def included_file(file: NamedFile) -> Iterator[Finding]:
     """Each file that is included."""
     key = "behavior_trees" if file.kind == TREE else "lua"
@@ -290,14 +287,7 @@ def included_file(file: NamedFile) -> Iterator[Finding]:
         yield remark(site, message, f"if it has names, list it under {key} as well")
 
 
-@rule(
-    "MB888",
-    "lua-frame-not-plain",
-    WARNING,
-    formats=(LUA,),
-    options={"robots": ("robot1", "robot2")},
-)
-@of_robots
+@robots_rule("MB888", "lua-frame-not-plain", WARNING, LUA)
 def computed_frame(file: NamedFile) -> Iterator[Finding]:
     """Each such frame, where robots have frames of their own."""
     for site in file.computed if frames_differ(file.context) else ():

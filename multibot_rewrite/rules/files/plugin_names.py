@@ -25,13 +25,7 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.declared import declared_by
-from multibot_rewrite.knowledge.plugin_classes import (
-    NODE,
-    Base,
-    canonical,
-    packages,
-    plugin_bases,
-)
+from multibot_rewrite.knowledge.plugin_classes import NODE, Base, canonical, packages, plugin_bases
 from multibot_rewrite.producers.evidence.claims import TYPE
 from multibot_rewrite.rules.files.demands import Demand, demands
 from multibot_rewrite.rules.files.given import is_set_beside

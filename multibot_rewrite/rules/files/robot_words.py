@@ -18,6 +18,7 @@ from multibot_rewrite.companions.sites import GZ_TOPIC, Site
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import BETWEEN
 from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
+from multibot_rewrite.rules.declaration import OF_TWO
 from multibot_rewrite.rules.places import remark
 
 # Only where such letters begin, or a line of dashes would be looked at from each of them.
@@ -29,9 +30,7 @@ _NOT_A_NAME = lazy_compile(
 )
 
 
-@rule(
-    "MB863", "robot-in-name-beside", ERROR, formats=EVERY, options={"robots": ("robot1", "robot2")}
-)
+@rule("MB863", "robot-in-name-beside", ERROR, formats=EVERY, options=OF_TWO)
 def robot_in_name(file: NamedFile) -> Iterator[Finding]:
     """The first name that holds one of the robots."""
     if not file.robots:

@@ -11,7 +11,7 @@ from multibot_rewrite.companions.kinds import RVIZ
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.rviz.read_config import rviz_data, text_of, value
 from multibot_rewrite.companions.yaml_text import pairs
-from multibot_rewrite.rules.declaration import of_robots
+from multibot_rewrite.rules.declaration import robots_rule
 from multibot_rewrite.rules.places import remark_at
 
 
@@ -40,14 +40,7 @@ def volatile_description(file: NamedFile) -> Iterator[Finding]:
         yield remark_at(found[0].node, message, hint)
 
 
-@rule(
-    "MB891",
-    "rviz-unknown-display",
-    WARNING,
-    formats=(RVIZ,),
-    options={"robots": ("robot1", "robot2")},
-)
-@of_robots
+@robots_rule("MB891", "rviz-unknown-display", WARNING, RVIZ)
 def unknown_display(file: NamedFile) -> Iterator[Finding]:
     """Each such display."""
     for one in file.shown:

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.kinds import MOVEIT, PARAMS, RVIZ
@@ -20,12 +19,11 @@ from multibot_rewrite.companions.rviz.values import LINK, TF_PREFIX
 from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PORT, RUN_TIME
 from multibot_rewrite.producers.addresses import held_by
-from multibot_rewrite.rules.declaration import of_robots
+from multibot_rewrite.rules.declaration import of_robots, robots_rule
 from multibot_rewrite.rules.files.given import given_in
 from multibot_rewrite.rules.places import remark, remark_at
 from multibot_rewrite.system.records import COMPUTER
 
-_TWO = ("robot1", "robot2")
 # Patterns that match everything or nothing hold no robot's name.
 _OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})
 _OFF = ("false", "no", "off")
@@ -60,8 +58,7 @@ def _same(key: str, text: str) -> str:
     return f"{key} {text} is the same for all robots"
 
 
-@rule("MB881", "value-not-renamed", WARNING, formats=(PARAMS, RVIZ), options={"robots": _TWO})
-@of_robots
+@robots_rule("MB881", "value-not-renamed", WARNING, PARAMS, RVIZ)
 def not_renamed(file: NamedFile) -> Iterator[Finding]:
     """Patterns and expressions of nodes; values of displays."""
     for site in file.names if file.kind == PARAMS else ():
@@ -101,8 +98,7 @@ def _why_not(context: Context, one: RvizItem, place: Site) -> tuple[str, str] | 
     return None
 
 
-@rule("MB882", "robot-twice-in-value", ERROR, formats=(PARAMS, RVIZ), options={"robots": _TWO})
-@of_robots
+@robots_rule("MB882", "robot-twice-in-value", ERROR, PARAMS, RVIZ)
 def robot_twice(file: NamedFile) -> Iterator[Finding]:
     """Prefixes that a node or a display puts before frames."""
     layout = file.context.names.naming.layout

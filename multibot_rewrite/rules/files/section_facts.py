@@ -18,11 +18,7 @@ from multibot_rewrite.companions.moveit.file_kind import find_kind, parameter_ab
 from multibot_rewrite.companions.moveit.rewrite import node_of
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rcl_parameters import value_of
-from multibot_rewrite.companions.params.sections import (
-    ANY,
-    RawSection,
-    controller_types,
-)
+from multibot_rewrite.companions.params.sections import ANY, RawSection, controller_types
 from multibot_rewrite.companions.yaml_text import YamlText, names_below, pairs
 from multibot_rewrite.description.sources.packages import is_for_ros_1
 from multibot_rewrite.knowledge.declared import EVERY_NODE, Declared, declared_by, stands_for

@@ -13,14 +13,11 @@ from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.sections import ANY, ParamSection, flattened, scalars
 from multibot_rewrite.knowledge.parameters import is_absolute
-from multibot_rewrite.rules.declaration import of_robots
+from multibot_rewrite.rules.declaration import TWO, robots_rule
 from multibot_rewrite.rules.places import remark_at
 
-_TWO = ("robot1", "robot2")
 
-
-@rule("MB883", "section-of-one-robot", ERROR, formats=(PARAMS,), options={"robots": _TWO})
-@of_robots
+@robots_rule("MB883", "section-of-one-robot", ERROR, PARAMS)
 def section_of_one_robot(file: NamedFile) -> Iterator[Finding]:
     """A namespace in a section's name: that of one robot, or one below each robot's."""
     for section, _ in file.pages:
@@ -65,14 +62,13 @@ def shared_section(file: NamedFile) -> Iterator[Finding]:
         yield remark_at(section.keys[-1], message, "start it once, with this file")
 
 
-@rule(
+@robots_rule(
     "MB885",
     "costmap-source-without-topic",
     WARNING,
-    formats=(PARAMS,),
-    options={"robots": _TWO, "distro": "jazzy"},
+    PARAMS,
+    options={"robots": TWO, "distro": "jazzy"},
 )
-@of_robots
 def source_without_topic(file: NamedFile) -> Iterator[Finding]:
     """Observation sources of a costmap layer without a topic: their id is the topic."""
     for section, _ in file.pages:

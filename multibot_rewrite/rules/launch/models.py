@@ -22,12 +22,7 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.knowledge.worlds import DEFAULTS
-from multibot_rewrite.producers.launch.launched import (
-    InSimulator,
-    Launched,
-    World,
-    worlds,
-)
+from multibot_rewrite.producers.launch.launched import InSimulator, Launched, World, worlds
 from multibot_rewrite.rules.declaration import launch_rule
 from multibot_rewrite.rules.facts.simulators import needed_systems
 from multibot_rewrite.rules.places import at

@@ -30,15 +30,7 @@ from multibot_rewrite.system.index import (
     robots_of,
     spaces,
 )
-from multibot_rewrite.system.records import (
-    ACTION,
-    RUNS,
-    SERVES,
-    SERVICE,
-    TOPIC,
-    UNKNOWN_NODES,
-    End,
-)
+from multibot_rewrite.system.records import ACTION, RUNS, SERVES, SERVICE, TOPIC, UNKNOWN_NODES, End
 from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
 
 ABSENT = "is that robot started, and is its name right?"

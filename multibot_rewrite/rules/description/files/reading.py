@@ -13,6 +13,7 @@ from multibot_rewrite.companions.kinds import EVERY
 from multibot_rewrite.description.checks.audit import leftover_xacro, worlds
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import already_rewritten
+from multibot_rewrite.rules.declaration import OF_TWO
 from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet
 from multibot_rewrite.rules.subject import Subject
 
@@ -34,7 +35,7 @@ def leftover(subject: Subject) -> Iterator[Problem]:
     return leftover_xacro(subject.inventory)
 
 
-@rule("MB106", "already-rewritten", WARNING, options={"robots": ("robot1", "robot2")})
+@rule("MB106", "already-rewritten", WARNING, options=OF_TWO)
 def already(subject: Subject) -> Iterator[Problem]:
     """One finding per file, for the first robot whose name is in it."""
     # What has a robot's name by an argument has it by its author.
@@ -44,7 +45,7 @@ def already(subject: Subject) -> Iterator[Problem]:
         yield it._replace(hint="lint the source it was made from")
 
 
-@rule("MB109", "sdf-world", ERROR, options={"robots": ("robot1", "robot2")})
+@rule("MB109", "sdf-world", ERROR, options=OF_TWO)
 def sdf_world(subject: Subject) -> Iterator[Problem]:
     """Every world of the file; one that is only a world has no robots."""
     return worlds(subject.inventory) if subject.settings.robots else iter(())

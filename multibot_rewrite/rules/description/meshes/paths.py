@@ -10,12 +10,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.meshes.shared import (
-    Used,
-    and_more,
-    problem,
-    used_files,
-)
+from multibot_rewrite.rules.description.meshes.shared import Used, and_more, problem, used_files
 from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
 

@@ -14,7 +14,6 @@ from multibot_rewrite.description.rewriters.insert import Insertion, insertions
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
-TWO = ("robot1", "robot2")
 # Frames, tf and topics are all per robot: what a rewrite inserts for that is shared by copies.
 APART = make_naming("both")
 AS_WRITTEN = make_naming("tf-per-robot")

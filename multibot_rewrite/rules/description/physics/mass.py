@@ -11,10 +11,7 @@ from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Link, Robot, reached, weighs
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.description.physics.shared import (
-    inertials,
-    moves,
-)
+from multibot_rewrite.rules.description.physics.shared import inertials, moves
 from multibot_rewrite.rules.facts.simulators import simulator_plugins
 from multibot_rewrite.rules.subject import Subject
 

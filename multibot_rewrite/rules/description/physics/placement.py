@@ -17,10 +17,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.rotation import is_same
 from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, placed_box
 from multibot_rewrite.rules.description.meshes.boxes import box_of
-from multibot_rewrite.rules.description.physics.shared import (
-    inertials,
-    part_of,
-)
+from multibot_rewrite.rules.description.physics.shared import inertials, part_of
 from multibot_rewrite.rules.facts.memo import memoized, parts
 from multibot_rewrite.rules.subject import Subject
 

@@ -11,11 +11,7 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.numbers import Vector, vector
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.physics.shared import (
-    SHAPES,
-    moves,
-    sizes_of,
-)
+from multibot_rewrite.rules.description.physics.shared import SHAPES, moves, sizes_of
 from multibot_rewrite.rules.facts.elements import Elements
 from multibot_rewrite.rules.facts.memo import memoized, parts
 from multibot_rewrite.rules.subject import Subject

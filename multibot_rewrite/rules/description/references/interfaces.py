@@ -13,13 +13,7 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.certain import since_jazzy
-from multibot_rewrite.rules.facts.elements import (
-    COMMAND,
-    OWNERS,
-    STANDARD,
-    STATE,
-    name_of,
-)
+from multibot_rewrite.rules.facts.elements import COMMAND, OWNERS, STANDARD, STATE, name_of
 from multibot_rewrite.rules.subject import Subject
 
 

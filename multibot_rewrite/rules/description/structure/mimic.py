@@ -8,12 +8,7 @@ from collections.abc import Iterator, Mapping
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.wording import SHOWN, shorten
-from multibot_rewrite.description.checks.links_and_joints import (
-    ONE_AXIS,
-    TYPES,
-    Robot,
-    joints_with,
-)
+from multibot_rewrite.description.checks.links_and_joints import ONE_AXIS, TYPES, Robot, joints_with
 from multibot_rewrite.description.checks.numbers import value_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.subject import Subject

@@ -10,11 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.description.checks.links_and_joints import (
-    BOUNDED,
-    Joint,
-    joints_with,
-)
+from multibot_rewrite.description.checks.links_and_joints import BOUNDED, Joint, joints_with
 from multibot_rewrite.description.checks.numbers import number, value_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
