@@ -49,10 +49,10 @@ from multibot_rewrite.companions.yaml_text import (
     YamlText,
     is_text,
     items,
-    line_of,
     pairs,
     quoted,
     refuse_anchors,
+    refused,
     replaced,
 )
 from multibot_rewrite.description.rewriters.forms import NamePart
@@ -154,17 +154,13 @@ def _others(node: yaml.Node) -> Iterator[Site]:
 
 
 def _refuse(document: YamlText) -> None:
-    root, file = document.root, document.file
+    root = document.root
     if root is None:
-        raise InputError(f"{file}: the bridge file is empty; write a list of topics")
+        raise InputError(f"{document.file}: the bridge file is empty; write a list of topics")
     if not isinstance(root, yaml.SequenceNode):
-        raise InputError(
-            f"{file}:{line_of(root)}: not a list of topics; start each entry with a dash"
-        )
+        raise refused(document, root, "not a list of topics; start each entry with a dash")
     if root.value and not is_block(root):
-        raise InputError(
-            f"{file}:{line_of(root)}: the list is in brackets; start each entry with a dash"
-        )
+        raise refused(document, root, "the list is in brackets; start each entry with a dash")
     refuse_anchors(document)
 
 

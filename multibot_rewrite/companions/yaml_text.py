@@ -71,10 +71,13 @@ def anchors(document: YamlText) -> Iterator[tuple[int, str]]:
 def refuse_anchors(document: YamlText) -> None:
     """Raise InputError at the first anchor or alias."""
     for line, anchor in anchors(document):
-        place = f"{document.file}:{line}"
-        raise InputError(
-            f"{place}: anchors and aliases are not allowed: {anchor}; write the value out"
-        )
+        what = f"anchors and aliases are not allowed: {anchor}; write the value out"
+        raise InputError(f"{document.file}:{line}: {what}")
+
+
+def refused(document: YamlText, node: yaml.Node, what: str, cause: str = "") -> InputError:
+    """Return the error at a node of a document."""
+    return InputError(f"{document.file}:{line_of(node)}: {what}", cause)
 
 
 def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:

@@ -8,7 +8,6 @@ entry and stays; a value put into an entry is renamed like the ports of the subt
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import has_release
@@ -20,12 +19,11 @@ from multibot_rewrite.companions.behavior_tree.ports import (
     ports_of,
 )
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.engine import name_splices, text_of
+from multibot_rewrite.companions.engine import with_slots
 from multibot_rewrite.companions.kinds import TREE
 from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.sites import Site
-from multibot_rewrite.companions.template import check_no_slots, make_template
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.description.steps.document import Document, read_document
 
@@ -36,15 +34,8 @@ def rewrite_behavior_tree(data: bytes, file: str, context: Context) -> Companion
     Raises InputError for a file that is not a behavior tree.
     """
     document = read_tree(data, file)
-    check_no_slots(data.decode(), file)
-    named = named_ports(document, context)
     # Written out even if a rule would do: rules do not reach the navigator's helper nodes.
-    splices = [
-        *name_splices(named, partial(text_of, context, {})),
-        *_default_splices(document, context),
-    ]
-    template = make_template(named.text, splices)
-    return Companion(template, named)
+    return with_slots(named_ports(document, context), {}, _default_splices(document, context))
 
 
 def _default_splices(document: Document, context: Context) -> Iterator[Splice]:

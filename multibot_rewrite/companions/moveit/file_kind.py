@@ -8,10 +8,9 @@ from collections.abc import Iterator
 
 import yaml
 
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.moveit.name_sites import MoveitKind, entries, kinds
 from multibot_rewrite.companions.params.sections import PARAMETERS
-from multibot_rewrite.companions.yaml_text import YamlText, line_of
+from multibot_rewrite.companions.yaml_text import YamlText, refused
 
 EMPTY = "empty"
 OF_SERVO, PLANNING, SIMPLE = "servo", "planning", "moveit_simple_controller_manager"
@@ -44,18 +43,16 @@ def find_kind(document: YamlText) -> MoveitKind | None:
     if root is None or root.tag == "tag:yaml.org,2002:null":
         return None
     if not isinstance(root, yaml.MappingNode):
-        place = f"{document.file}:{line_of(root)}"
-        raise InputError(f"{place}: not a MoveIt file: it is not a map of keys and values")
+        what = "not a MoveIt file: it is not a map of keys and values"
+        raise refused(document, root, what)
     _refuse_params(document, root, _DEPTH)
     paths = set(_paths(root))
     known = (kind for kind in kinds() if not paths.isdisjoint(kind.marks))
     if kind := next(known, None) or _by_values(root) or _by_name(document.file):
         return kind
     words = ", ".join(str(key.value) for key, _ in list(entries(root))[:4])
-    raise InputError(
-        f"{document.file}:{line_of(root)}: not a known kind of MoveIt file: it starts with"
-        f" {words or 'nothing'}; leave it out, or list a parameter file under params"
-    )
+    what = f"not a known kind of MoveIt file: it starts with {words or 'nothing'}; leave it out,"
+    raise refused(document, root, f"{what} or list a parameter file under params")
 
 
 def pipeline_of(path: str) -> str:
@@ -79,10 +76,8 @@ def parameter_above(kind: MoveitKind, document: YamlText) -> str:
 def _refuse_params(document: YamlText, node: yaml.Node, depth: int) -> None:
     for key, value in entries(node) if depth else ():
         if key.value == PARAMETERS:
-            place = f"{document.file}:{line_of(key)}"
-            raise InputError(
-                f"{place}: {PARAMETERS} makes it a parameter file; list it under params"
-            )
+            what = f"{PARAMETERS} makes it a parameter file; list it under params"
+            raise refused(document, key, what)
         _refuse_params(document, value, depth - 1)
 
 

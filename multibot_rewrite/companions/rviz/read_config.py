@@ -15,7 +15,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.sites import Site, site_at
 from multibot_rewrite.companions.yaml_blocks import Block, blocks, is_block
-from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs, refuse_anchors
+from multibot_rewrite.companions.yaml_text import YamlText, pairs, refuse_anchors, refused
 
 MANAGER = "Visualization Manager"
 GROUP = "rviz_common/Group"
@@ -81,11 +81,8 @@ def _refuse(document: YamlText) -> None:
     for node in _maps(document.root):
         cls = text_of(node, "Class")
         if cls.startswith(ROS1):
-            place = f"{document.file}:{line_of(node)}"
-            raise InputError(
-                f"{place}: this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2",
-                FOR_ROS_1,
-            )
+            what = f"this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2"
+            raise refused(document, node, what, FOR_ROS_1)
     refuse_anchors(document)
 
 
@@ -100,10 +97,8 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
     if not isinstance(node, yaml.SequenceNode) or not node.value:
         return
     if not is_block(node):
-        place = f"{document.file}:{line_of(node)}"
-        raise InputError(
-            f"{place}: {what} are in brackets, which cannot be copied; save the file with rviz2"
-        )
+        hint = "which cannot be copied; save the file with rviz2"
+        raise refused(document, node, f"{what} are in brackets, {hint}")
     data = rviz_data()
     for block, item in zip(blocks(document, node), node.value, strict=True):
         cls = text_of(item, "Class")

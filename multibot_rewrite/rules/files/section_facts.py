@@ -18,8 +18,8 @@ from multibot_rewrite.companions.moveit.file_kind import find_kind, parameter_ab
 from multibot_rewrite.companions.moveit.rewrite import node_of
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.rcl_parameters import value_of
-from multibot_rewrite.companions.params.sections import ANY, RawSection, controller_types
-from multibot_rewrite.companions.yaml_text import YamlText, names_below, pairs
+from multibot_rewrite.companions.params.sections import ANY, RawSection, controller_types, settings
+from multibot_rewrite.companions.yaml_text import YamlText
 from multibot_rewrite.description.sources.packages import is_for_ros_1
 from multibot_rewrite.knowledge.declared import EVERY_NODE, Declared, declared_by, stands_for
 from multibot_rewrite.knowledge.parameters import built_in_nodes
@@ -69,7 +69,7 @@ def _sections(file: NamedFile) -> Iterator[Section]:
         name = it.path.rpartition("/")[2]
         if file.document is None:
             return
-        given = tuple(_given(file.document, it.body, ""))
+        given = _given(file.document, it.body)
         if name in ANY or PLACEHOLDER.search(it.path):
             yield _section(it.path, None, given, declared_by(EVERY_NODE), _by_name(given))
             continue
@@ -91,7 +91,7 @@ def _of_moveit(file: NamedFile) -> Iterator[Section]:
     node = built_in_nodes(file.context.distro).nodes[node_of(kind)]
     above = parameter_above(kind, file.document)
     root = file.document.root
-    read = tuple(_given(file.document, root, above)) if root is not None else ()
+    read = _given(file.document, root, above) if root is not None else ()
     given = tuple(it._replace(value=_tagged(it.node, it.value)) for it in read)
     facts = facts_of_node(node, "", file.file, file.roots)
     yield _section(node.name, node, given, facts, _by_name(given))
@@ -180,13 +180,9 @@ def _is_surely(node: NodeParameters, name: str, type_: str, given: Sequence[Sett
     return "/" not in type_ and (name == node.name or by_words)
 
 
-def _given(document: YamlText, body: yaml.Node, above: str) -> Iterator[Setting]:
-    for key, value in pairs(body):
-        name = f"{above}{key.value}"
-        if below := names_below(value):
-            yield from _given(document, below, f"{name}.")
-        else:
-            yield Setting(name, key, value, _value(document, value))
+def _given(document: YamlText, body: yaml.Node, above: str = "") -> tuple[Setting, ...]:
+    every = settings(body, above)
+    return tuple(Setting(name, key, node, _value(document, node)) for name, key, node in every)
 
 
 def _tagged(node: yaml.Node, value: Value | None) -> Value | None:
