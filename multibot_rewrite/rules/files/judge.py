@@ -13,10 +13,10 @@ from multibot_rewrite.companions.kinds import PARAMS
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.declaration import rules_in
+from multibot_rewrite.rules.description import names as description_names
 from multibot_rewrite.rules.description import rewriting
-from multibot_rewrite.rules.description.files import reading, shape, values
+from multibot_rewrite.rules.description.files import reading, values
 from multibot_rewrite.rules.description.multirobot import named_robots
-from multibot_rewrite.rules.description.names import ros_names as description_names
 from multibot_rewrite.rules.files import (
     declared,
     demands,
@@ -48,15 +48,15 @@ SHARED: tuple[Rule, ...] = (
     description_names.invalid_ros_name._replace(check=ros_names.invalid_names),
     description_names.leading_slash._replace(check=ros_names.slashes),
     rewriting.unclaimed_mention._replace(check=names.unknown_uses),
-    shape.misspelt._replace(
+    values.misspelt._replace(
         check=_each(
             declared.unknown_parameters, rcl_rules.misspelt_marks, plugin_names.renamed_nodes
         )
     ),
-    shape.not_read._replace(
+    values.not_read._replace(
         check=_each(declared.not_read, declared.below_unknown_names, declared.in_the_manager)
     ),
-    shape.missing._replace(check=_each(plugin_names.without_plugin, missing.missing_parameters)),
+    values.missing._replace(check=_each(plugin_names.without_plugin, missing.missing_parameters)),
     values.unreadable_value._replace(
         check=_each(declared.wrong_types, rcl_rules.rejected_values, rcl_rules.outside_of_marks),
         level=WARNING,

@@ -15,7 +15,7 @@ from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.switches import switched_off
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.description.multirobot.shared import inserted, is_plain, missed, tag_of
+from multibot_rewrite.rules.description.multirobot.topics import inserted, is_plain, missed, tag_of
 from multibot_rewrite.rules.facts.source_values import claim_is_fixed
 from multibot_rewrite.rules.subject import Subject
 

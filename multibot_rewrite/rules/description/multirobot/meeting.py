@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.rule import URDF, Rule, declare
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.declaration import TWO
-from multibot_rewrite.rules.description.multirobot.shared import APART, AS_WRITTEN
+from multibot_rewrite.rules.description.multirobot.topics import APART, AS_WRITTEN
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 from multibot_rewrite.rules.system import commands, names, nodes, sharing, transforms

@@ -16,7 +16,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.rules.declaration import OF_TWO, TWO
-from multibot_rewrite.rules.description.multirobot.shared import AS_WRITTEN, ONE_TF
+from multibot_rewrite.rules.description.multirobot.topics import AS_WRITTEN, ONE_TF
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
