@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.rules.files.bounds import beyond, polygon_of
-from multibot_rewrite.rules.files.costmaps import _inscribed
+from multibot_rewrite.rules.files.wheels import _inscribed
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,8 @@ from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.rules.files.bridges import GzTopic, GzTopics, no_gz_topic
 from multibot_rewrite.rules.files.controllers import undeclared_controller
-from multibot_rewrite.rules.files.given import Beside
 from multibot_rewrite.rules.files.judge import codes, judged, judged_once
+from multibot_rewrite.rules.files.section_facts import Beside
 from multibot_rewrite.rules.files.wheels import with_description
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.records import NOWHERE, Place

@@ -31,7 +31,7 @@ from multibot_rewrite.companions.kinds import BRIDGE
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.yaml_text import items
 from multibot_rewrite.rules.declaration import robots_rule
-from multibot_rewrite.rules.files.given import did_you_mean_at
+from multibot_rewrite.rules.files.section_facts import did_you_mean_at
 from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.spelling.bridge_rows import bridge_data
 from multibot_rewrite.system.records import NOWHERE, Place

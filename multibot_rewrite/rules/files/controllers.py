@@ -24,7 +24,7 @@ from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.claims import TYPE
 from multibot_rewrite.producers.evidence.moveit import controllers_of, joints_of, managers, names_of
-from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in, shown
+from multibot_rewrite.rules.files.section_facts import beside, did_you_mean_at, is_in, shown
 from multibot_rewrite.rules.places import remark, remark_at
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import ACTION, SERVES, Place

@@ -13,13 +13,13 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.system.causes import NONE, Spelled, alike
 from multibot_rewrite.rules.system.instead import (
     COMMON,
     in_other_namespace,
     listed_in_vain,
     sent_instead,
 )
-from multibot_rewrite.rules.system.slips import NONE, Spelled, alike
 from multibot_rewrite.system.index import (
     TF,
     Ends,
