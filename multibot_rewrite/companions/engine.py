@@ -9,18 +9,18 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
-from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.context import (
+    NAMESPACE_SLOT,
+    TAG_SLOT,
+    Context,
+    check_no_slots,
+    make_template,
+)
 from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_plain
 from multibot_rewrite.companions.names.node_topics import Facts, TopicText, spell_topic
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.sites import AS_IS, UNCLEAR, XML, Site, Slot
-from multibot_rewrite.companions.template import (
-    NAMESPACE_SLOT,
-    TAG_SLOT,
-    check_no_slots,
-    make_template,
-)
 from multibot_rewrite.companions.yaml_text import Splice, quoted
 
 # Names that the remap rules of their node move, too.

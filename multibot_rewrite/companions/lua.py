@@ -15,8 +15,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import with_slots
-from multibot_rewrite.companions.kinds import LUA
-from multibot_rewrite.companions.named_file import Companion, NamedFile
+from multibot_rewrite.companions.named_file import LUA, Companion, NamedFile
 from multibot_rewrite.companions.sites import AS_IS, Site, Slot
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})

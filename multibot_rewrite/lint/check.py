@@ -14,7 +14,7 @@ from multibot_rewrite.base.findings.finding import Finding, by_place
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import InputError, VocabularyError
-from multibot_rewrite.companions.kinds import is_named_beside, kind_of
+from multibot_rewrite.companions.named_file import is_named_beside, kind_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long

@@ -19,7 +19,7 @@ from multibot_rewrite.description.checks.rotation import NO_ROTATION, SAME, matr
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.rules.convert.capsules import capsules, ends_of
+from multibot_rewrite.rules.convert import capsules, ends_of
 from multibot_rewrite.rules.settings import Settings
 
 # A fix may make another one possible; more rounds than this never end.

@@ -21,7 +21,7 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.formats import read_named
-from multibot_rewrite.companions.kinds import BRIDGE, PARAMS, kind_of
+from multibot_rewrite.companions.named_file import BRIDGE, PARAMS, kind_of
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.read import read_file

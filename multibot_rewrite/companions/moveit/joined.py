@@ -15,16 +15,16 @@ import yaml
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import PREFIX
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.kinds import MOVEIT
 from multibot_rewrite.companions.moveit.file_kind import (
     ABOVE,
     NAMES,
     OF_SERVO,
     PLANNING,
     SIMPLE,
+    entries,
     file_kind,
 )
-from multibot_rewrite.companions.moveit.name_sites import entries
+from multibot_rewrite.companions.named_file import MOVEIT
 from multibot_rewrite.companions.names.rename_map import with_srdf
 from multibot_rewrite.companions.params.joined import added, prefixed
 from multibot_rewrite.companions.yaml_text import YamlText, joined_text, read_yaml

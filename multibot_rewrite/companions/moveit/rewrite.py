@@ -14,14 +14,17 @@ import yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import with_slots
-from multibot_rewrite.companions.kinds import MOVEIT
-from multibot_rewrite.companions.moveit.file_kind import OF_SERVO, find_kind
-from multibot_rewrite.companions.moveit.name_sites import MoveitKind, entries, find_names
-from multibot_rewrite.companions.named_file import Companion, NamedFile
+from multibot_rewrite.companions.moveit.file_kind import (
+    OF_SERVO,
+    MoveitKind,
+    entries,
+    find_kind,
+    find_names,
+)
+from multibot_rewrite.companions.named_file import MOVEIT, Companion, NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.names.node_topics import facts_by_name
-from multibot_rewrite.companions.yaml_blocks import newline
-from multibot_rewrite.companions.yaml_text import Splice, YamlText
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, newline
 from multibot_rewrite.knowledge.records import NodeFacts
 
 

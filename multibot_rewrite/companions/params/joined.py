@@ -17,9 +17,9 @@ import yaml
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, Naming
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.alone import rewrite_alone
 from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.formats import rewrite_alone
+from multibot_rewrite.companions.named_file import PARAMS
 from multibot_rewrite.companions.names.rename_map import NO_OWN, companion_names
 from multibot_rewrite.companions.params.sections import (
     MANAGER,

@@ -25,8 +25,7 @@ from multibot_rewrite.companions.rviz.read_config import (
 )
 from multibot_rewrite.companions.rviz.rewrite import frame_splices
 from multibot_rewrite.companions.rviz.values import RvizRobot, item_splices
-from multibot_rewrite.companions.yaml_blocks import cut_out, inserted, moved
-from multibot_rewrite.companions.yaml_text import read_yaml, spliced
+from multibot_rewrite.companions.yaml_text import cut_out, inserted, moved, read_yaml, spliced
 from multibot_rewrite.description.joining.part import PREFIXED, prefixing
 from multibot_rewrite.description.steps.collect import Inventory
 

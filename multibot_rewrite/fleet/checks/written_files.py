@@ -9,9 +9,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS
 from multibot_rewrite.companions.moveit.file_kind import SIMPLE
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import BRIDGE, MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.fleet_plan import FleetPlan

@@ -16,7 +16,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Claim, Edit
 from multibot_rewrite.base.naming import FRAME_KINDS, NOT_PLAIN, is_keyword
 from multibot_rewrite.base.rosnames import check_topic_name, propose_token, split_remap
-from multibot_rewrite.companions.kinds import EVERY
+from multibot_rewrite.companions.named_file import EVERY
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import value_slot
 from multibot_rewrite.rules.facts.memo import memoized

@@ -27,12 +27,10 @@ from multibot_rewrite.companions.bridge_entry import (
     row_of,
     text_in,
 )
-from multibot_rewrite.companions.kinds import BRIDGE
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import BRIDGE, NamedFile
 from multibot_rewrite.companions.yaml_text import items
-from multibot_rewrite.rules.declaration import robots_rule
+from multibot_rewrite.rules.declaration import remark_at, robots_rule
 from multibot_rewrite.rules.files.section_facts import did_you_mean_at
-from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.spelling.bridge_rows import bridge_data
 from multibot_rewrite.system.records import NOWHERE, Place
 

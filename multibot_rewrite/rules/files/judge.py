@@ -9,8 +9,7 @@ from functools import cache
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.companions.kinds import PARAMS
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import PARAMS, NamedFile
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.description import names as description_names

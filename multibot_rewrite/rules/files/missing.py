@@ -11,10 +11,10 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.knowledge.declared import Declared
 from multibot_rewrite.producers.evidence.claims import TYPE
+from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.demands import demands, value_of
 from multibot_rewrite.rules.files.parameter_files import of_release
 from multibot_rewrite.rules.files.section_facts import Section, is_set_beside, sections
-from multibot_rewrite.rules.places import remark_at
 
 
 def missing_parameters(file: NamedFile) -> Iterator[Finding]:

@@ -27,9 +27,9 @@ from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.declared import declared_by
 from multibot_rewrite.knowledge.plugin_classes import NODE, Base, canonical, packages, plugin_bases
 from multibot_rewrite.producers.evidence.claims import TYPE
+from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.demands import Demand, demands
 from multibot_rewrite.rules.files.section_facts import Setting, is_set_beside, sections
-from multibot_rewrite.rules.places import remark_at
 
 _CONTROLLER = "controller_interface::ControllerInterface"
 _DWB, _CRITIC = "dwb_critics", "Critic"

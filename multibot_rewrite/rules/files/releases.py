@@ -10,15 +10,14 @@ import yaml
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.releases import has_release, releases_with
-from multibot_rewrite.companions.kinds import PARAMS
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import PARAMS, NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.sections import ParamSection, flattened, scalars
 from multibot_rewrite.companions.yaml_text import items, pairs
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters, Param
+from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.declared import of_other_releases
-from multibot_rewrite.rules.places import remark_at
 
 _FORWARD = "forward_command_controller/ForwardCommandController"
 _BROADCASTER = "joint_state_broadcaster"

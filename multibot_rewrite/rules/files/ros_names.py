@@ -17,16 +17,14 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.markup import IN_SUBSTITUTION
 from multibot_rewrite.base.rosnames import check_node_name, check_topic_name
 from multibot_rewrite.companions.engine import GRAPH
-from multibot_rewrite.companions.kinds import EVERY, MOVEIT, PARAMS, RVIZ
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import EVERY, MOVEIT, PARAMS, RVIZ, NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_filled, is_plain
 from multibot_rewrite.companions.names.placeholders import is_robot
 from multibot_rewrite.companions.sites import GZ_TOPIC, SECTION, Site
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import BETWEEN
 from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
-from multibot_rewrite.rules.declaration import OF_TWO
-from multibot_rewrite.rules.places import remark
+from multibot_rewrite.rules.declaration import OF_TWO, remark
 
 _IN_VALUE = re.compile(rf"<[^<>]*>|\$\({IN_SUBSTITUTION}\)|\$?\{{[^{{}}]*\}}|%\w+")
 # Stand for whole names of nodes.

@@ -7,12 +7,10 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.companions.kinds import RVIZ
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import RVIZ, NamedFile
 from multibot_rewrite.companions.rviz.read_config import rviz_data, text_of, value
 from multibot_rewrite.companions.yaml_text import pairs
-from multibot_rewrite.rules.declaration import robots_rule
-from multibot_rewrite.rules.places import remark_at
+from multibot_rewrite.rules.declaration import remark_at, robots_rule
 
 
 @rule("MB872", "rviz-ros1-property", WARNING, formats=(RVIZ,))

@@ -11,8 +11,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS, RVIZ
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, RVIZ, NamedFile
 from multibot_rewrite.companions.names.by_kind import expressible, frames_differ, is_plain
 from multibot_rewrite.companions.names.placeholders import filled, is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
@@ -23,9 +22,8 @@ from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import is_absolute
 from multibot_rewrite.producers.addresses import held_by
-from multibot_rewrite.rules.declaration import TWO, of_robots, robots_rule
+from multibot_rewrite.rules.declaration import TWO, of_robots, remark, remark_at, robots_rule
 from multibot_rewrite.rules.files.section_facts import given_in
-from multibot_rewrite.rules.places import remark, remark_at
 from multibot_rewrite.system.records import COMPUTER
 
 # Patterns that match everything or nothing hold no robot's name.

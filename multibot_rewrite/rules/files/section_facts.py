@@ -15,10 +15,9 @@ from multibot_rewrite.base.bounded import ANGLES
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS, is_beside, kind_of
 from multibot_rewrite.companions.moveit.file_kind import find_kind, parameter_above
 from multibot_rewrite.companions.moveit.rewrite import node_of
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile, is_beside, kind_of
 from multibot_rewrite.companions.params.rcl_parameters import value_of
 from multibot_rewrite.companions.params.sections import ANY, RawSection, controller_types, settings
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml

@@ -15,11 +15,10 @@ from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.companions.kinds import PARAMS
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import PARAMS, NamedFile
+from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.plugins import FILTER
 from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
-from multibot_rewrite.rules.places import remark_at
 
 _NODE = "joy_teleop"
 # Type of a command -> the middle of its interface's type, what names it, and what starts it.

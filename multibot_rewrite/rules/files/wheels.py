@@ -19,13 +19,13 @@ import yaml
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.knowledge.plugin_classes import canonical
+from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.facts.drives import (
     Wheel,
     are_opposite,
@@ -37,7 +37,6 @@ from multibot_rewrite.rules.facts.drives import (
 )
 from multibot_rewrite.rules.files.bounds import polygon_of
 from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
-from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Robots, Subject, subject_of
 

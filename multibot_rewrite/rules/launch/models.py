@@ -28,9 +28,8 @@ from multibot_rewrite.knowledge.worlds import DEFAULTS
 from multibot_rewrite.producers.launch.bridges import bridged_by
 from multibot_rewrite.producers.launch.launched import InSimulator, Launched, World, worlds
 from multibot_rewrite.producers.launch.running import bound_of
-from multibot_rewrite.rules.declaration import launch_rule
+from multibot_rewrite.rules.declaration import at, launch_rule
 from multibot_rewrite.rules.facts.simulators import needed_systems
-from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE, BridgedTopic
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC

@@ -29,8 +29,7 @@ from multibot_rewrite.producers.launch.bridges import refused_rows
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_of
-from multibot_rewrite.rules.declaration import LAUNCH, launch_rule
-from multibot_rewrite.rules.places import at
+from multibot_rewrite.rules.declaration import LAUNCH, at, launch_rule
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVICE, SUBSCRIBES

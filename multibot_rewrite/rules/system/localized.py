@@ -13,8 +13,7 @@ from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import only, shorten, unique
-from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.states import ACTIVE
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.rules.system.transforms import collide

@@ -11,8 +11,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import and_then, shorten
-from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import NONE, Spelled, alike
 from multibot_rewrite.rules.system.instead import (
     COMMON,

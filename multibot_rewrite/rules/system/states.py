@@ -10,8 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import SEVERAL, and_then, shorten
-from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.clocks import mixed_clocks, planned_clocks
 from multibot_rewrite.system.index import Index, nodes_of
 from multibot_rewrite.system.records import (

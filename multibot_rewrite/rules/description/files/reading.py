@@ -14,7 +14,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.markup import ATTRIBUTES
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.companions.kinds import EVERY
+from multibot_rewrite.companions.named_file import EVERY
 from multibot_rewrite.description.checks.audit import leftover_xacro, loosely_written, worlds
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import already_rewritten

@@ -12,7 +12,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
@@ -31,8 +31,8 @@ from multibot_rewrite.rules.description.structure.joints import (
     limits_in_degrees,
     origins_in_degrees,
 )
-from multibot_rewrite.rules.facts.certain import lacking
 from multibot_rewrite.rules.facts.faults import faults
+from multibot_rewrite.rules.facts.memo import lacking
 from multibot_rewrite.rules.facts.sensors import CAMERAS, LIDARS, number_at
 from multibot_rewrite.rules.subject import Subject
 

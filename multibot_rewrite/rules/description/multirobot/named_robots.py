@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
 from multibot_rewrite.base.naming import Naming, make_naming, overlap
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT

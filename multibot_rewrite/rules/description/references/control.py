@@ -16,9 +16,8 @@ from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.description.structure.control_values import mimic_of_none
-from multibot_rewrite.rules.facts.certain import since_jazzy
 from multibot_rewrite.rules.facts.elements import COMMAND, OWNERS, STANDARD, STATE, name_of
-from multibot_rewrite.rules.facts.memo import driven_joints
+from multibot_rewrite.rules.facts.memo import driven_joints, since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
 # Types that a motor cannot move.

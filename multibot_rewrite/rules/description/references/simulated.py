@@ -18,8 +18,8 @@ from multibot_rewrite.description.sources.packages import in_sources
 from multibot_rewrite.description.sources.read import XACRO
 from multibot_rewrite.description.sources.trace import alike
 from multibot_rewrite.description.steps.document import Document
-from multibot_rewrite.rules.facts.certain import level_of_absence
 from multibot_rewrite.rules.facts.elements import COMMAND, STANDARD, name_of
+from multibot_rewrite.rules.facts.memo import level_of_absence
 from multibot_rewrite.rules.facts.simulators import (
     GAZEBO,
     SIMULATORS,

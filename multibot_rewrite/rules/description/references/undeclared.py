@@ -32,8 +32,7 @@ from multibot_rewrite.description.rewriters.own_defaults import frame_sites
 from multibot_rewrite.description.rewriters.spelling import must_be_declared, names_in
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.rules.facts.certain import lacking, level_of_absence, since_jazzy
-from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.facts.memo import lacking, level_of_absence, memoized, since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
 # Its joints are those of the simulated PROTO, not of the URDF.

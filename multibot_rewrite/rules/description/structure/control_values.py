@@ -18,7 +18,7 @@ from multibot_rewrite.description.checks.links_and_joints import BOUNDED, Joint
 from multibot_rewrite.description.checks.numbers import number, value_of
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.facts.certain import since_jazzy
+from multibot_rewrite.rules.facts.memo import since_jazzy
 from multibot_rewrite.rules.subject import Subject
 
 _COMMAND, _STATE = "command_interface", "state_interface"
