@@ -18,7 +18,7 @@ from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, ReadPart, prefixing
-from multibot_rewrite.description.joining.proof import split_text
+from multibot_rewrite.description.joining.second_reading import split_text
 from multibot_rewrite.description.joining.semantic import (
     JoinedSemantics,
     PartSemantics,

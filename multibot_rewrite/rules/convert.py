@@ -18,12 +18,15 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import Vector, number
-from multibot_rewrite.description.checks.poses import Pose, pose_of, quaternion, rolled
-from multibot_rewrite.description.checks.rotation import (
+from multibot_rewrite.description.checks.poses import (
+    Pose,
     is_same,
     length_of,
     matrix_of_quaternion,
+    pose_of,
+    quaternion,
     quaternion_of_rpy,
+    rolled,
     rpy_of,
     turned,
 )

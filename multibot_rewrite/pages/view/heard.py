@@ -10,7 +10,7 @@ from math import acos, degrees, dist, isfinite
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.checks.rotation import inverse, matrix_of_quaternion, product
+from multibot_rewrite.description.checks.poses import inverse, matrix_of_quaternion, product
 from multibot_rewrite.pages.view.models import Joint
 from multibot_rewrite.system.records import Edge
 from multibot_rewrite.system.tf_copies import tree_topic

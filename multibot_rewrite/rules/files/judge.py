@@ -19,7 +19,6 @@ from multibot_rewrite.rules.description.multirobot import named_robots
 from multibot_rewrite.rules.files import (
     declared,
     demands,
-    missing,
     names,
     plugin_names,
     rcl_rules,
@@ -55,7 +54,9 @@ SHARED: tuple[Rule, ...] = (
     values.not_read._replace(
         check=_each(declared.not_read, declared.below_unknown_names, declared.in_the_manager)
     ),
-    values.missing._replace(check=_each(plugin_names.without_plugin, missing.missing_parameters)),
+    values.missing._replace(
+        check=_each(plugin_names.without_plugin, plugin_names.missing_parameters)
+    ),
     values.unreadable_value._replace(
         check=_each(declared.wrong_types, rcl_rules.rejected_values, rcl_rules.outside_of_marks),
         level=WARNING,

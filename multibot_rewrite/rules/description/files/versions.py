@@ -10,9 +10,8 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.description.checks.poses import quaternion
+from multibot_rewrite.description.checks.poses import length_of, quaternion
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.checks.rotation import length_of
 from multibot_rewrite.rules.convert import (
     Spanned,
     as_rpy,

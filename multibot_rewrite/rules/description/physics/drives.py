@@ -22,10 +22,10 @@ from multibot_rewrite.description.checks.poses import (
     point_in,
     pose_in,
     scaled,
+    turned,
 )
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.checks.rotation import turned
-from multibot_rewrite.description.checks.unknown import is_unknown
+from multibot_rewrite.description.checks.verdict import is_unknown
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.rules.facts.drives import (
     Drive,

@@ -14,9 +14,8 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.description.checks.links_and_joints import Link
 from multibot_rewrite.description.checks.numbers import Vector, vector
-from multibot_rewrite.description.checks.poses import Pose, length, minus, pose_in
+from multibot_rewrite.description.checks.poses import Pose, is_same, length, minus, pose_in
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.checks.rotation import is_same
 from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, placed_box
 from multibot_rewrite.rules.description.meshes.lookup import box_of
 from multibot_rewrite.rules.description.physics.inertia import (
