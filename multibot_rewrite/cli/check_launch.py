@@ -27,8 +27,7 @@ from multibot_rewrite.producers.launch.include_arguments import arguments_declar
 from multibot_rewrite.producers.launch.kept_paths import read_text
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words
-from multibot_rewrite.rules.check import side_by_side
-from multibot_rewrite.rules.domains import check_view
+from multibot_rewrite.rules.check import check_view, side_by_side
 from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch, placed
 from multibot_rewrite.rules.launch.started import no_manager
 

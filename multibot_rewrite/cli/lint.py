@@ -33,7 +33,7 @@ from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.report import NO_RULES, TEXT, About, by_themselves, report_first
 from multibot_rewrite.cli.usage import check_xacro, plain_words, policy, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files, standard_input
-from multibot_rewrite.companions.kinds import SUFFIXES as BESIDE, is_linted
+from multibot_rewrite.companions.named_file import SUFFIXES as BESIDE, is_linted
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.release_said import release_of_all
 from multibot_rewrite.lint.config.configured import (

@@ -71,7 +71,7 @@ def _is_beside(source: Source) -> bool:
     """As ``is_beside``, which need not be asked of what is called as descriptions are."""
     if isinstance(source, str) and source.endswith((".urdf", ".sdf", ".xacro")):
         return False
-    from multibot_rewrite.companions.kinds import is_beside
+    from multibot_rewrite.companions.named_file import is_beside
 
     return is_beside(source)
 

@@ -296,7 +296,7 @@ def test_the_parsers_are_called_in_one_place() -> None:
     own = {"fleet/file/fleet_data.py", "live/rehearsal.py", "producers/ros/request.py"}
     own |= {"producers/launch/records.py", "producers/ros/ask.py", "producers/ros/child.py"}
     own |= {"system/parameters.py"}
-    own |= {"description/sources/child/asking.py", "description/sources/child/serve.py"}
+    own |= {"description/sources/child/frames.py", "description/sources/child/serve.py"}
     assert found == {"base/bounded.py", "live/stub_nodes.py", *own}
 
 

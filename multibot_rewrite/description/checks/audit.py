@@ -16,8 +16,7 @@ from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.loose_xml import DASHES, DEFAULT, LATE, slips
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.releases import releases_with
-from multibot_rewrite.description.checks.hazards import hazards
-from multibot_rewrite.description.checks.model_namespaces import ignored_namespaces, used_namespaces
+from multibot_rewrite.description.checks.hazards import hazards, ignored_namespaces, used_namespaces
 from multibot_rewrite.description.checks.problem import Problem, to_findings
 from multibot_rewrite.description.checks.references import (
     ambiguous,
@@ -26,7 +25,7 @@ from multibot_rewrite.description.checks.references import (
     loose_ends,
     undeclared_names,
 )
-from multibot_rewrite.description.checks.unknown import ANOTHER_RELEASE, not_here, unknown_parts
+from multibot_rewrite.description.checks.verdict import ANOTHER_RELEASE, not_here, unknown_parts
 from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path

@@ -13,7 +13,7 @@ from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.model import Change
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import spell
-from multibot_rewrite.description.checks.rotation import inverse, matrix_of_quaternion, product
+from multibot_rewrite.description.checks.poses import inverse, matrix_of_quaternion, product
 from multibot_rewrite.description.library import Prepared
 from multibot_rewrite.description.steps.apply import list_changes
 from multibot_rewrite.description.steps.document import Document

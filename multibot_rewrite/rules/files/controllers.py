@@ -17,20 +17,14 @@ from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.moveit.file_kind import NAMES
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.hardware import TYPE
-from multibot_rewrite.producers.evidence.semantics import (
-    JOINTS,
-    controllers_of,
-    listed,
-    managers,
-)
-from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in, shown
-from multibot_rewrite.rules.places import remark, remark_at
+from multibot_rewrite.producers.evidence.semantics import JOINTS, controllers_of, listed, managers
+from multibot_rewrite.rules.declaration import remark, remark_at
+from multibot_rewrite.rules.files.section_facts import beside, did_you_mean_at, is_in, shown
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 

@@ -14,10 +14,11 @@ from multibot_rewrite.base.model import SiteRow, VocabularyError
 from multibot_rewrite.base.naming import SEPARATORS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES as KNOWN, is_release_words, share_release
-from multibot_rewrite.description.rewriters.vocabulary.values import VALUE, is_typed
-from multibot_rewrite.description.rewriters.vocabulary.wired import (
+from multibot_rewrite.description.rewriters.vocabulary.values import (
     ROLES as WIRES,
+    VALUE,
     WiredTopic,
+    is_typed,
     role_and_type,
     wired_topics,
 )
