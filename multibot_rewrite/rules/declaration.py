@@ -129,8 +129,9 @@ def robots_rule(
     code: str, name: str, level: str, *formats: str, options: Mapping[str, object] = OF_TWO
 ) -> Callable[[_FileCheck], Rule]:
     """Make a function a rule about what several robots get of a file, asked as ``of_robots`` says."""
-    about = {"formats": formats, "options": options}
-    return lambda find: declare(code, name, level, of_robots(find), **about)
+    return lambda find: declare(
+        code, name, level, of_robots(find), formats=formats, options=options
+    )
 
 
 NOT_EXPORTED = declare(
