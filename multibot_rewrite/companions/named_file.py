@@ -6,19 +6,20 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.context import FileTemplate
-from multibot_rewrite.companions.sites import Site
-
-if TYPE_CHECKING:
-    from multibot_rewrite.companions.context import Context
-    from multibot_rewrite.companions.params.name_sites import Page
-    from multibot_rewrite.companions.rviz.read_config import RvizItem
-    from multibot_rewrite.companions.yaml_text import YamlText
-    from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.base.bounded import MAX_BYTES, read_start
 from multibot_rewrite.base.file_kinds import BESIDE, BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
+from multibot_rewrite.base.record import NamedTuple
+
+if TYPE_CHECKING:
+    from multibot_rewrite.base.findings.finding import Finding
+    from multibot_rewrite.companions.context import Context, FileTemplate
+    from multibot_rewrite.companions.params.name_sites import Page
+    from multibot_rewrite.companions.rviz.read_config import RvizItem
+    from multibot_rewrite.companions.sites import Site
+    from multibot_rewrite.companions.yaml_text import YamlText
+    from multibot_rewrite.knowledge.parameters import KnownNodes
+
+__all__ = ["BRIDGE", "EVERY", "LUA", "MOVEIT", "PARAMS", "RVIZ", "SUFFIXES", "TREE"]
 
 SUFFIXES = (".yaml", ".yml", ".rviz", ".lua", ".xml")
 EVERY = (PARAMS, RVIZ, MOVEIT, BRIDGE, TREE, LUA)
@@ -61,9 +62,6 @@ def _text_of(path: str) -> bytes | None:
 def kind_of(data: bytes) -> str:
     """The kind of a file by its text; empty for all others."""
     return next((kind for kind, mark in BESIDE if mark.search(data)), "")
-
-
-__all__ = ["BRIDGE", "EVERY", "LUA", "MOVEIT", "PARAMS", "RVIZ", "SUFFIXES", "TREE"]
 
 
 class NamedFile(NamedTuple):

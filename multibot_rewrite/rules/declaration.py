@@ -5,25 +5,22 @@ it says where: at the place of a record, and of what is beside it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import wraps
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule, declare, rule
-
-if TYPE_CHECKING:
-    from multibot_rewrite.companions.named_file import NamedFile
-    from multibot_rewrite.system.index import Index
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Protocol
-
 from multibot_rewrite.system.records import NOWHERE, Place
 
 if TYPE_CHECKING:
     import yaml
+
+    from multibot_rewrite.companions.named_file import NamedFile
+    from multibot_rewrite.system.index import Index
+
 
 _Check = TypeVar("_Check", bound=Callable[..., Any])
 _Compare = Callable[["Index", "Index"], Iterator[Finding]]
@@ -129,8 +126,9 @@ def robots_rule(
     code: str, name: str, level: str, *formats: str, options: Mapping[str, object] = OF_TWO
 ) -> Callable[[_FileCheck], Rule]:
     """Make a function a rule about what several robots get of a file, asked as ``of_robots`` says."""
-    about = {"formats": formats, "options": options}
-    return lambda find: declare(code, name, level, of_robots(find), **about)
+    return lambda find: declare(
+        code, name, level, of_robots(find), formats=formats, options=options
+    )
 
 
 NOT_EXPORTED = declare(

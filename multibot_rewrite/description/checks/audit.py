@@ -25,7 +25,7 @@ from multibot_rewrite.description.checks.references import (
     loose_ends,
     undeclared_names,
 )
-from multibot_rewrite.description.checks.verdict import ANOTHER_RELEASE, not_here, unknown_parts
+from multibot_rewrite.description.checks.unknown import ANOTHER_RELEASE, not_here, unknown_parts
 from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path

@@ -11,22 +11,21 @@ from typing import TYPE_CHECKING
 from lxml.etree import _Element
 
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, POSTFIX, PREFIX, TF_TOPICS, Naming
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.base.rosnames import split_remap
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.rewriters.forms import IN_FRONT
-from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.description.rewriters.model_namespaces import INCLUDE, MODEL, namespace_of
+from multibot_rewrite.description.rewriters.text import text_at, text_of
+from multibot_rewrite.description.rewriters.tree import Tree, library_key
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.description.steps.collect import SRDF, Host, Inventory
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
-from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.base.wording import plural
-from multibot_rewrite.description.rewriters.model_namespaces import INCLUDE, MODEL, namespace_of
-from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.description.rewriters.tree import Tree
+
 
 # Of a plugin that opens what is the world's, and the elements that it belongs in.
 WORLD = "world"

@@ -1,27 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What runs in a description and nobody knows what it opens, and what a rewrite may be called:
-proved, or rewritten and not proved, and why.
-"""
+"""What a rewrite may be called: proved, or rewritten and not proved, and why."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.nearest import SLIP, Guesses
-from multibot_rewrite.base.releases import CLASSIC, lacks_classic
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.meeting import ELSEWHERE, NO_LINK, PARTED, SAME_TEXT
-from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.readback.active import (
-    HARDWARE,
-    INCLUDE,
-    PLUGIN,
-    ROS_1,
-    ActivePart,
-    active_parts,
-)
 from multibot_rewrite.description.readback.meeting import (
     COMMAND,
     DATA,
@@ -33,84 +20,6 @@ from multibot_rewrite.description.readback.meeting import (
     TWO_NODES,
     TWO_SERVERS,
 )
-from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
-from multibot_rewrite.description.steps.collect import SRDF, Inventory
-
-ANOTHER_RELEASE = (
-    "name the release that the description is for with --distro, or distro: in a fleet file"
-)
-SAY_IT = "say it in a vocabulary file: a line for each topic and service, or opens: nothing"
-CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
-
-
-def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Plugins, hardware classes, sensor types and included models of which it is not known what they
-    open, and those of a Gazebo that the release has not, each at its element."""
-    guesses, release, root = Guesses(), tree.vocabulary.release, inventory.document.root
-    # An SRDF starts nothing.
-    parts = [] if inventory.format == SRDF else [*active_parts(root, tree.vocabulary)]
-    # Once: so are the others.
-    old = next((it for it in parts if _is_classic(it) and it.is_known), None)
-    if old and not lacks_classic(release, inventory.document.source):
-        old = None
-    for part in parts:
-        if not part.is_known:
-            message, hint = _said(part, tree.vocabulary, guesses)
-            yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
-        elif part is old:
-            message = f"plugin {part.name!r} is of Gazebo Classic, which {release} has not"
-            yield Problem(part.element, message, None, ANOTHER_RELEASE, (), CODES[PLUGIN])
-        elif _is_of_both(part, tree.vocabulary) and root.find(".//plugin/ros") is not None:
-            message = (
-                f"plugin {part.name!r} is written for ROS 1, others here for ROS 2: "
-                "what it opens there is not known"
-            )
-            hint = "write it for ROS 2, with <ros>, or take it out"
-            yield Problem(part.element, message, None, hint, (), CODES[PLUGIN])
-
-
-def _is_classic(part: ActivePart) -> bool:
-    return part.kind == PLUGIN and part.name.startswith(CLASSIC)
-
-
-def _is_of_both(part: ActivePart, vocabulary: Vocabulary) -> bool:
-    """Is it read by the rules of ROS 1, though ROS 2 has a plugin of this name?"""
-    if part.section is None or part.section.ros != ROS_1:
-        return False
-    return len(vocabulary.find("plugin", library_key(part.name))) > 1
-
-
-def is_unknown(section: VocabularySection) -> bool:
-    """Is the plugin in no section? Then the element's own is used, or the one for any ROS node."""
-    return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
-
-
-def _said(part: ActivePart, vocabulary: Vocabulary, guesses: Guesses) -> tuple[str, str]:
-    if part.kind == INCLUDE:
-        return (
-            f"the included {part.name!r} is not read: its topics and frames stay as they are",
-            "put its folder beside the model's, or name that above it in GZ_SIM_RESOURCE_PATH; "
-            "what is older than SDF 1.7, in a world or a <gazebo>, write it here",
-        )
-    who = f"{part.kind} {part.name!r}"
-    if part.section is not None:
-        return f"{who} is known by its parameters alone: what it opens is not known", SAY_IT
-    kind = "hardware" if part.kind == HARDWARE else "plugin" if part.kind == PLUGIN else "sensor"
-    name = library_key(part.name) if part.kind == PLUGIN else part.name
-    others = vocabulary.releases_elsewhere(kind, name)
-    if others:
-        where = not_here(vocabulary, others)
-        return f"{who} {where}: its own parameters are not renamed", ANOTHER_RELEASE
-    near = guesses.hint(name, vocabulary.names(kind), SLIP)
-    message = f"{who} is not in the vocabulary: its own parameters are not renamed"
-    return message, near or SAY_IT
-
-
-def not_here(vocabulary: Vocabulary, releases: Iterable[str]) -> str:
-    """That something is in other releases only."""
-    return f"is not in {vocabulary.release}, only in {', '.join(releases)}"
-
 
 SHARED = "shared by all robots"
 # Code -> what is counted and what is said of it. A rewrite with one of these findings is not proved.

@@ -10,18 +10,17 @@ as written there only where the bytes read back as it.
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.steps.document import start_offsets
+from multibot_rewrite.description.steps.document import attribute_slots, start_offsets, tag_end
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.sources.conversation import Result, Sources
-from collections import defaultdict
-from functools import cached_property
 
-from multibot_rewrite.description.steps.document import attribute_slots, tag_end
 
 NOWHERE = -1
 # No macro is called from so deep: Python's recursion ends before.

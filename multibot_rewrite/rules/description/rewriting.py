@@ -17,7 +17,7 @@ from multibot_rewrite.description.checks.mentions import (
     usual_names,
 )
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.checks.verdict import unknown_parts
+from multibot_rewrite.description.checks.unknown import unknown_parts
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import slot_values

@@ -10,7 +10,7 @@ import pytest
 import multibot_rewrite
 from multibot_rewrite import rewrite
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.checks.verdict import is_unknown
+from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.reports.suggest import (
     SuggestedSection,
     suggest,

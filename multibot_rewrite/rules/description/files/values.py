@@ -17,7 +17,7 @@ from multibot_rewrite.base.nearest import nearest, slip_of
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.checks.verdict import is_unknown
+from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.packages import (

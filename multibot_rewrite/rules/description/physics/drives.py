@@ -25,7 +25,7 @@ from multibot_rewrite.description.checks.poses import (
     turned,
 )
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.checks.verdict import is_unknown
+from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.rules.facts.drives import (
     Drive,
