@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Callable, Collection, Mapping
 from functools import cache, partial
 from operator import attrgetter
@@ -17,6 +16,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.system.records import (
     End,
     FullName,
+    MaybeFullName,
     Node,
     Place,
     Qos,
@@ -186,7 +186,7 @@ def reader(expected: Any) -> Reader:
     if get_origin(expected) is tuple:
         return partial(read_list, reader(options[0]))
     if get_origin(expected) is Annotated:
-        return _limited(options[1])
+        return _limited(expected, options[1])
     if hasattr(expected, "_fields"):
         hints = get_type_hints(expected, include_extras=True)
         readers = {name: reader(hint) for name, hint in hints.items()}
@@ -197,12 +197,12 @@ def reader(expected: Any) -> Reader:
     return read_seconds if expected is float else partial(read_plain, expected)
 
 
-def _limited(limit: object) -> Reader:
+def _limited(expected: Any, limit: object) -> Reader:
     """Return the reader of a field of ``records`` that only some words, names or numbers fit."""
     if isinstance(limit, tuple):
         return partial(read_word, limit)
     if isinstance(limit, str):
-        return partial(read_full_name, bool(re.match(limit, "")))
+        return partial(read_full_name, expected == MaybeFullName)
     return read_transform
 
 
