@@ -12,19 +12,24 @@ import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.params.sections import raw_sections
-from multibot_rewrite.fleet.file.fleet_file import FleetFile
+from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
 from multibot_rewrite.knowledge.records import Param
-from multibot_rewrite.producers.launch.handed_on import HandedOn
+from multibot_rewrite.producers.launch.handed_on import HandedOn, handed_on
+from multibot_rewrite.producers.launch.of_robot import is_of_robot
+from multibot_rewrite.producers.launch.once import once_for_all
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Place
@@ -35,6 +40,7 @@ _SUBSTITUTED = "$(var "
 # Of these kinds a value that is lost leads to another name; the nodes of managers are written anyway.
 _NAMES = frozenset({"frame", "link", "joint", "topic", "service"})
 _MANAGER = "lifecycle_manager"
+_MAPS, _SERVER = "nav2_map_server", "map_server"
 NOT_REWRITTEN = declare("MF824", "launched-parameters-not-rewritten", NOTE, formats=("fleet",))
 
 
@@ -157,6 +163,36 @@ def _has_other(it: _Named, there: str) -> Finding:
     hint = "give the launch what is written for the robot, or give one of them another name"
     file, line, *_ = it.place
     return NOT_REWRITTEN.finding(message, hint, file=file, line=line)
+
+
+def with_one_map(file: FleetFile) -> FleetFile:
+    """The fleet with the topics of map servers that its launch files start among those of all robots.
+
+    Robots with different maps have a server each, as nav2_bringup starts it. Raises InputError for a
+    launch file that cannot be read.
+    """
+    maps: dict[str, set[tuple[object, str]]] = {}
+    for name, yaml, topic in (row for spec in file.robots for row in _maps(spec)):
+        maps.setdefault(name, set()).add((yaml, topic))
+    apart = {it for it in maps if len(maps[it]) > 1 or file.params_style == BRINGUP}
+    own = tuple(dict.fromkeys((*file.own_nodes, *sorted(apart))))
+    topics = [topic for it in maps if it not in own for _, topic in maps[it]]
+    if not topics:
+        return file._replace(own_nodes=own)
+    shared = dict.fromkeys((*file.policy.get("shared_topics", SHARED_TOPICS), *topics))
+    policy: Policy = {**file.policy, "shared_topics": tuple(shared)}
+    return file._replace(own_nodes=own, policy=policy)
+
+
+def _maps(spec: RobotSpec) -> Iterator[tuple[str, object, str]]:
+    """The map servers outside of the robot's namespace: name, map, and the topic from the root."""
+    words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
+    for it in launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ():
+        if it.package == _MAPS and once_for_all(it) and not is_of_robot(it.namespace, words):
+            name = it.name or _SERVER
+            told = handed_on(it, name).values
+            topic = str(told.get("topic_name", "map"))
+            yield name, told.get("yaml_filename"), expand(topic, it.namespace, name)
 
 
 _PACKAGES = ("ros_gz_bridge", "ros_ign_bridge")

@@ -297,13 +297,16 @@ def apart(
     nodes: Sequence[NodeFacts], file: FleetFile
 ) -> tuple[tuple[NodeFacts, ...], tuple[Finding, ...]]:
     """The nodes, those that all robots share marked; findings about managers that would manage them."""
-    if not file.shared_nodes:
-        return tuple(nodes), ()
-    marked = [it._replace(shared=it.shared or it.name in file.shared_nodes) for it in nodes]
+    marked = [it._replace(shared=_is_shared(it, file)) for it in nodes]
+    shared = {it.name: None for it in marked if it.shared}
     managers = [it for it in marked if it.package == MANAGERS and not it.shared]
-    left = {it.name: _without(it, file.shared_nodes) for it in managers}
+    left = {it.name: _without(it, shared) for it in managers}
     kept = tuple(left.get(it.name, it) for it in marked)
     return kept, tuple(_notes(managers, file))
+
+
+def _is_shared(it: NodeFacts, file: FleetFile) -> bool:
+    return (it.shared or it.name in file.shared_nodes) and it.name not in file.own_nodes
 
 
 def _without(manager: NodeFacts, shared: Collection[str]) -> NodeFacts:
@@ -321,8 +324,8 @@ def _notes(managers: Sequence[NodeFacts], file: FleetFile) -> Iterator[Finding]:
 
 
 def check_shared(file: FleetFile, run: Mapping[str, object]) -> None:
-    """Raises InputError for a shared node that is not among the nodes that robots ``run``."""
-    for name in file.shared_nodes:
-        if name not in run:
+    """Raises InputError for a node of these keys that is not among the nodes that robots ``run``."""
+    for key, names in (("shared_nodes", file.shared_nodes), ("own_nodes", file.own_nodes)):
+        for name in (it for it in names if it not in run):
             near = did_you_mean_one_of(name, tuple(run)) or "name a node of a robot's stack"
-            raise InputError(f"{file.file}: shared_nodes: no robot has a node {name!r}; {near}")
+            raise InputError(f"{file.file}: {key}: no robot has a node {name!r}; {near}")

@@ -30,6 +30,7 @@ from multibot_rewrite.producers.launch.known_node import (
     known_node,
     own_name,
 )
+from multibot_rewrite.producers.launch.once import once_for_all
 from multibot_rewrite.producers.launch.parameter_texts import OWN, document_of, has_sections
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
@@ -177,7 +178,7 @@ def _pair(
         endpoints=rows or _unmapped(facts),
         known=facts.kind if base else "",
         # A node that usually serves all robots, in the namespace of one, is that robot's.
-        shared=facts.shared and not _is_of_robot(it.namespace, words),
+        shared=bool(facts.shared or once_for_all(it)) and not is_of_robot(it.namespace, words),
         when=it.later or unnamed,
         container=_below(it.container, "", words),
         origin=_origin(it.place),
@@ -203,7 +204,8 @@ def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
     return tuple(end._replace(remapped="") for end in facts.endpoints)
 
 
-def _is_of_robot(namespace: str, words: Collection[str]) -> bool:
+def is_of_robot(namespace: str, words: Collection[str]) -> bool:
+    """Is a namespace that of a robot, or below it?"""
     return namespace.strip("/").partition("/")[0] in words
 
 
