@@ -25,10 +25,10 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import asked_number, plain_words, xacro_args
 from multibot_rewrite.description.sources.expand import kept_expansions
 from multibot_rewrite.fleet.proposal.choosing import Undecided
-from multibot_rewrite.fleet.proposal.fleet_text import text_of
+from multibot_rewrite.fleet.proposal.fleet_text import order_text, text_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import MEANT, Choice, Proposal, names_of, release_of
-from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.fleet.proposal.searching import Found, is_below
 from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, see, with_arguments
 from multibot_rewrite.fleet.proposal.trying import (
     as_named,
@@ -37,6 +37,7 @@ from multibot_rewrite.fleet.proposal.trying import (
     that_builds,
     with_faults_of_sources,
 )
+from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, order_in_words
 
 SIMULATORS = ("gazebo", "none")
 # Nodes of launch files that are named on the terminal.
@@ -64,6 +65,10 @@ def _run(options: argparse.Namespace) -> int:
         raise UsageError(
             "--robots is for one description; for several leave it out, then name, add or remove"
             " robots in the fleet file"
+        )
+    if wanted.launch and seen.named and len(seen.robots) > 1:
+        raise UsageError(
+            "--launch is for one description; name one, or write launch: into the file"
         )
     if not options.yes and sys.stdin.isatty() and sys.stderr.isatty():
         made = ask_for_fleet(seen, wanted)
@@ -109,8 +114,24 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         options.trust,
         tuple(options.robots),
         simulator=options.simulator or "",
+        launch=_launch(options),
+        stacks=tuple(options.stack),
     )
     return wanted._replace(file=options.output) if goes_to_file(options) else wanted
+
+
+def _launch(options: argparse.Namespace) -> tuple[LaunchOrder, ...] | None:
+    """The launch file that was named, none for the word ``none``; None where nobody said it."""
+    words = options.launch
+    if not words or words == [NONE]:
+        return () if words else None
+    text, roots = " ".join(words), [it for it in options.words if os.path.isdir(it)]
+    order = order_in_words(words, text, roots) if words[1:] else launch_order(text, roots)
+    if not os.path.isfile(order.file):
+        raise UsageError(f"{order.file}: there is no such launch file")
+    if any(is_below(order.file, it) for it in roots):
+        order = order._replace(package="", roots=(), file=os.path.relpath(order.file))
+    return (order._replace(trusted=options.trust),)
 
 
 def _check_names(options: argparse.Namespace) -> None:
@@ -152,10 +173,16 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
             options,
             f"wrote {options.output}: {what}; next: multibot build {options.output} -o out/",
         )
-    started = [who.partition(" ")[0] for _, _, who in made.launched.started]
+    started = [who.partition(" ")[0] for _, _, who in made.started]
     if started:
         listed = shorten(started, _NAMED)
         note(options, f"started by launch files and not by this fleet: {listed}")
+    for it in made.members:
+        others = it.bringup.others if it.bringup else ()
+        if it.bringup and others:
+            paths, other = shlex.join(options.words), order_text(others[0], os.curdir)
+            which = f"{it.bringup.name} starts most of {plural(len(others) + 1, 'launch file')}"
+            note(options, f"{which}; for another: multibot init {paths} --launch {other}")
     return STOPPED if made.notes else DONE
 
 

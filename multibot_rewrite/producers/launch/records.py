@@ -110,10 +110,28 @@ class LaunchInclude(NamedTuple):
     arguments: tuple[tuple[str, str], ...]
 
 
+class LaunchArgument(NamedTuple):
+    """An argument that a launch file, or one that it includes, declares: ``default`` is empty where it
+    has none that is known before the launch."""
+
+    name: str
+    default: str
+    choices: tuple[str, ...]
+
+
+class FileRead(NamedTuple):
+    """A description, an SRDF or a YAML file that a launch file reads, with the arguments that it gives
+    to a xacro."""
+
+    file: str
+    arguments: tuple[tuple[str, str], ...] = ()
+
+
 class LaunchGraph(NamedTuple):
     """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
     the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
-    launch is not installed and its stand-in read them. ``unread`` are arguments without effect."""
+    launch is not installed and its stand-in read them. ``unread`` are arguments without effect.
+    ``declared`` are the arguments that there are, ``read`` is what the launch files themselves read."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
@@ -121,6 +139,8 @@ class LaunchGraph(NamedTuple):
     stood_in: bool = False
     unread: tuple[UnreadArgument, ...] = ()
     includes: tuple[LaunchInclude, ...] = ()
+    declared: tuple[LaunchArgument, ...] = ()
+    read: tuple[FileRead, ...] = ()
 
     @property
     def whole(self) -> bool:
@@ -188,6 +208,8 @@ def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
         any(it.stood_in for it in graphs),
         tuple(one for it in graphs for one in it.unread),
         tuple(one for it in graphs for one in it.includes),
+        tuple(one for it in graphs for one in it.declared),
+        tuple(one for it in graphs for one in it.read),
     )
 
 
@@ -198,13 +220,12 @@ def orders_of(text: str) -> tuple[float, list[LaunchOrder]]:
 
 
 def _order(file: str, arguments: Any, roots: Any, *more: Any) -> LaunchOrder:
-    pairs = tuple((name, value) for name, value in arguments)
-    return LaunchOrder(file, pairs, tuple(roots), *more)
+    return LaunchOrder(file, _pairs(arguments), tuple(roots), *more)
 
 
 def graph_of(values: Any) -> LaunchGraph:
     """The graph that is this in JSON; raises what an unexpected value does."""
-    nodes, notes, files, stood_in, unread, includes = values
+    nodes, notes, files, stood_in, unread, includes, declared, read = values
     found = (LaunchNote(Place(*place), *rest) for place, *rest in notes)
     return LaunchGraph(
         tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes),
@@ -212,11 +233,14 @@ def graph_of(values: Any) -> LaunchGraph:
         tuple((path, ParameterText(*it)) for path, it in files),
         stood_in,
         tuple(UnreadArgument(Place(*place), *rest) for place, *rest in unread),
-        tuple(
-            LaunchInclude(Place(*place), file, tuple((name, value) for name, value in given))
-            for place, file, given in includes
-        ),
+        tuple(LaunchInclude(Place(*place), file, _pairs(given)) for place, file, given in includes),
+        tuple(LaunchArgument(name, given, tuple(words)) for name, given, words in declared),
+        tuple(FileRead(file, _pairs(given)) for file, given in read),
     )
+
+
+def _pairs(rows: Any) -> tuple[tuple[str, str], ...]:
+    return tuple((name, value) for name, value in rows)
 
 
 _FIELDS = LaunchedNode._fields
@@ -226,10 +250,10 @@ def _node(values: Mapping[str, Any]) -> LaunchedNode:
     return LaunchedNode(
         **{
             **values,
-            "remappings": tuple((old, new) for old, new in values["remappings"]),
+            "remappings": _pairs(values["remappings"]),
             "parameters": tuple(ParameterText(*it) for it in values["parameters"]),
             "arguments": tuple(values["arguments"]),
             "place": Place(*values["place"]),
-            "environment": tuple((name, value) for name, value in values["environment"]),
+            "environment": _pairs(values["environment"]),
         }
     )
