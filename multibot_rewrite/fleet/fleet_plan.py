@@ -138,7 +138,8 @@ def _evidence(
         key: robot_nodes(spec, file, notes[spec.name], first[key].member, first[key].names.in_full)
         for key, spec in specs.items()
     }
-    check_shared(file, {node.name: node for it in found.values() for node in it.nodes})
+    every = (node.name for it in found.values() for node in (*it.nodes, *it.processes))
+    check_shared(file, dict.fromkeys(every))
     real = [it for it in robots if may_be_real(it, found[node_sources(it.spec)])]
     for it in real[:1]:
         key = node_sources(it.spec)

@@ -19,27 +19,20 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.policy import Policy
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
-from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
-from multibot_rewrite.knowledge.records import Param
-from multibot_rewrite.producers.launch.handed_on import HandedOn, handed_on
+from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.of_robot import is_of_robot
 from multibot_rewrite.producers.launch.once import once_for_all
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Place
 
 PARAMS = "params"
 # What launch_ros fills in a file with allow_substs.
 _SUBSTITUTED = "$(var "
-# Of these kinds a value that is lost leads to another name; the nodes of managers are written anyway.
-_NAMES = frozenset({"frame", "link", "joint", "topic", "service"})
-_MANAGER = "lifecycle_manager"
 _MAPS, _SERVER = "nav2_map_server", "map_server"
 NOT_REWRITTEN = declare("MF824", "launched-parameters-not-rewritten", NOTE, formats=("fleet",))
 
@@ -106,37 +99,6 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
             notes.append(_unfilled(it))
     companions = {**spec.companions, PARAMS: tuple(own)} if own else spec.companions
     return spec._replace(companions=companions, filled=(*spec.filled, *filled)), notes
-
-
-def set_by_launch(
-    given: Sequence[Run],
-    started: Mapping[str, LaunchedNode],
-    known: KnownNodes,
-    handed: Mapping[str, HandedOn],
-) -> Iterator[Finding]:
-    """The names that launch files themselves give to known nodes which they start: what build writes
-    starts these nodes, too, and has only what stands in parameter files and what is handed on."""
-    for node in given:
-        launched = started.get(node.node)
-        if launched is None or node.fact.known not in known.nodes or node.fact.known == _MANAGER:
-            continue
-        params = known.nodes[node.fact.known].params.values()
-        kept = handed[node.node].values if node.node in handed else ()
-        lost = [it for it in _lost(node, params, launched.place.file) if it not in kept]
-        if lost:
-            message = f"the launch file itself gives {node.node} {shorten(lost)}"
-            hint = "write them into a parameter file of that node, and list it under params"
-            said = f"{message}: what build writes has them not"
-            file, line, *_ = launched.place
-            yield NOT_REWRITTEN.finding(said, hint, level=WARNING, file=file, line=line)
-
-
-def _lost(node: Run, params: Collection[Param], launch: str) -> Iterator[str]:
-    for name, it in node.values.items():
-        param = next((one for one in params if is_called(one, name)), None)
-        named = param is not None and param.kind in _NAMES and str(it.value) != param.default
-        if named and it.place.file == launch:
-            yield name
 
 
 def _written(spec: RobotSpec) -> Iterator[str]:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from multibot_rewrite.producers.launch.commands import faults, read_commands, start_nothing
-from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit
+from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit, changed_environment
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import (
     failure,
@@ -141,7 +141,8 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     folder = {"current_launch_file_directory": os.path.dirname(path)}
     context.extend_locals({"current_launch_file_path": path, **folder})
     context.launch_configurations.update(order.arguments)
-    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], order.every)
+    before = dict(context.environment)
+    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, order.every)
     unread_of(path, dict(order.arguments), seen)
     visit_all(description, seen)
     declared = _declared(description)
@@ -150,7 +151,8 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     notes = tuple(dict.fromkeys(_with_unset(seen.notes, path)))
     files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
     found = LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
-    return found._replace(includes=tuple(seen.includes), declared=declared)
+    own = tuple(changed_environment(seen).items())
+    return found._replace(includes=tuple(seen.includes), environment=own, declared=declared)
 
 
 def _declared(description: Any) -> tuple[LaunchArgument, ...]:

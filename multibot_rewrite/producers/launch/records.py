@@ -13,6 +13,7 @@ from typing import Any
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.package_files import file_of_package
+from multibot_rewrite.spelling.start import AS_USUAL, Process
 from multibot_rewrite.system.records import Place
 
 # What starts a node that another program has ended before.
@@ -57,7 +58,9 @@ class ParameterText(NamedTuple):
 class LaunchedNode(NamedTuple):
     """A node that a launch file starts.
 
-    ``executable`` is the plugin of a component, ``name`` is empty where the node has its own.
+    ``executable`` is the plugin of a component, ``name`` is empty where the node has its own. What has
+    no ``package`` is a command, ``process.is_include`` says that it is a launch file which is not here.
+    ``number`` is its place in the launch, where that is asked.
     ``container`` is the full name of the node that a component is loaded into. ``later`` says what
     starts it if not the launch itself. ``place`` is where the launch file has it. ``environment`` is
     what is set for its process.
@@ -74,6 +77,8 @@ class LaunchedNode(NamedTuple):
     later: str
     place: Place
     environment: tuple[tuple[str, str], ...] = ()
+    process: Process = AS_USUAL
+    number: int = -1
 
 
 class LaunchNote(NamedTuple):
@@ -130,8 +135,9 @@ class FileRead(NamedTuple):
 class LaunchGraph(NamedTuple):
     """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
     the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
-    launch is not installed and its stand-in read them. ``unread`` are arguments without effect.
-    ``declared`` are the arguments that there are, ``read`` is what the launch files themselves read."""
+    launch is not installed and its stand-in read them. ``unread`` are arguments without effect,
+    ``environment`` is what they set for all processes. ``declared`` are the arguments that there are,
+    ``read`` is what the launch files themselves read."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
@@ -139,6 +145,7 @@ class LaunchGraph(NamedTuple):
     stood_in: bool = False
     unread: tuple[UnreadArgument, ...] = ()
     includes: tuple[LaunchInclude, ...] = ()
+    environment: tuple[tuple[str, str], ...] = ()
     declared: tuple[LaunchArgument, ...] = ()
     read: tuple[FileRead, ...] = ()
 
@@ -202,15 +209,27 @@ def orders_in_words(
 def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
     """What several launch files start, as one."""
     return LaunchGraph(
-        tuple(node for it in graphs for node in it.nodes),
+        tuple(_joined_nodes(graphs)),
         tuple(note for it in graphs for note in it.notes),
         tuple(file for it in graphs for file in it.files),
         any(it.stood_in for it in graphs),
         tuple(one for it in graphs for one in it.unread),
         tuple(one for it in graphs for one in it.includes),
+        tuple({pair: None for it in graphs for pair in it.environment}),
         tuple(one for it in graphs for one in it.declared),
         tuple(one for it in graphs for one in it.read),
     )
+
+
+def _joined_nodes(graphs: Sequence[LaunchGraph]) -> Iterator[LaunchedNode]:
+    """The nodes of all, with the numbers of those that they wait for among all."""
+    first = 0
+    for graph in graphs:
+        for it in graph.nodes:
+            after = it.process.after
+            moved = it.process._replace(after=after + first) if after >= 0 else it.process
+            yield it._replace(process=moved)
+        first += len(graph.nodes)
 
 
 def orders_of(text: str) -> tuple[float, list[LaunchOrder]]:
@@ -225,7 +244,7 @@ def _order(file: str, arguments: Any, roots: Any, *more: Any) -> LaunchOrder:
 
 def graph_of(values: Any) -> LaunchGraph:
     """The graph that is this in JSON; raises what an unexpected value does."""
-    nodes, notes, files, stood_in, unread, includes, declared, read = values
+    nodes, notes, files, stood_in, unread, includes, environment, declared, read = values
     found = (LaunchNote(Place(*place), *rest) for place, *rest in notes)
     return LaunchGraph(
         tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes),
@@ -234,6 +253,7 @@ def graph_of(values: Any) -> LaunchGraph:
         stood_in,
         tuple(UnreadArgument(Place(*place), *rest) for place, *rest in unread),
         tuple(LaunchInclude(Place(*place), file, _pairs(given)) for place, file, given in includes),
+        _pairs(environment),
         tuple(LaunchArgument(name, given, tuple(words)) for name, given, words in declared),
         tuple(FileRead(file, _pairs(given)) for file, given in read),
     )
@@ -255,5 +275,6 @@ def _node(values: Mapping[str, Any]) -> LaunchedNode:
             "arguments": tuple(values["arguments"]),
             "place": Place(*values["place"]),
             "environment": _pairs(values["environment"]),
+            "process": Process(*values["process"]),
         }
     )

@@ -15,6 +15,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.producers.launch.ros_arguments import ros_arguments
+from multibot_rewrite.spelling.start import AS_USUAL, Process
 from multibot_rewrite.system.records import Place
 
 SPAWNER = "controller_manager/spawner"
@@ -24,7 +25,7 @@ _ONE = "--controller"
 class Spawned(NamedTuple):
     """A controller that a spawner loads into ``manager`` (a full name): its type where the spawner
     says it, its parameters, remap rules, what starts the spawner if not the launch itself, where the
-    launch file has that, and if it stays inactive."""
+    launch file has that, if it stays inactive, the number of the spawner, and how that runs."""
 
     name: str
     manager: str
@@ -34,6 +35,8 @@ class Spawned(NamedTuple):
     later: str
     place: Place
     inactive: bool = False
+    number: int = -1
+    process: Process = AS_USUAL
 
     @property
     def full_name(self) -> str:
@@ -62,9 +65,10 @@ def spawned_in(nodes: Iterable[LaunchedNode]) -> tuple[tuple[Spawned, ...], tupl
     """The controllers that these spawners load, and notes of those whose arguments are not right."""
     found: list[Spawned] = []
     notes: list[LaunchNote] = []
-    for node in filter(is_spawner, nodes):
+    for number, node in enumerate(nodes):
         try:
-            found += _spawned(node)
+            own = _spawned(node) if is_spawner(node) else ()
+            found += (it._replace(number=number, process=node.process) for it in own)
         except ValueError as error:
             notes.append(LaunchNote(node.place, f"the arguments of a spawner are wrong: {error}"))
     return tuple(found), tuple(notes)
