@@ -253,11 +253,31 @@ NAV2 = (
 )
 
 
-def test_what_is_not_installed_is_a_stack(package: Path) -> None:
+def test_a_file_that_goes_to_what_is_not_installed_is_taken(package: Path) -> None:
+    """The vendor's include is started as it is: no stack stands for it."""
     write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}; {NAV2}"})
     fleet = fleet_of(package, "--simulator", "none")
-    assert fleet["stack"] == ["localization"]
-    assert fleet["companions"]["params"] == ["rover/config/unread.yaml"]
+    assert "stack" not in fleet
+    assert fleet["companions"] == {"params": ["rover/config/unread.yaml"]}
+
+
+SRDF = '<robot name="rover"><group name="arm"><joint name="j"/></group></robot>'
+MAKES = "__import__('moveit_configs_utils').launches.generate_move_group_launch('rover')"
+MOVES = "Node(package='moveit_ros_move_group', executable='move_group')"
+
+
+@pytest.mark.parametrize(("starts", "stack"), [(MAKES, ["moveit"]), (MOVES, None), (LIDAR, None)])
+def test_moveit_has_its_files_where_it_is_started(
+    starts: str, stack: list[str] | None, package: Path
+) -> None:
+    (package / "config/rover.srdf").write_text(SRDF)
+    (package / "config/kinematics.yaml").write_text("arm: {kinematics_solver: a/A}\n")
+    write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}; {starts}"})
+    fleet = fleet_of(package, "--simulator", "none")
+    assert fleet.get("stack") == stack
+    files = {"moveit": ["rover/config/kinematics.yaml"]} if starts != LIDAR else None
+    assert fleet.get("companions") == files
+    assert fleet.get("srdf") == (files and "rover/config/rover.srdf")
 
 
 def test_a_stack_that_is_asked_for_is_beside_the_launch_file(package: Path) -> None:
