@@ -201,6 +201,8 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
         release = release_of(robots, seen.found, wanted)
         word = _one_of("ROS release", release.why, RELEASES, release)
         wanted = wanted._replace(release=word, named=True)
+    named = wanted.launch
+    wanted = _with_launch(robots[0], wanted, seen.found) if len(robots) == 1 else wanted
     robots = [_with_arguments(it, wanted, seen.found) for it in robots]
     found, made = _with_files_asked_for(robots, seen.found, wanted, {})
     refused = dict(made.refused) | dict.fromkeys(_left_out(made), LEFT_OUT)
@@ -214,14 +216,19 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
     word = _one_of("Simulator", simulator.why, SIMULATORS, simulator)
     if word == simulator.value:
         return made
-    wanted = wanted._replace(simulator=word, layout=str(made.keys["layout"].value))
+    layout = str(made.keys["layout"].value)
+    wanted = wanted._replace(simulator=word, layout=layout, launch=named)
     return _quietly(wanted, lambda it: that_builds(robots, found, it, refused))
 
 
 def _chosen(found: Sequence[Looked]) -> Sequence[Looked]:
     """The one that the user takes of several."""
     shown = [f"{it.path} ({plural(it.links, 'link')})" for it in found]
-    return found if len(found) == 1 else [found[_of_these(shown, "Description", "1") or 0]]
+    return (
+        found
+        if len(found) == 1
+        else [found[_of_these(shown, "Description", "1", or_none=False) or 0]]
+    )
 
 
 def _with_files_asked_for(
@@ -240,13 +247,15 @@ def _with_files_asked_for(
     return _with_files_asked_for(robots, found, wanted, {**refused, **left})
 
 
-def _of_these(shown: Sequence[str], question: str, default: str) -> int | None:
+def _of_these(
+    shown: Sequence[str], question: str, default: str, or_none: bool = True
+) -> int | None:
     """Which of these it is, by its number, None for the word ``none``: numbers are easier to type than
     paths."""
     for at, it in enumerate(shown, 1):
         say(f"  {at}: {it}", PROGRAM)
     numbers = [str(at) for at in range(1, len(shown) + 1)]
-    answer = _ask(question, default, numbers if default in numbers else [*numbers, NONE])
+    answer = _ask(question, default, [*numbers, NONE] if or_none else numbers)
     return None if answer == NONE else int(answer) - 1
 
 
@@ -266,6 +275,17 @@ def _with_names(wanted: Wanted) -> Wanted:
         return wanted._replace(each=int(text))
     names = tuple(text.replace(",", " ").split())
     return wanted._replace(each=len(names), names=names)
+
+
+def _with_launch(robot: Looked, wanted: Wanted, found: Found) -> Wanted:
+    """The launch file that starts the robot, where several do; none is one, too."""
+    (it,) = _quietly(wanted, lambda asked: with_arguments([robot], asked, found))
+    if wanted.launch is not None or it.bringup is None or not it.bringup.others:
+        return wanted
+    orders = [it.bringup.order, *it.bringup.others]
+    shown = [order_text(one, os.curdir) for one in orders]
+    at = _of_these(shown, "Launch file that starts the robot", "1")
+    return wanted._replace(launch=() if at is None else (orders[at],))
 
 
 def _with_arguments(robot: Looked, wanted: Wanted, found: Found) -> Looked:
