@@ -93,11 +93,12 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
     every = read_any(launch)
     included = _included(every)
     roots = [it for it in every if not it.why and it.file not in included]
-    starting = [it for it in roots if _starts(it.graph, robot)]
+    likely = [it for it in roots if _starts(it.graph, robot)]
+    starting = [it for it in likely if _reads(it.graph) & robot.files] or likely
     if not starting:
         return _beside(roots, robot, trust)
-    likely = sorted(starting, key=_rank)[:_MOST]
-    read = _with_own_arguments(likely, every, robot, trust)
+    starting = sorted(starting, key=_rank)[:_MOST]
+    read = _with_own_arguments(starting, every, robot, trust)
     # What is not said is simulated where a launch file does it.
     wanted = robot.is_simulated or not robot.simulator
     for simulated in (wanted, *([] if robot.simulator else [not wanted])):
@@ -176,10 +177,13 @@ def _others(it: LaunchArgument, passed: set[str]) -> list[str]:
 def _starts(graph: LaunchGraph, robot: Robot) -> bool:
     """Does a launch file start the publisher or spawner of the description, as far as it is known which
     one that is, and of one robot?"""
-    publishers = [it for it in graph.nodes if _publishes(it)]
-    read = {os.path.realpath(it.file) for it in graph.read}
+    read = _reads(graph)
     of_another = read & robot.others and not read & robot.files
-    return bool(publishers) and not of_another
+    return any(map(_publishes, graph.nodes)) and not of_another
+
+
+def _reads(graph: LaunchGraph) -> set[str]:
+    return {it.file for it in graph.read}
 
 
 def _is_bringup(graph: LaunchGraph, robot: Robot) -> bool:

@@ -109,6 +109,10 @@ ROWS: dict[str, tuple[dict[str, str], bool, str, str]] = {
         {"a": f"{READ.format('FOLDER/other.urdf')}; {DRIVER}; {LIDAR}",
          "b": f"{READ.format('FOLDER/robot.urdf')}; {DRIVER}"}, False, "", "b",
     ),
+    "what surely reads it": (
+        {"a": f"{PUBLISHER}; {DRIVER}; {LIDAR}", "b": f"{READ.format('FOLDER/robot.urdf')}; {DRIVER}"},
+        False, "", "b",
+    ),
     "one beside it": ({"a": DRIVER}, False, "", "a"),
     "several beside it": ({"a": DRIVER, "b": LIDAR}, False, "", ""),
     "one that fails": ({"a": f"{PUBLISHER}; {FAILS}", "b": f"{PUBLISHER}; {DRIVER}"}, False, "", "b"),
