@@ -82,7 +82,7 @@ class Start(NamedTuple):
     launch that it is from, -1 for none.
 
     Without a package the ``executable`` is a command. A launch file of a package has its path in the
-    share folder for one, and launch arguments as words.
+    share folder for one, and names and values of launch arguments as words.
     """
 
     package: str
@@ -205,6 +205,13 @@ def keywords(it: Start) -> dict[str, Any]:
         **how,
     }
     return {name: one for name, one in given.items() if one}
+
+
+def with_rest(text: str, rest: Any) -> Any:
+    """Return a value of the environment that is added to the rest: ``:`` is where that is."""
+    if text[:1] == ":":
+        return [rest, text]
+    return [text, rest] if text[-1:] == ":" else text
 
 
 def path_of(it: str | File) -> str:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,6 @@ FLEET = """\
 layout: {layout}
 affix: {affix}
 distro: jazzy
-simulator: none
 launch: up.launch.py
 {more}
 robots:
@@ -55,7 +55,7 @@ def actions(
     folder: Path,
     body: str,
     setup: str = "first = here('first')",
-    more: str = "",
+    more: str = "simulator: none",
     layout: str = "both",
     given: dict[str, str] | None = None,
 ) -> list[Action]:
@@ -117,7 +117,7 @@ def test_a_command_runs_once_where_the_fleet_file_says_so(tmp_path: Path) -> Non
     body = "ExecuteProcess(cmd=['MicroXRCEAgent']), ExecuteProcess(cmd=['ros2', 'bag', 'record']),"
     found = told(actions(tmp_path, body, given={"robots": "2"}))
     assert (found.count("MicroXRCEAgent"), found.count("ros2")) == (2, 1)
-    more = "shared_nodes: [MicroXRCEAgent]\nown_nodes: [ros2]"
+    more = "simulator: none\nshared_nodes: [MicroXRCEAgent]\nown_nodes: [ros2]"
     found = told(actions(tmp_path, body, more=more, given={"robots": "2"}))
     assert (found.count("MicroXRCEAgent"), found.count("ros2")) == (1, 2)
 
@@ -166,7 +166,7 @@ def test_what_waits_for_a_process_that_is_not_there_starts_at_once(tmp_path: Pat
 
 def test_a_process_in_a_domain_of_its_own_starts_later_in_it(tmp_path: Path) -> None:
     """What a timer starts is outside of the group that sets the domain (launch_service.py)."""
-    more = "domains: {robot1: 11, robot2: 12}"
+    more = "simulator: none\ndomains: {robot1: 11, robot2: 12}"
     found = actions(tmp_path, ORDER, more=more)
     for word in ("second", "third", "late", "last", "beep"):
         assert of(found, word)["additional_env"] == {"ROS_DOMAIN_ID": "12"}
@@ -218,7 +218,7 @@ def test_a_launch_file_that_is_not_here_is_included_for_each_robot(
 def test_an_argument_of_an_include_may_name_the_robot(tmp_path: Path) -> None:
     body = f"DeclareLaunchArgument('who', default_value=''), {INCLUDE}"
     body = body.replace("WHO", "['unit_', LaunchConfiguration('who')]")
-    found = actions(tmp_path, body, more="", given={"robots": "2"})
+    found = actions(tmp_path, body, given={"robots": "2"})
     # Nothing of the launch file names a robot here.
     assert {
         it.values["launch_arguments"][1][1] for it in found if "launch_arguments" in it.values
@@ -328,7 +328,7 @@ def test_robots_with_different_bringups_have_each_its_own(tmp_path: Path) -> Non
     )
     (tmp_path / "crane.launch.py").write_text(other)
     text = FLEET.replace("name: robot2,", "name: robot2, launch: crane.launch.py,")
-    fleet = text.format(more="", layout="both", affix="prefix")
+    fleet = text.format(more="simulator: none", layout="both", affix="prefix")
     actions(tmp_path, "here('first'), ExecuteProcess(cmd=['agent']),")
     (tmp_path / "fleet.yaml").write_text(fleet)
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
@@ -336,3 +336,136 @@ def test_robots_with_different_bringups_have_each_its_own(tmp_path: Path) -> Non
     found = [it for it in done.actions if it.kind != "DeclareLaunchArgument"]
     assert told(found) == ["first", "agent", "winch", "crane"]
     assert of(found, "crane")["prefix"] == "nice"
+
+
+def test_one_device_for_two_robots_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    body = """
+        DeclareLaunchArgument('who', default_value='x'),
+        ExecuteProcess(cmd=['MicroXRCEAgent', 'serial', '--dev', '/dev/ttyUSB0']),
+        here('lidar', arguments=['/dev/ttyUSB1', '--rate', '5']),
+        here('mcu', parameters=[{'port': '/dev/ttyACM0'}]),
+        here('web', arguments=['--port=8080', ['--out=/dev/', LaunchConfiguration('who')]]),
+    """
+    actions(tmp_path, body)
+    text = (tmp_path / "fleet.yaml").read_text()
+    (tmp_path / "fleet.yaml").write_text(
+        text.replace("up.launch.py", '"up.launch.py who:={robot}"')
+    )
+    capsys.readouterr()
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    said = [it for it in capsys.readouterr().err.splitlines() if "MB412" in it]
+    for device in ("dev /dev/ttyUSB0", "/dev/ttyUSB1", "port /dev/ttyACM0", "port 8080"):
+        assert [device in it for it in said].count(True) == 1, (device, said)
+    assert len(said) == 4
+
+
+def test_a_node_gets_the_parameter_files_of_its_own(tmp_path: Path) -> None:
+    """A section for all nodes reaches those alone that the launch file gives it to."""
+    for name in ("one", "two", "own"):
+        (tmp_path / f"{name}.yaml").write_text(f"/**:\n  ros__parameters: {{{name}: 1}}\n")
+    body = """
+        here('one', parameters=['FOLDER/one.yaml']),
+        here('two', parameters=['FOLDER/two.yaml', {'rate': 5}]),
+        here('none'),
+    """.replace("FOLDER", str(tmp_path))
+    found = actions(tmp_path, body, more="simulator: none\ncompanions: {params: own.yaml}")
+    files = {
+        name: [Path(it).name for it in of(found, name)["parameters"] if isinstance(it, str)]
+        for name in ("one", "two", "none")
+    }
+    # What the user names is for all.
+    assert files == {
+        "one": ["own.yaml", "one.yaml"],
+        "two": ["own.yaml", "two.yaml"],
+        "none": ["own.yaml"],
+    }
+
+
+def test_rules_and_words_of_known_programs_are_kept(tmp_path: Path) -> None:
+    body = """
+        Node(package='robot_state_publisher', executable='robot_state_publisher',
+            remappings=[('/joint_states', '/arm/joint_states'), ('more', '/arm/more')]),
+        Node(package='controller_manager', executable='ros2_control_node',
+            parameters=['FOLDER/c.yaml']),
+        Node(package='controller_manager', executable='spawner', arguments=[
+            'joints', '--controller-manager-timeout', '120', '--activate-as-group']),
+    """.replace("FOLDER", str(tmp_path))
+    text = "{joints: {type: joint_state_broadcaster/JointStateBroadcaster}}"
+    (tmp_path / "c.yaml").write_text(f"controller_manager:\n  ros__parameters: {text}\n")
+    found = actions(tmp_path, body, layout="tf-per-robot")
+    rules = of(found, "robot_state_publisher")["remappings"]
+    assert ["joint_states", "arm/joint_states"] in rules and ["more", "arm/more"] in rules
+    words = of(found, "spawner")["arguments"]
+    assert words[-3:] == ["--controller-manager-timeout", "120", "--activate-as-group"]
+
+
+@pytest.mark.parametrize(("more", "clock"), [("simulator: none", "false"), ("", "true")])
+def test_nodes_on_simulated_time_are_on_it(more: str, clock: str, tmp_path: Path) -> None:
+    """The launch file says so, whatever simulates them; the fleet file says that they are real."""
+    body = "here('one', parameters=[{'use_sim_time': True}]), here('two'),"
+    actions(tmp_path, body, more=more)
+    printed = (tmp_path / "out/fleet.launch.py").read_text()
+    assert f"'use_sim_time',\n                default_value='{clock}'" in printed
+
+
+def test_what_is_added_to_a_path_is_added_to_that_of_the_machine(tmp_path: Path) -> None:
+    """What the variable has where the launch file is read is not for the robot."""
+    body = """
+        ExecuteProcess(cmd=['a'], additional_env={'PATH': '/own:' + OLD, 'X': 'y'}),
+        ExecuteProcess(cmd=['b'], additional_env={'PATH': OLD + ':/own'}),
+    """
+    found = actions(tmp_path, body.replace("OLD", "__import__('os').environ['PATH']"))
+    assert of(found, "a")["additional_env"] == {"PATH": ["/own:", ""], "X": "y"}
+    assert of(found, "b")["additional_env"] == {"PATH": ["", ":/own"]}
+    assert os.environ["PATH"] not in (tmp_path / "out/fleet.launch.py").read_text()
+
+
+def test_a_folder_of_packages_is_that_of_their_sources(tmp_path: Path) -> None:
+    """The folder with links to sources is gone when the launch has been read."""
+    package = tmp_path / "ws/acme"
+    (package / "launch").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>acme</name></package>")
+    share = "__import__('ament_index_python').get_package_share_directory('acme')"
+    body = f"SetEnvironmentVariable('GZ_SIM_RESOURCE_PATH', {share} + '/..'), here('first'),"
+    text = LAUNCH.replace("SETUP", "pass").replace("BODY", body)
+    (package / "launch/up.launch.py").write_text(text)
+    (tmp_path / "robot.urdf").write_text(DESCRIPTION)
+    fleet = FLEET.replace("up.launch.py", "ws/acme/launch/up.launch.py")
+    (tmp_path / "fleet.yaml").write_text(
+        fleet.format(more="simulator: none", layout="both", affix="prefix")
+    )
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    (done,) = performed(str(tmp_path / "out/fleet.launch.py"), [Launching({"robots": "1"})])
+    environment = of(done.actions, "first")["environment"]
+    assert [Path(it) for it in environment["GZ_SIM_RESOURCE_PATH"].split(":")] == [tmp_path / "ws"]
+
+
+def test_files_of_what_is_not_here_are_the_robots(tmp_path: Path) -> None:
+    """A parameter file among the arguments of an include, and that of a spawner."""
+    (tmp_path / "lidar.yaml").write_text("lidar:\n  ros__parameters: {frame_id: base_link}\n")
+    text = "{joints: {type: joint_state_broadcaster/JointStateBroadcaster}}"
+    (tmp_path / "c.yaml").write_text(f"controller_manager:\n  ros__parameters: {text}\n")
+    body = INCLUDE.replace("'id': WHO", "'params_file': 'FOLDER/lidar.yaml'")
+    body += """
+        Node(package='controller_manager', executable='ros2_control_node',
+            parameters=['FOLDER/c.yaml']),
+        Node(package='controller_manager', executable='spawner',
+            arguments=['joints', '--param-file', 'FOLDER/c.yaml']),
+    """
+    found = actions(tmp_path, body.replace("FOLDER", str(tmp_path)), layout="frames-per-robot")
+    given = dict(of(found, "IncludeLaunchDescription")["launch_arguments"])
+    own = tmp_path / "out/robot2/lidar.yaml"
+    assert given == {"port": "/dev/ttyUSB1", "params_file": str(own)}
+    assert "frame_id: robot2/base_link" in own.read_text()
+    words = of(found, "spawner")["arguments"]
+    assert words[-2:] == ["--param-file", str(tmp_path / "out/robot2/c.yaml")]
+
+
+def test_a_stack_stands_for_a_launch_file_that_is_not_here(tmp_path: Path) -> None:
+    """Its nodes are known; started both ways each robot would have them twice."""
+    body = INCLUDE.replace("'id': WHO", "'id': '7'").replace("lidar_x", "slam_toolbox")
+    found = told(actions(tmp_path, body, more="stack: slam_toolbox"))
+    assert "IncludeLaunchDescription" not in found
+    assert any("slam_toolbox_node" in it for it in found)

@@ -41,6 +41,7 @@ from multibot_rewrite.spelling.start import (
     in_order,
     keywords,
     path_of,
+    with_rest,
 )
 from multibot_rewrite.system.records import SIM_TIME, Place
 
@@ -201,7 +202,7 @@ class _Planned(NamedTuple):
             return
         time = {SIM_TIME: clock}
         own, *inner = (one._replace(parameters=(*one.parameters, time)) for one in it.every)
-        values = self.value(keywords(own._replace(components=tuple(inner))))
+        values = self.value(_given(own._replace(components=tuple(inner))))
         environment = self.environment(robot)
         kind = "ComposableNodeContainer" if inner else "LifecycleNode" if it.brought_up else "Node"
         yield Action(kind, {**values, "output": "screen", "environment": environment})
@@ -222,10 +223,11 @@ class _Planned(NamedTuple):
         """Return a command, or the launch file of a package."""
         environment = self.environment(robot)
         if not it.process.is_include:
-            values = {**self.value(keywords(it)), "output": "screen", "environment": environment}
+            values = {**self.value(_given(it)), "output": "screen", "environment": environment}
             return Action("ExecuteProcess", values)
         source = f"{share(it.package)}/{it.executable}"
-        given = [[name, own] for name, _, own in (word.partition(":=") for word in it.arguments)]
+        words = self.value(it.arguments)
+        given = [[*pair] for pair in zip(words[::2], words[1::2], strict=True)]
         values = {"launch_description_source": source, "launch_arguments": given}
         scope = {"namespace": it.namespace.rstrip("/"), "remappings": self.value(it.remappings)}
         more = {name: one for name, one in scope.items() if one}
@@ -242,6 +244,12 @@ class _Planned(NamedTuple):
         if isinstance(it, Mapping):
             return {key: self.value(one) for key, one in it.items()}
         return [self.value(one) for one in it] if isinstance(it, list | tuple) else it
+
+
+def _given(it: Start) -> dict[str, Any]:
+    """Return the keywords of a process; nothing else is in the environment of a launch here."""
+    own = {name: with_rest(text, "") for name, text in it.environment.items()}
+    return {name: own if name == "additional_env" else one for name, one in keywords(it).items()}
 
 
 def _planned(starts: FleetStarts, launch: Launching, home: str) -> _Planned:

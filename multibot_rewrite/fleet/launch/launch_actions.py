@@ -91,7 +91,8 @@ def of_robot(
     (robot,) = one.robots
     names = names_of(one.fleet.table, robot.spec.namespace)
     facts = {it.name: it for it in one.evidence_of(robot).nodes}
-    given = _Given(one, robot, names, facts, files, bridged, values, {})
+    readers = dict(_readers(one, robot))
+    given = _Given(one, robot, names, facts, files, bridged, values, readers, {})
     given = given._replace(left=dict(_left(given)))
     processes = (_started(given, it) for it in given.running if names.started[it].way != COMPONENT)
     relayed = [it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file)]
@@ -117,7 +118,8 @@ def of_robot(
 
 
 class _Given(NamedTuple):
-    """What is known of a robot; ``left`` are the nodes that are not started, each with the reason."""
+    """What is known of a robot; ``readers`` are the nodes that get the parameter files of launch files,
+    ``left`` the nodes that are not started, each with the reason."""
 
     plan: FleetPlan
     robot: RewrittenRobot
@@ -126,6 +128,7 @@ class _Given(NamedTuple):
     files: Collection[str]
     bridged: Collection[str]
     values: Values
+    readers: Mapping[str, Collection[str]]
     left: Mapping[str, str]
 
     @property
@@ -253,7 +256,16 @@ def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
     """The processes of its launch files that are no nodes."""
     for it in plan.evidence_of(robot).processes:
         if not it.once:
-            yield _process(it.node, robot.spec.name, robot.spec.namespace, plan.fleet.naming)
+            made = _process(it.node, robot.spec.name, robot.spec.namespace, plan.fleet.naming)
+            yield made._replace(arguments=tuple(_with_files(made, robot)))
+
+
+def _with_files(it: Start, robot: RewrittenRobot) -> Iterator[str | File]:
+    """The words of a process, with the robot's own parameter files in those of a launch file."""
+    own = {os.path.realpath(one): one for one in robot.spec.companions.get("params", ())}
+    for word in it.arguments:
+        path = own.get(os.path.realpath(str(word))) if it.process.is_include else None
+        yield word if path is None else File(path_for(robot, path))
 
 
 def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) -> Start:
@@ -269,7 +281,9 @@ def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) ->
     if made.process.is_include and naming is not None:
         topics = ((f"/{it}", target_of(f"/{it}", TOPIC, space, naming)) for it in TF_TOPICS)
         rules = tuple((old, new) for old, new in topics if new)
-    is_node = bool(made.package)
+    is_node, words = bool(made.package), made.arguments
+    if made.process.is_include:
+        words = tuple(part for word in words for part in word.split(":=", 1))
     return Start(
         made.package,
         made.executable,
@@ -277,7 +291,7 @@ def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) ->
         name,
         (given,) if given else (),
         rules,
-        made.arguments,
+        words,
         environment=dict(made.environment),
         process=made.process,
         number=made.number,
@@ -300,7 +314,7 @@ def _is_listed(given: _Given, name: str) -> bool:
 def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     """Its robot's parameter files, and what no file says of it."""
     robot, facts = given.robot, given.facts[name]
-    found: list[Parameters] = [File(it) for it in params_paths(robot, given.files)]
+    found: list[Parameters] = [File(it) for it in _files(given, name)]
     known = facts.kind
     if facts.usual:
         found.append(dict(facts.usual))
@@ -326,6 +340,24 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
         managed = (_called(given, it) for it in given.names.managed.get(name, ()))
         found.append({"autostart": True, "node_names": list(filter(None, managed))})
     return tuple(found)
+
+
+def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, frozenset[str]]]:
+    """The parameter files that launch files name, each with the nodes that get it."""
+    handed = plan.evidence_of(robot).handed_on
+    for it in robot.spec.companions.get("params", ()) if handed else ():
+        path = os.path.realpath(it)
+        nodes = frozenset(node for node, own in handed.items() if path in own.files)
+        if nodes:
+            yield path_for(robot, it), nodes
+
+
+def _files(given: _Given, name: str) -> Iterator[str]:
+    """The parameter files of a node: of those that launch files name a launched one has its own."""
+    launched = name in given.plan.evidence_of(given.robot).handed_on
+    for it in params_paths(given.robot, given.files):
+        if not launched or name in given.readers.get(it, (name,)):
+            yield it
 
 
 def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
@@ -356,8 +388,10 @@ def controller(plan: FleetPlan, it: Started) -> Start:
     """Return the spawner of a controller of the one robot of a plan."""
     made = spawner_of(it, *_as_declared(plan, it.node.node))
     spawned = plan.evidence_of(plan.robots[0]).spawned.get(it.node.node)
-    how = spawned and spawned.process._replace(prefix="", cwd="")
-    return made._replace(process=how, number=spawned.number) if spawned and how else made
+    if spawned is None:
+        return made
+    how, words = spawned.process, (*made.arguments, *spawned.words)
+    return made._replace(process=how, number=spawned.number, arguments=words)
 
 
 def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
@@ -369,7 +403,12 @@ def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
     params = robot.spec.companions.get("params", ())
     if own and OWN_TYPE in own.values and own.values[OWN_TYPE].place.file in params:
         yield from ("--param-file", File(path_for(robot, own.values[OWN_TYPE].place.file)))
-    if controller in evidence.spawned and evidence.spawned[controller].inactive:
+    spawned = evidence.spawned.get(controller)
+    sources = {it.source for it in spawned.parameters} if spawned else ()
+    for it in params if not (own and OWN_TYPE in own.values) else ():
+        if os.path.realpath(it) in sources:
+            yield from ("--param-file", File(path_for(robot, it)))
+    if spawned and spawned.inactive and "--load-only" not in spawned.words:
         yield "--inactive"
 
 

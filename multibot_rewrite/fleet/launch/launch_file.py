@@ -8,6 +8,7 @@ from collections.abc import Collection, Sequence
 
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_actions
 from multibot_rewrite.fleet.launch.launch_python import to_python
@@ -57,7 +58,7 @@ def fleet_starts(
         launch_actions.of_all(plan, paths, simulators, values),
         [_with_windows(it, opened) for it in robots],
         [window for name, window in opened if name not in names],
-        bool(simulators) if clock is None else clock,
+        bool(simulators) or _is_simulated(plan) if clock is None else clock,
         [shell_line(it.start) for one in each for it in teleop.teleops(one)],
         _world(simulators, paths),
         domains_of(plan),
@@ -80,9 +81,7 @@ def _environment(
     domains = domains_of(plan)
     made = []
     for robot in robots:
-        more = {
-            name: value.strip(":") for name, value in own[robot.name] if (name, value) not in common
-        }
+        more = dict(it for it in own[robot.name] if it not in common)
         domain = {"ROS_DOMAIN_ID": f"{domains[robot.name]}"} if domains else {}
         starts = (
             it._replace(environment={**more, **it.environment, **(domain if _is_later(it) else {})})
@@ -90,6 +89,13 @@ def _environment(
         )
         made.append(robot._replace(starts=tuple(starts)))
     return dict(common), made
+
+
+def _is_simulated(plan: FleetPlan) -> bool:
+    """Do launch files say that nodes use the time of a simulator, of which nothing else is known?"""
+    robots = (it for it in plan.robots if it.spec.simulator != REAL)
+    handed = (it for robot in robots for it in plan.evidence_of(robot).handed_on.values())
+    return {it.clock for it in handed if it.clock is not None} == {True}
 
 
 def _is_later(it: Start) -> bool:

@@ -39,7 +39,10 @@ _IMPORTS = {
     "launch.conditions": ("IfCondition",),
     "launch.event_handlers": ("OnProcessExit", "OnProcessStart"),
     "launch.events": ("matches_action",),
-    "launch.substitutions": ("LaunchConfiguration", "PathJoinSubstitution", "PythonExpression"),
+    "launch.substitutions": (
+        *("EnvironmentVariable", "LaunchConfiguration", "PathJoinSubstitution"),
+        "PythonExpression",
+    ),
     "launch_ros.actions": (
         *("ComposableNodeContainer", "LifecycleNode", "Node", "PushRosNamespace", "SetRemap"),
     ),

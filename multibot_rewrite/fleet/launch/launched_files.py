@@ -27,7 +27,7 @@ from multibot_rewrite.fleet.outputs.output_file import yaml_of
 from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.of_robot import is_of_robot
 from multibot_rewrite.producers.launch.once import once_for_all
-from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
 from multibot_rewrite.system.records import Place
 
 PARAMS = "params"
@@ -70,10 +70,19 @@ def _named(spec: RobotSpec) -> Iterator[_Named]:
     """The parameter files that are there without the launch, each once."""
     seen: set[str] = set()
     nodes = launch_of(spec.launch, spec.words[0]).nodes
-    for given, place in ((it, node.place) for node in nodes for it in node.parameters):
+    for given, place in ((it, node.place) for node in nodes for it in _given_to(node)):
         if given.source and given.source not in seen and _sets_parameters(given.source):
             yield _Named(given.source, given.text, place)
         seen.add(given.source)
+
+
+def _given_to(node: LaunchedNode) -> Iterator[ParameterText]:
+    """The parameter files of a node, and those that a launch file which is not here is given."""
+    yield from node.parameters
+    for word in node.arguments if node.process.is_include else ():
+        path = os.path.realpath(word.partition(":=")[2])
+        if path.endswith((".yaml", ".yml")) and os.path.isfile(path):
+            yield ParameterText(path, yaml_of(path).text, path)
 
 
 def _sets_parameters(path: str) -> bool:

@@ -10,7 +10,7 @@ from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.launch.each_robot import FLAG, Code
-from multibot_rewrite.spelling.start import EVENTS, HOW, File, Led, Start, Text, in_order
+from multibot_rewrite.spelling.start import EVENTS, HOW, File, Led, Start, Text, in_order, with_rest
 
 # What stays in one line.
 _SHORT = 66
@@ -94,8 +94,8 @@ def _include(it: Start) -> Iterator[str]:
     yield from ("        IncludeLaunchDescription(", f"            {path},")
     if it.arguments:
         yield "            launch_arguments=["
-        for name, given in map(_argument, it.arguments):
-            yield f"                ({name}, {given}),"
+        for name, given in zip(it.arguments[::2], it.arguments[1::2], strict=True):
+            yield f"                ({value(name)}, {value(given)}),"
         yield "            ],"
     yield from ("        ),", "    ],", "),")
 
@@ -107,14 +107,6 @@ def _scope(it: Start) -> Iterator[str]:
         yield f"PushRosNamespace({value(it.namespace)}),"
     for old, new in it.remappings:
         yield f"SetRemap({value(old)}, {value(new)}),"
-
-
-def _argument(word: Any) -> tuple[str, str]:
-    """The name and value of a launch argument; what differs between robots is Python."""
-    name, _, rest = str(word).partition(":=")
-    if isinstance(word, Code) and word[:2] in ("f'", 'f"'):
-        return f"{name[1:]}{word[1]}", f"f{word[1]}{rest}"
-    return value(name), value(rest)
 
 
 def _action(it: Start, indent: int, own: OfRobot) -> Iterator[str]:
@@ -146,12 +138,18 @@ def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
     else:
         yield from lines("cmd=", [*_pairs((it.executable, *it.arguments))], ",")
     if it.environment:
-        yield from lines("additional_env=", it.environment, ",")
+        own = {name: _with_rest(name, text) for name, text in it.environment.items()}
+        yield from lines("additional_env=", own, ",")
     for name in HOW:
         if given := getattr(it.process, name):
             yield f"{name}={value(given)},"
     if not it.plugin:
         yield "output='screen',"
+
+
+def _with_rest(name: Any, text: Any) -> Any:
+    rest = Code(f"EnvironmentVariable({value(name)}, default_value='')")
+    return text if isinstance(text, Code) else with_rest(text, rest)
 
 
 def _of_node(it: Start, own: OfRobot) -> Iterator[str]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -113,7 +114,9 @@ def _lacking(plan: FleetPlan, group: RobotGroup, name: str, it: HandedOn) -> str
     slots; none of a node of a stack: its section has them."""
     known, _ = _known(plan, group)
     evidence = plan.evidence_of(group.robots[0])
-    if it.kind not in known.nodes or name in group.context.nodes or it.kind == STATIC:
+    first, *_ = (*group.companions.get("params", ()), "")
+    has_section = name in group.context.nodes and (not first or os.path.realpath(first) in it.files)
+    if it.kind not in known.nodes or has_section or it.kind == STATIC:
         return ""
     if any(node.name == name and node.shared for node in evidence.nodes):
         return ""

@@ -29,6 +29,7 @@ from multibot_rewrite.producers.launch.kept_paths import (
     is_made,
     kept_file,
     lasting,
+    lasting_folders,
     read_text,
 )
 from multibot_rewrite.producers.launch.made_files import source_of
@@ -165,25 +166,29 @@ def _environment(action: Any, here: Visit) -> tuple[tuple[str, str], ...]:
     given = getattr(action, "additional_env", None) or ()
     pairs = given.items() if isinstance(given, Mapping) else given
     own = {text(name, here.context): text(value, here.context) for name, value in pairs}
-    return tuple({**changed_environment(here), **own}.items())
+    told = {name: _added(value, here.before.get(name, "")) for name, value in own.items()}
+    return tuple({**changed_environment(here), **told}.items())
 
 
 def changed_environment(here: Visit) -> dict[str, str]:
     """The variables that the launch has set by now. What it adds to one has ``:`` where the rest is."""
     now = here.context.environment.items()
     changed = {name: value for name, value in now if here.before.get(name) != value}
-    return {name: _added(name, value, here.before.get(name, "")) for name, value in changed.items()}
+    found = {name: _added(value, here.before.get(name, "")) for name, value in changed.items()}
+    # Another machine may have some of it.
+    lists = {it for it in found if it.endswith("PATH") and not here.before.get(it)}
+    return {
+        name: f":{value.strip(':')}" if name in lists else value for name, value in found.items()
+    }
 
 
-def _added(name: str, value: str, before: str) -> str:
-    parts = value.split(os.pathsep)
-    if before and f"{os.pathsep}{value}{os.pathsep}".find(f"{os.pathsep}{before}{os.pathsep}") >= 0:
-        first = value.startswith(before)
-        rest = value.removeprefix(before) if first else value.removesuffix(before)
-        parts = rest.split(os.pathsep)
-    elif name.endswith("PATH"):
-        parts = ["", *parts]
-    return os.pathsep.join(lasting(parts))
+def _added(value: str, before: str) -> str:
+    """A value of the environment, without what was there before."""
+    if before and value.startswith(f"{before}{os.pathsep}"):
+        return f":{lasting_folders(value.removeprefix(before).strip(':'))}"
+    if before and value.endswith(f"{os.pathsep}{before}"):
+        return f"{lasting_folders(value.removesuffix(before).strip(':'))}:"
+    return lasting_folders(value)
 
 
 def how_it_runs(action: Any, here: Visit) -> Process:

@@ -30,7 +30,8 @@ _RUNNERS = frozenset(("sudo", "env", "nice", "bash", "sh", "python3", "python", 
 class HandedOn(NamedTuple):
     """The parameters that are in no file, the words of the program and its environment, how it runs,
     and where the launch file has it; ``texts`` are the descriptions among its parameters.
-    ``is_unnamed`` is true if only its code has its name. ``number`` is its place in the launch,
+    ``is_unnamed`` is true if only its code has its name. ``files`` are its parameter files, ``clock``
+    is its ``use_sim_time``, if it is said. ``number`` is its place in the launch,
     ``program`` are its package and program or class, ``kind`` is what it is known as."""
 
     values: Mapping[str, Any]
@@ -44,6 +45,8 @@ class HandedOn(NamedTuple):
     place: Place = NOWHERE
     program: tuple[str, str] = ("", "")
     kind: str = ""
+    files: tuple[str, ...] = ()
+    clock: bool | None = None
 
     @property
     def names(self) -> list[str]:
@@ -71,12 +74,14 @@ def handed_on(
         told = values_for(full, [document_of(it.file, it.text)]) if has_sections(it) else {}
         values |= {key: one.value for key, one in told.items()}
         values = {key: one for key, one in values.items() if not (it.source and key in told)}
-    values.pop(_CLOCK, None)
+    clock = values.pop(_CLOCK, None)
     texts = tuple(key for key in (DESCRIPTION, SEMANTIC) if values.pop(key, None) is not None)
     own = dict(it for it in node.environment if it not in of_all)
     program = node.package, node.executable
     more = not node.name, node.remappings, number, node.place, program
-    return HandedOn(values, node.arguments, own, node.process, texts, *more)
+    found = HandedOn(values, node.arguments, own, node.process, texts, *more)
+    files = tuple(dict.fromkeys(it.source for it in node.parameters if it.source))
+    return found._replace(files=files, clock=clock if isinstance(clock, bool) else None)
 
 
 def for_any(it: Any, robot: str) -> Any:

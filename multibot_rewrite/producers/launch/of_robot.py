@@ -59,6 +59,8 @@ _WORDS_OF_BUILD = (
     "rviz2",
     "cartographer_node",
 )
+# Packages of launch files alone, and how those of their nodes begin.
+_FAMILIES = {"nav2_bringup": "nav2_"}
 NO_NAME = "the launch file gives it no name"
 NOTHING: Mapping[str, HandedOn] = {}
 
@@ -120,7 +122,11 @@ def with_launched(
     of_all = graph.environment
     handed = {it.facts.name: _handed(it, of_all, _is_own(it, release)) for it in pairs}
     numbered = (it._replace(number=at) for at, it in enumerate(graph.nodes))
-    processes = (it for it in numbered if passes(it) and not _is_built(it))
+    processes = (
+        it
+        for it in numbered
+        if passes(it) and not _is_built(it) and not (it.process.is_include and _stands(it, kept))
+    )
     passing = tuple(_passing(it, words, of_all) for it in processes)
     return Launched(
         (*kept, *nodes.values(), *hosted),
@@ -185,6 +191,13 @@ def _is_built(it: LaunchedNode) -> bool:
     """Is it what a build makes of the robot's own files: a spawner, or of a simulator?"""
     is_simulator = it.package in SIMULATORS and it.executable == SIMULATOR
     return is_simulator or is_spawner(it) or _program(it) in programs().spawners
+
+
+def _stands(include: LaunchedNode, stack: Iterable[NodeFacts]) -> bool:
+    """Does the robot's stack have the nodes of a launch file that is not here?"""
+    family = _FAMILIES.get(include.package, include.package)
+    own = (it.package for it in stack if it.origin != NO_ORIGIN)
+    return any(it == family or (family[-1] == "_" and it.startswith(family)) for it in own)
 
 
 def _passing(
@@ -261,7 +274,7 @@ def _pair(
     rows = bridge_rows(it, words)
     found = facts._replace(
         name=_below(it.namespace, name, words),
-        endpoints=rows or _unmapped(facts),
+        endpoints=rows or (*_unmapped(facts), *(_only_named(it, facts, name) if base else ())),
         known=facts.kind if base else "",
         # A node that usually serves all robots, in the namespace of one, is that robot's.
         shared=bool(facts.shared or once_for_all(it)) and not is_of_robot(it.namespace, words),
@@ -285,6 +298,15 @@ def _named_by(it: LaunchedNode) -> tuple[Endpoint, ...]:
     # It may send or read transforms: under these rules they are its robot's.
     names = dict.fromkeys((*own, *(f"/{topic}" for topic in TF_TOPICS)))
     return tuple(Endpoint(TOPIC, "", old) for old in names)
+
+
+def _only_named(it: LaunchedNode, facts: NodeFacts, name: str) -> Iterator[Endpoint]:
+    """What the rules of a known node name besides its own topics: the program may have more."""
+    there = {expand(end.name, it.namespace, name) for end in facts.endpoints}
+    there |= {f"/{topic}" for topic in TF_TOPICS}
+    for old in dict.fromkeys(old for old, _ in it.remappings if not check_topic_name(old)):
+        if expand(old, it.namespace, name) not in there:
+            yield Endpoint(TOPIC, "", old)
 
 
 def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:

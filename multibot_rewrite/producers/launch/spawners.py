@@ -20,12 +20,15 @@ from multibot_rewrite.system.records import Place
 
 SPAWNER = "controller_manager/spawner"
 _ONE = "--controller"
+_TIMES = ("--controller-manager-timeout", "--switch-timeout", "--service-call-timeout")
+_SWITCHES = ("--load-only", "--activate-as-group", "--unload-on-kill", "--switch-asap")
 
 
 class Spawned(NamedTuple):
     """A controller that a spawner loads into ``manager`` (a full name): its type where the spawner
     says it, its parameters, remap rules, what starts the spawner if not the launch itself, where the
-    launch file has that, if it stays inactive, the number of the spawner, and how that runs."""
+    launch file has that, if it stays inactive, the number of the spawner, how that runs, and its
+    further words."""
 
     name: str
     manager: str
@@ -37,6 +40,7 @@ class Spawned(NamedTuple):
     inactive: bool = False
     number: int = -1
     process: Process = AS_USUAL
+    words: tuple[str, ...] = ()
 
     @property
     def full_name(self) -> str:
@@ -120,7 +124,8 @@ def _spawned(node: LaunchedNode) -> Iterator[Spawned]:
         own = (node.parameters, rules, node.later, node.place)
         inactive = given.inactive or given.stopped or given.load_only
         for name in given.controller_names:
-            yield Spawned(name, manager, given.controller_type, *own, inactive)
+            made = Spawned(name, manager, given.controller_type, *own, inactive)
+            yield made._replace(words=tuple(_further(given)))
 
 
 def _each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
@@ -133,6 +138,16 @@ def _each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
     for at, end in zip(starts, (*starts[1:], len(words)), strict=True):
         one = _parser(names="+").parse_args(list(words[at + 1 : end]))
         yield _below(one, vars(top))
+
+
+def _further(given: argparse.Namespace) -> Iterator[str]:
+    """The words that say how a controller is loaded; ``--inactive`` has a meaning of its own."""
+    for flag in _TIMES:
+        if value := getattr(given, flag[2:].replace("-", "_"), None):
+            yield from (flag, value)
+    for flag in _SWITCHES:
+        if getattr(given, flag[2:].replace("-", "_"), False):
+            yield flag
 
 
 def _below(one: argparse.Namespace, top: Mapping[str, object]) -> argparse.Namespace:
@@ -152,6 +167,6 @@ def _parser(names: str) -> _Parser:
         parser.add_argument(flag, action="store_true")
     parser.add_argument("-u", "--unload-on-kill", action="store_true")
     parser.add_argument("--switch-asap", action=argparse.BooleanOptionalAction)
-    for value in ("--controller-manager-timeout", "--switch-timeout", "--service-call-timeout"):
+    for value in _TIMES:
         parser.add_argument(value)
     return parser
