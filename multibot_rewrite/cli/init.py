@@ -25,10 +25,10 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import asked_number, plain_words, xacro_args
 from multibot_rewrite.description.sources.expand import kept_expansions
 from multibot_rewrite.fleet.proposal.choosing import Undecided
-from multibot_rewrite.fleet.proposal.fleet_text import text_of
+from multibot_rewrite.fleet.proposal.fleet_text import order_text, text_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import MEANT, Choice, Proposal, names_of, release_of
-from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.fleet.proposal.searching import Found, is_below
 from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, see, with_arguments
 from multibot_rewrite.fleet.proposal.trying import (
     as_named,
@@ -37,6 +37,7 @@ from multibot_rewrite.fleet.proposal.trying import (
     that_builds,
     with_faults_of_sources,
 )
+from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, order_in_words
 
 SIMULATORS = ("gazebo", "none")
 # Nodes of launch files that are named on the terminal.
@@ -64,6 +65,10 @@ def _run(options: argparse.Namespace) -> int:
         raise UsageError(
             "--robots is for one description; for several leave it out, then name, add or remove"
             " robots in the fleet file"
+        )
+    if wanted.launch and seen.named and len(seen.robots) > 1:
+        raise UsageError(
+            "--launch is for one description; name one, or write launch: into the file"
         )
     if not options.yes and sys.stdin.isatty() and sys.stderr.isatty():
         made = ask_for_fleet(seen, wanted)
@@ -109,8 +114,24 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         options.trust,
         tuple(options.robots),
         simulator=options.simulator or "",
+        launch=_launch(options),
+        stacks=tuple(options.stack),
     )
     return wanted._replace(file=options.output) if goes_to_file(options) else wanted
+
+
+def _launch(options: argparse.Namespace) -> tuple[LaunchOrder, ...] | None:
+    """The launch file that was named, none for the word ``none``; None where nobody said it."""
+    words = options.launch
+    if not words or words == [NONE]:
+        return () if words else None
+    text, roots = " ".join(words), [it for it in options.words if os.path.isdir(it)]
+    order = order_in_words(words, text, roots) if words[1:] else launch_order(text, roots)
+    if not os.path.isfile(order.file):
+        raise UsageError(f"{order.file}: there is no such launch file")
+    if any(is_below(order.file, it) for it in roots):
+        order = order._replace(package="", roots=(), file=os.path.relpath(order.file))
+    return (order._replace(trusted=options.trust),)
 
 
 def _check_names(options: argparse.Namespace) -> None:
@@ -152,10 +173,16 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
             options,
             f"wrote {options.output}: {what}; next: multibot build {options.output} -o out/",
         )
-    started = [who.partition(" ")[0] for _, _, who in made.launched.started]
+    started = [who.partition(" ")[0] for _, _, who in made.started]
     if started:
         listed = shorten(started, _NAMED)
         note(options, f"started by launch files and not by this fleet: {listed}")
+    for it in made.members:
+        others = it.bringup.others if it.bringup else ()
+        if it.bringup and others:
+            paths, other = shlex.join(options.words), order_text(others[0], os.curdir)
+            which = f"{it.bringup.name} starts most of {plural(len(others) + 1, 'launch file')}"
+            note(options, f"{which}; for another: multibot init {paths} --launch {other}")
     return STOPPED if made.notes else DONE
 
 
@@ -174,6 +201,8 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
         release = release_of(robots, seen.found, wanted)
         word = _one_of("ROS release", release.why, RELEASES, release)
         wanted = wanted._replace(release=word, named=True)
+    named = wanted.launch
+    wanted = _with_launch(robots[0], wanted, seen.found) if len(robots) == 1 else wanted
     robots = [_with_arguments(it, wanted, seen.found) for it in robots]
     found, made = _with_files_asked_for(robots, seen.found, wanted, {})
     refused = dict(made.refused) | dict.fromkeys(_left_out(made), LEFT_OUT)
@@ -187,14 +216,19 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
     word = _one_of("Simulator", simulator.why, SIMULATORS, simulator)
     if word == simulator.value:
         return made
-    wanted = wanted._replace(simulator=word, layout=str(made.keys["layout"].value))
+    layout = str(made.keys["layout"].value)
+    wanted = wanted._replace(simulator=word, layout=layout, launch=named)
     return _quietly(wanted, lambda it: that_builds(robots, found, it, refused))
 
 
 def _chosen(found: Sequence[Looked]) -> Sequence[Looked]:
     """The one that the user takes of several."""
     shown = [f"{it.path} ({plural(it.links, 'link')})" for it in found]
-    return found if len(found) == 1 else [found[_of_these(shown, "Description", "1") or 0]]
+    return (
+        found
+        if len(found) == 1
+        else [found[_of_these(shown, "Description", "1", or_none=False) or 0]]
+    )
 
 
 def _with_files_asked_for(
@@ -213,13 +247,15 @@ def _with_files_asked_for(
     return _with_files_asked_for(robots, found, wanted, {**refused, **left})
 
 
-def _of_these(shown: Sequence[str], question: str, default: str) -> int | None:
+def _of_these(
+    shown: Sequence[str], question: str, default: str, or_none: bool = True
+) -> int | None:
     """Which of these it is, by its number, None for the word ``none``: numbers are easier to type than
     paths."""
     for at, it in enumerate(shown, 1):
         say(f"  {at}: {it}", PROGRAM)
     numbers = [str(at) for at in range(1, len(shown) + 1)]
-    answer = _ask(question, default, numbers if default in numbers else [*numbers, NONE])
+    answer = _ask(question, default, [*numbers, NONE] if or_none else numbers)
     return None if answer == NONE else int(answer) - 1
 
 
@@ -239,6 +275,17 @@ def _with_names(wanted: Wanted) -> Wanted:
         return wanted._replace(each=int(text))
     names = tuple(text.replace(",", " ").split())
     return wanted._replace(each=len(names), names=names)
+
+
+def _with_launch(robot: Looked, wanted: Wanted, found: Found) -> Wanted:
+    """The launch file that starts the robot, where several do; none is one, too."""
+    (it,) = _quietly(wanted, lambda asked: with_arguments([robot], asked, found))
+    if wanted.launch is not None or it.bringup is None or not it.bringup.others:
+        return wanted
+    orders = [it.bringup.order, *it.bringup.others]
+    shown = [order_text(one, os.curdir) for one in orders]
+    at = _of_these(shown, "Launch file that starts the robot", "1")
+    return wanted._replace(launch=() if at is None else (orders[at],))
 
 
 def _with_arguments(robot: Looked, wanted: Wanted, found: Found) -> Looked:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import Naming, Policy, make_naming
 from multibot_rewrite.base.record import NamedTuple
@@ -40,6 +40,7 @@ from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, Edges, edges_o
 from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
+    NOT_KNOWN_PROCESS,
     NOT_READ,
     SIM_TIME,
     Edge,
@@ -290,7 +291,8 @@ def planned(fleet: Fleet) -> System:
 def _not_read(fleet: Fleet) -> Iterator[Finding]:
     """Yield what could not be read of launch files: the nodes in it are not in the plan."""
     problems = fleet.table.problems
-    yield from (it for it in problems if (it.code, it.level) == (NOT_READ, WARNING))
+    asked = ((NOT_READ, WARNING), (NOT_KNOWN_PROCESS, NOTE))
+    yield from (it for it in problems if (it.code, it.level) in asked)
 
 
 def _parameters(fleet: Fleet) -> Iterator[Parameter]:

@@ -21,7 +21,11 @@ from multibot_rewrite.fleet.file.robot_spec import (
 )
 from multibot_rewrite.fleet.file.shape import placed, with_shape
 from multibot_rewrite.fleet.fleet import Fleet, assemble, merge
-from multibot_rewrite.fleet.launch.launched_files import with_bridge_namespaces, with_launched_files
+from multibot_rewrite.fleet.launch.launched_files import (
+    with_bridge_namespaces,
+    with_launched_files,
+    with_one_map,
+)
 from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
 from multibot_rewrite.fleet.robots.joined_robots import with_joined
@@ -97,7 +101,7 @@ def plan_fleet(
     """
     file, joined = with_joined(file, trust)
     file, notes = with_launched_files(_trusted(with_shape(file)) if trust else with_shape(file))
-    file = with_bridge_namespaces(file)
+    file = with_one_map(with_bridge_namespaces(file))
     with gc_paused():
         naming = make_naming(**file.policy)
         said: Mapping[str, Sequence[Finding]] = {}
@@ -134,7 +138,8 @@ def _evidence(
         key: robot_nodes(spec, file, notes[spec.name], first[key].member, first[key].names.in_full)
         for key, spec in specs.items()
     }
-    check_shared(file, {node.name: node for it in found.values() for node in it.nodes})
+    every = (node.name for it in found.values() for node in (*it.nodes, *it.processes))
+    check_shared(file, dict.fromkeys(every))
     real = [it for it in robots if may_be_real(it, found[node_sources(it.spec)])]
     for it in real[:1]:
         key = node_sources(it.spec)

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from ipaddress import IPv4Address
+from itertools import pairwise
 
 from lxml.etree import _Element
 
@@ -53,6 +54,17 @@ def of_parameters(
             yield Address(OWN, name, text, node, given.place)
         elif not known and (kind := held_by(name, text)):
             yield Address(kind, name, text, node, given.place)
+
+
+def of_words(node: str, words: Sequence[str], place: Place) -> Iterator[Address]:
+    """What the words of a program name: a device, or what a parameter called as the flag would hold."""
+    for flag, word in pairwise(("", *words)):
+        name, sign, value = word.partition(":=" if ":=" in word else "=")
+        if not sign:
+            name, value = flag if flag.startswith("-") else "", word
+        label = name.lstrip("-").replace("-", "_")
+        if kind := held_by(label, value) if label else _of_value(value):
+            yield Address(kind, label, value, node, place)
 
 
 def held_by(name: str, text: str) -> str:

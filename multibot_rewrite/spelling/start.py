@@ -5,7 +5,7 @@ it."""
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
 from multibot_rewrite.base.record import NamedTuple
@@ -40,6 +40,37 @@ Parameters: TypeAlias = File | Mapping[str, Any]
 NOTHING: Mapping[str, str] = {}
 
 
+class Process(NamedTuple):
+    """How a process runs, besides what its node is given.
+
+    ``prefix`` stands before its command, ``cwd`` is its folder, with ``shell`` a shell reads the line.
+    With ``respawn`` it is started again when it ends, after ``respawn_delay`` seconds. It starts
+    ``delay`` seconds after the launch, or after the ``event`` (one of ``EVENTS``) of the process that
+    is number ``after`` in its launch, -1 for none. ``is_include`` is true for a launch file of a
+    package, with launch arguments as words.
+    """
+
+    prefix: str = ""
+    respawn: bool = False
+    respawn_delay: float = 0.0
+    cwd: str = ""
+    shell: bool = False
+    delay: float = 0.0
+    event: str = ""
+    after: int = -1
+    is_include: bool = False
+
+
+AS_USUAL = Process()
+# How a process runs, by the keywords of launch.
+HOW = ("prefix", "respawn", "respawn_delay", "cwd", "shell")
+# What a process may wait for, and the keyword of that.
+EVENTS: Mapping[str, str] = {
+    **{"OnProcessStart": "on_start", "OnProcessExit": "on_exit"},
+    "OnExecutionComplete": "on_exit",
+}
+
+
 class Start(NamedTuple):
     """A process: its program, its node's name and namespace (empty for those of its code), and what it
     is given.
@@ -47,7 +78,11 @@ class Start(NamedTuple):
     ``components`` are loaded into it: each has its class as ``plugin`` and no ``executable``.
     ``brought_up`` is true if its node has a life cycle that nobody else configures and activates.
     It starts if the launch argument ``condition`` is true and the package ``needs`` is installed,
-    where these are not empty. ``environment`` is what is set for it.
+    where these are not empty. ``environment`` is what is set for it. ``number`` is its place in the
+    launch that it is from, -1 for none.
+
+    Without a package the ``executable`` is a command. A launch file of a package has its path in the
+    share folder for one, and names and values of launch arguments as words.
     """
 
     package: str
@@ -63,6 +98,8 @@ class Start(NamedTuple):
     condition: str = ""
     needs: str = ""
     environment: Mapping[str, str] = NOTHING
+    process: Process = AS_USUAL
+    number: int = -1
 
     @property
     def full_name(self) -> str:
@@ -81,6 +118,41 @@ class Start(NamedTuple):
         told = [word for it in self.parameters for word in _parameter_words(it)]
         lead = ["--ros-args"] if told and not rules else []
         return [*(path_of(it) for it in self.arguments), *rules, *lead, *told]
+
+
+class Led(NamedTuple):
+    """A process, and those that start at events of it."""
+
+    start: Start
+    followers: tuple[Any, ...] = ()
+
+    def at(self, event: str) -> list[Led]:
+        """Return what starts at an event."""
+        return [it for it in self.followers if EVENTS[it.start.process.event] == event]
+
+
+def in_order(starts: Sequence[Start]) -> Iterator[Led]:
+    """Yield the processes with those that wait for them; one that waits for what is not there, or runs
+    under another condition, waits for nothing."""
+    leaders = {it.number: at for at, it in enumerate(starts) if it.number >= 0 and _leads(it)}
+    below: dict[int, list[int]] = {}
+    for at, it in enumerate(starts):
+        leader = leaders.get(it.process.after, -1) if it.process.event in EVENTS else -1
+        alike = leader >= 0 and _switches(it) == _switches(starts[leader])
+        below.setdefault(leader if alike and leader != at else -1, []).append(at)
+
+    def led(at: int) -> Led:
+        return Led(starts[at], tuple(map(led, below.get(at, ()))))
+
+    yield from map(led, below.get(-1, ()))
+
+
+def _leads(it: Start) -> bool:
+    return not (it.brought_up or it.process.is_include)
+
+
+def _switches(it: Start) -> tuple[str, str]:
+    return it.condition, it.needs
 
 
 def start_of(it: Started, program: Program, parameters: tuple[Parameters, ...] = ()) -> Start:
@@ -112,7 +184,13 @@ def shell_line(it: Start) -> str:
 
 
 def keywords(it: Start) -> dict[str, Any]:
-    """Return the keywords of launch_ros's Node, of ComposableNode for a component."""
+    """Return the keywords of launch_ros's Node, of ComposableNode for a component, of ExecuteProcess
+    for a command."""
+    how = {name: getattr(it.process, name) for name in HOW}
+    if not it.package:
+        cmd = [it.executable, *it.arguments]
+        given = {"cmd": cmd, "additional_env": it.environment, **how}
+        return {name: one for name, one in given.items() if one}
     given = {
         "package": it.package,
         "executable": it.executable,
@@ -124,8 +202,16 @@ def keywords(it: Start) -> dict[str, Any]:
         "arguments": list(it.arguments),
         "composable_node_descriptions": [keywords(one) for one in it.components],
         "additional_env": it.environment,
+        **how,
     }
     return {name: one for name, one in given.items() if one}
+
+
+def with_rest(text: str, rest: Any) -> Any:
+    """Return a value of the environment that is added to the rest: ``:`` is where that is."""
+    if text[:1] == ":":
+        return [rest, text]
+    return [text, rest] if text[-1:] == ":" else text
 
 
 def path_of(it: str | File) -> str:

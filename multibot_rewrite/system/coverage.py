@@ -9,6 +9,7 @@ from multibot_rewrite.base.conventions import OF_EVERY_NODE
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.system.records import (
+    NOT_KNOWN_PROCESS,
     NOT_READ,
     NOWHERE,
     Node,
@@ -45,7 +46,7 @@ class Coverage(NamedTuple):
     With ``told`` it says what nodes do; a graph that was only seen does not. ``compared`` is
     ``LAUNCHED`` or ``SEEN`` where a plan was compared with a graph. ``incomplete`` counts the reasons
     why something may be missing in the view, ``unread`` the parts of launch files of which the plan has
-    no nodes.
+    no nodes, ``processes`` those that are no nodes: of each only the command is known.
     """
 
     robots: tuple[Covered, ...]
@@ -53,6 +54,7 @@ class Coverage(NamedTuple):
     compared: str = ""
     incomplete: int = 0
     unread: int = 0
+    processes: int = 0
 
     @property
     def total(self) -> Covered:
@@ -64,7 +66,7 @@ class Coverage(NamedTuple):
     def is_whole(self) -> bool:
         """Is all read and all nodes known, did all answer that were asked, and was any seen?"""
         total, lost = self.total, self.compared and not self.total.seen
-        return not (total.unknown or total.silent or lost or self.unread)
+        return not (total.unknown or total.silent or lost or self.unread or self.processes)
 
 
 def coverage(system: System, graph: System | None = None) -> Coverage:
@@ -86,7 +88,9 @@ def coverage(system: System, graph: System | None = None) -> Coverage:
         silent = len(seen.difference(answers)) if answers else 0
         rows.append(Covered(robot, len(own), known, len(seen), silent))
     unread = sum(it.code == NOT_READ for it in system.gaps)
-    return Coverage(tuple(rows), told, compared, len(doubts(graph or system)), unread)
+    processes = sum(it.code == NOT_KNOWN_PROCESS for it in system.gaps)
+    more = len(doubts(graph or system)), unread, processes
+    return Coverage(tuple(rows), told, compared, *more)
 
 
 def _is_known(node: Node) -> bool:
@@ -129,6 +133,9 @@ def _details(held: Coverage) -> Iterator[str]:
         yield f"{count} {held.compared}"
     if total.silent:
         yield f"{total.silent} silent"
+    if held.processes:
+        verb = "it is" if held.processes == 1 else "they are"
+        yield f"{plural(held.processes, 'other process')} started as {verb}"
     if held.unread:
         yield f"{plural(held.unread, 'part')} of launch files not read"
 
@@ -136,7 +143,8 @@ def _details(held: Coverage) -> Iterator[str]:
 def as_value(held: Coverage) -> Mapping[str, object]:
     """Return the coverage as JSON has it; null for what is not said."""
     rows = [{"robot": it.robot, **_row(held, it)} for it in held.robots]
-    total = {**_row(held, held.total), "incomplete": held.incomplete, "unread": held.unread}
+    more = {"unread": held.unread, "processes": held.processes}
+    total = {**_row(held, held.total), "incomplete": held.incomplete, **more}
     return {**total, "robots": rows, "text": in_words(held)}
 
 

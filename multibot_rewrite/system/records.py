@@ -114,6 +114,8 @@ RUNS, MAY, UNKNOWN, OFF = map(Sure, SURE_WORDS)
 UNKNOWN_NODES = "unknown-nodes"
 # The code of a finding: what a part of a launch file starts is not in the plan.
 NOT_READ = "MF823"
+# The code of a process that is no node that is known.
+NOT_KNOWN_PROCESS = "MF859"
 # The code of a caveat: a node that was waited for did not come.
 WAITED_FOR = "expected-not-seen"
 

@@ -113,7 +113,7 @@ def row(nodes: int, known: int | None, seen: int | None, silent: int | None) -> 
 
 def whole(text: str, total: dict[str, object], each: dict[str, object]) -> dict[str, object]:
     robots = [{"robot": it, **each} for it in ("robot1", "robot2")]
-    return {**total, "incomplete": 0, "unread": 0, "robots": robots, "text": text}
+    return {**total, "incomplete": 0, "unread": 0, "processes": 0, "robots": robots, "text": text}
 
 
 def test_a_build_and_its_plan_say_what_they_start_as_it_is(
@@ -128,6 +128,19 @@ def test_a_build_and_its_plan_say_what_they_start_as_it_is(
     made = str(tmp_path / "plan.yaml")
     assert main(["plan", unknown.fleet, "--trust", "-o", made]) == 0
     assert last(capsys) == UNKNOWN
+
+
+def test_processes_that_are_no_nodes_are_counted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With one of them a graph is as planned only as far as known."""
+    command = "__import__('launch').actions.ExecuteProcess(cmd=['{}'])"
+    built = Built(tmp_path, command.format("agent"), command.format("beep"))
+    assert "2 other processes started as they are" in capsys.readouterr().err
+    assert built.check() == 0
+    assert "as planned as far as known" in last(capsys)
+    built.check("--format", "json")
+    assert numbers(capsys)["processes"] == 2
 
 
 def test_a_graph_of_unknown_nodes_is_as_planned_as_far_as_known(

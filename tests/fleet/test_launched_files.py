@@ -12,6 +12,7 @@ from rule_examples import DESCRIPTION
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.launch import launched_robot
+from multibot_rewrite.fleet.outputs.companion_files import launched_values
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
@@ -152,33 +153,36 @@ def test_robots_that_launch_files_of_their_own_have_them(
     assert controllers == {("robot1", "drive"), ("robot2", "steer")}
 
 
+# By default all robots would have one.
+ODOM = {"odom_frame": "robot2/odom"}
 EKF = "/ekf_filter_node:\n  ros__parameters: {{{}}}\n"
 
 
 @pytest.mark.parametrize(
-    ("values", "params", "told"),
+    ("values", "given"),
     [
-        ("base_link_frame: chassis, world_frame: ground", "", "base_link_frame, world_frame"),
-        # A default, what is no name, and what a file has as well.
-        ("base_link_frame: base_link, frequency: 20.0", "", ""),
-        ("base_link_frame: chassis", "ekf.yaml", ""),
+        (
+            "base_link_frame: chassis, world_frame: ground",
+            {"base_link_frame": "robot2/chassis", "world_frame": "robot2/ground"} | ODOM,
+        ),
+        (
+            "base_link_frame: base_link, frequency: 20.0",
+            {"base_link_frame": "robot2/base_link", "frequency": 20.0} | ODOM,
+        ),
     ],
 )
-def test_names_that_the_launch_itself_gives_are_told(
-    values: str, params: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_what_the_launch_itself_gives_is_given_with_the_names_of_each_robot(
+    values: str, given: dict[str, object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """robot_localization's ekf_node is started by what build writes, with parameter files alone."""
-    given = ParameterText("", EKF.format(values))
-    (tmp_path / "ekf.yaml").write_text(EKF.format("base_link_frame: chassis"))
     node = LaunchedNode(
-        "robot_localization", "ekf_node", "ekf_filter_node", "/", (), (given,), "", (), "", AT
-    )
+        *("robot_localization", "ekf_node", "ekf_filter_node", "/", ()),
+        (ParameterText("", EKF.format(values)),), "", (), "", AT,
+    )  # fmt: skip
     monkeypatch.setattr(launched_robot, "launch_graph", lambda _: LaunchGraph((node,)))
     (tmp_path / "robot.urdf").write_text(DESCRIPTION)
     (tmp_path / "bringup.launch.py").write_text("")
-    (tmp_path / "fleet.yaml").write_text(FLEET.format(params=params))
+    (tmp_path / "fleet.yaml").write_text(FLEET.format(params=""))
     plan = planned_fleet(tmp_path / "fleet.yaml")
-    said = [it for it in plan.fleet.table.problems if it.code == "MF824"]
-    assert [it.message.partition(" ekf_filter_node ")[2].partition(":")[0] for it in said] == (
-        [told] if told else []
-    )
+    made = launched_values(plan)
+    assert made.values["robot2", "ekf_filter_node"] == given
+    assert "MF824" not in {it.code for it in (*plan.fleet.table.problems, *made.findings)}

@@ -64,11 +64,17 @@ BRAIN = """\
 @pytest.mark.parametrize(
     ("layout", "rules"),
     [
-        ("tf-per-robot", [("in", "scan"), ("~/out", "result"), ("/tf", "tf")]),
+        (
+            "tf-per-robot",
+            [("in", "scan"), ("~/out", "result"), ("/tf", "tf"), ("/tf_static", "tf_static")],
+        ),
         ("frames-per-robot", [("in", "scan"), ("~/out", "result")]),
         (
             "postfix",
-            [("in", "/scan/robot2"), ("~/out", "result/robot2"), ("/tf", "/tf/robot2")],
+            [
+                *[("in", "/scan/robot2"), ("~/out", "result/robot2"), ("/tf", "/tf/robot2")],
+                ("/tf_static", "/tf_static/robot2"),
+            ],
         ),
     ],
 )

@@ -88,9 +88,10 @@ def test_a_node_is_started_as_its_launch_file_does(
     }
     assert it["arguments"] == ["--fast", "robot2"]
     assert it["additional_env"] == {"CUDA": "0", "WHO": "robot2"}
-    assert it["remappings"] == [["scan", "front"]]
+    # Its transforms are its robot's, if it sends or reads any.
+    assert it["remappings"] == [["scan", "front"], ["/tf", "tf"], ["/tf_static", "tf_static"]]
     (line,) = [it for it in capsys.readouterr().err.splitlines() if "MF822" in it]
-    assert "as they are: rate, gain, words and 8 more" in line
+    assert "build hands on rate, gain, words and 8 more" in line
 
 
 @pytest.mark.parametrize(
@@ -157,24 +158,18 @@ def test_a_section_of_a_node_that_nobody_starts_is_told_once(
     ]
 
 
-@pytest.mark.parametrize(
-    ("ends", "kept"),
-    [
-        ("", {"rate": 5, "base": "base_link"}),
-        ("publishes: {seen: std_msgs/msg/String},", {"rate": 5}),
-    ],
-)
+@pytest.mark.parametrize("ends", ["", "publishes: {seen: std_msgs/msg/String},"])
 def test_a_node_that_only_the_user_describes_keeps_it(
-    ends: str, kept: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    ends: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Of a value that holds a name, and that is not written, it is told, and of no other."""
+    """A value that holds a name has that of the robot."""
     rows = f"programs: [seer_node], {ends} params: {{base: {{kind: frame}}}}"
     described = f"nodes: {{eyes: {{package: seer, {rows}}}}}"
     own = "{'rate': 5, 'base': 'base_link'}"
     body = f"Node(package='seer', executable='seer_node', name='eyes', parameters=[{own}])"
     it = started(tmp_path, body, "nodes: own.yaml", own=described)["seer_node"]
-    assert values(it) == {**kept, "use_sim_time": False}
-    assert ("MF824" in capsys.readouterr().err) == ("base" not in kept)
+    assert values(it) == {"rate": 5, "base": "base_link/robot2", "use_sim_time": False}
+    assert "MF824" not in capsys.readouterr().err
 
 
 def test_what_a_person_starts_may_be_missing(

@@ -202,7 +202,8 @@ IN_YAML = """launch:
 def test_a_launch_file_in_xml_and_in_yaml(name: str, text: str, tmp_path: Path) -> None:
     (tmp_path / name).write_text(text)
     graph = launch_graph(LaunchOrder(str(tmp_path / name), (("robot", "robot2"),), (), True))
-    driver, _, part, late = graph.nodes
+    driver, _, part, command, late = graph.nodes
+    assert (command.package, command.executable, command.arguments) == ("", "ls", ("-l",))
     assert driver[:4] == ("acme", "driver", "d", "/robot2")
     assert driver.arguments == ("--id", "robot2_a", "-v")
     assert driver.remappings == (("scan", "front/scan"), ("tf", "robot2/tf"))
@@ -301,10 +302,12 @@ def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
         ("f", False),
         ("l", False),
         ("r", False),
+        ("rm", False),
         ("t", True),
         ("e", True),
     ]
     assert (graph.nodes[2].name, graph.nodes[2].remappings) == ("n", (("a", "b"),))
+    assert [it.process.delay for it in graph.nodes] == [0.0, 0.0, 0.0, 0.0, 5.0, 0.0]
     (note,) = graph.notes
     assert (note.place.line, "run time" in note.message) == (NAMES + 4, True)
 
@@ -429,15 +432,14 @@ def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
 
 def test_nothing_is_started(tmp_path: Path) -> None:
     made = tmp_path / "made"
-    found = one(
-        read(
-            tmp_path,
-            f"""\
+    command, found = read(
+        tmp_path,
+        f"""\
         ExecuteProcess(cmd=["touch", {str(made)!r}]),
         Node(package="acme", executable="d", parameters=[
             {{"robot_description": Command(["touch ", {str(made)!r}]), "rate": 1}}]),""",
-        )
-    )
+    ).nodes
+    assert (command.package, command.executable, command.arguments) == ("", "touch", (str(made),))
     assert not made.exists()
     assert any("rate: 1" in it.text for it in found.parameters)
 
@@ -501,7 +503,7 @@ def test_what_is_missing_costs_its_part(tmp_path: Path) -> None:
 """
     )
     graph = launch_graph(LaunchOrder(str(tmp_path / "bringup.launch.py"), trusted=True))
-    assert [it.executable for it in graph.nodes] == ["d", "e"]
+    assert [it.executable for it in graph.nodes] == ["d", "launch/a.launch.py", "e"]
     assert ["rate: 1" in it.text for it in graph.nodes[0].parameters].count(True) == 1
     told = [it.message for it in graph.notes]
     for package in ("acme_tools", "acme_configs", "acme_files"):
@@ -525,7 +527,12 @@ def test_packages_beside_the_launch_files_own_are_found(tmp_path: Path) -> None:
     file = tmp_path / "ws" / "acme_bringup" / "launch" / "all.launch.py"
     file.write_text(f"{HEAD}        {includes}\n    ])\n")
     graph = launch_graph(LaunchOrder(str(file), trusted=True))
-    assert [it.executable for it in graph.nodes] == ["acme_bringup", "acme_base"]
+    *nodes, far = graph.nodes
+    assert [it.executable for it in nodes] == ["acme_bringup", "acme_base"]
+    assert (far.package, far.executable, far.process.is_include) == (
+        *("acme_far", "launch/a.launch.py"),
+        True,
+    )
     assert ["'acme_far' is not installed" in it.message for it in graph.notes] == [True]
 
 
@@ -973,7 +980,8 @@ def test_a_command_that_is_a_simulator_is_a_node(
     *made, _ = read(tmp_path, f"{process}, Node(package='a', executable='b'),").nodes
     found = [(it.package, it.executable, it.name, it.namespace, it.arguments) for it in made]
     words = ("-s", "-r", "a.sdf")
-    assert found == ([(package, "gzserver", "", "/", words)] if package else [])
+    other = [("", command, "", "/", ("-s -r", "a.sdf"))] if command else []
+    assert found == ([(package, "gzserver", "", "/", words)] if package else other)
 
 
 # launch jazzy, include_launch_description.py: it looks for arguments before anything is started.

@@ -159,7 +159,8 @@ def test_a_launch_file_starts_no_program(tmp_path: Path, monkeypatch: pytest.Mon
     """What one prints is known where it only reads; it has ended well in every way to ask for it."""
     monkeypatch.setattr(subprocess, "Popen", subprocess.Popen)
     monkeypatch.setattr(os, "system", os.system)
-    lost = commands.start_nothing()
+    lines: list[str] = []
+    lost = commands.start_nothing(lines)
     made, file = tmp_path / "made", tmp_path / "a"
     file.write_text("b")
     assert subprocess.check_output(["cat", file], text=True) == "b"
@@ -171,4 +172,4 @@ def test_a_launch_file_starts_no_program(tmp_path: Path, monkeypatch: pytest.Mon
     assert lost == [f"it starts 'touch {made}' itself, which is not started here",
                     "it starts 'touch it' itself, which is not started here"]  # fmt: skip
     assert [subprocess.run(["cat", "/no/such"], check=False).stdout for _ in range(2)] == [b"", b""]
-    assert len(lost) == 3
+    assert len(lost) == 3 and lines[:2] == [f"cat {file}"] * 2

@@ -154,6 +154,7 @@ def _known(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
         if not own and "cell" not in data and maybe(draw, 3):
             files["launch/bringup.launch.xml"] = LAUNCH
             row["launch"] = ["launch/bringup.launch.xml"]
+            data |= {"own_nodes": ["rviz2"]} if maybe(draw) else {}
             data |= {"launch_roots": ["launch"]} if maybe(draw, 7) else {}
 
 

@@ -12,21 +12,26 @@ from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.of_robot import Launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
+from multibot_rewrite.spelling.start import AS_USUAL
 from multibot_rewrite.system.records import Place
 
 AT = Place("/ws/bringup.launch.py", 12)
 
 
 def started(package: str, executable: str, name: str = "", **more: object) -> LaunchedNode:
-    words = dict.fromkeys(LaunchedNode._fields, ()) | {
-        "package": package,
-        "executable": executable,
-        "name": name,
-        "namespace": "/",
-        "container": "",
-        "later": "",
-        "place": AT,
-    }
+    words = (
+        dict.fromkeys(LaunchedNode._fields, ())
+        | {"process": AS_USUAL, "number": -1}
+        | {
+            "package": package,
+            "executable": executable,
+            "name": name,
+            "namespace": "/",
+            "container": "",
+            "later": "",
+            "place": AT,
+        }
+    )
     return LaunchedNode(**{**words, **more})
 
 

@@ -29,13 +29,14 @@ REPORT_FORMS = ("table", "json")
 INSPECT = Command(
     "inspect",
     "inspect",
-    "%(prog)s [CODE... | NAME | FILE.xacro] [NAME:=VALUE...] [options]",
-    "Explain a finding's code, a plugin, a xacro's arguments.",
+    "%(prog)s [CODE... | NAME | FILE.xacro | FLEET] [NAME:=VALUE...] [options]",
+    "Explain a finding's code, a plugin, a xacro's arguments, what a fleet starts.",
     (
         Example("multibot inspect MB202", "a finding: what it is, why, how to fix it"),
         Example("multibot inspect MB", "all rules of urdf-lint; MG: those of check"),
         Example("multibot inspect libgazebo_ros_diff_drive.so", "which of its values are names?"),
         Example("multibot inspect arm.urdf.xacro", "which argument goes into which names?"),
+        Example("multibot inspect fleet.yaml", "what its launch files start, for whom"),
         Example("multibot inspect --suggest rover.urdf -o acme.vocab", "draft what is missing"),
         Example("multibot inspect", "all that is known: plugins, then rules"),
     ),
@@ -47,7 +48,7 @@ INSPECT = Command(
                     "words",
                     "NAME",
                     "a finding's code, its beginning, or its name; a library, class, element or"
-                    " sensor type; a xacro file, and NAME:=VALUE for it",
+                    " sensor type; a xacro file, and NAME:=VALUE for it; a fleet file",
                     "*",
                 ),
                 path_option(

@@ -44,6 +44,16 @@ PLAN_FORMS = ("plan", "table", "ros-args", "launch", "yaml", "json", "gazebo", "
 EVERY_WAY = "all"
 WAYS = ("process", "host", "component", "spawner", "plugin")
 
+_LAUNCH = (
+    "a launch file that starts each robot's nodes, with its arguments, as ros2 launch takes it,"
+    " or a system_model.yaml; it is read, nothing is started (docs/launch.md)"
+)
+_STACK = several(
+    "--stack",
+    "NAME",
+    "nodes that every robot runs besides robot_state_publisher (docs/stacks.md)",
+    [],
+)
 _DESCRIPTION = OptionGroup(
     "input",
     (
@@ -51,18 +61,12 @@ _DESCRIPTION = OptionGroup(
         argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
         ROBOTS,
         COUNT,
-        several(
-            "--stack",
-            "NAME",
-            "nodes that every robot runs besides robot_state_publisher (docs/stacks.md)",
-            [],
-        ),
+        _STACK,
         *KNOWN_NODES,
         repeated(
             "--launch",
             "'[PACKAGE] FILE NAME:=VALUE...'",
-            "a launch file that starts each robot's nodes, with its arguments, as ros2 launch takes it,"
-            " or a system_model.yaml; it is read, nothing is started (docs/launch.md)",
+            _LAUNCH,
         ),
         ROOTS,
         VOCABULARY,
@@ -107,6 +111,7 @@ INIT = Command(
         Example("multibot init -n 3 my_robot_ws/src", "search packages; three robots"),
         Example("multibot init arm.urdf.xacro rover.urdf --yes", "no questions"),
         Example("multibot init ur.urdf.xacro name:=ur ur_type:=ur5e", "arguments of the xacro"),
+        Example("multibot init src --launch src/rover/up.launch.py use_sim:=true", "its bringup"),
     ),
     (
         OptionGroup(
@@ -137,8 +142,15 @@ INIT = Command(
                     "--simulator",
                     "NAME",
                     ("none", "gazebo"),
-                    "none or gazebo; default: the simulator of the plugins",
+                    "none or gazebo; default: what the launch file starts, else the simulator of the"
+                    " plugins",
                 ),
+                Option(
+                    ("--launch",),
+                    _LAUNCH,
+                    {"metavar": "[PACKAGE] FILE NAME:=VALUE", "nargs": "+", "default": []},
+                ),
+                _STACK,
                 DISTRO,
                 switch("-y", "--yes", about="ask nothing, take the defaults"),
             ),
@@ -151,9 +163,11 @@ INIT = Command(
     ),
     "0 done, and it builds; 1 written, but it does not build yet; 2 wrong use, unreadable input, or "
     "no way to tell which of several robots is meant",
-    more="The fleet file gives a reason for each key. Each choice is tried with a build in memory: if"
-    " a layout does not work, the first one that works is taken. Editors complete and check the keys by"
-    " .fleet.schema.json, which is written beside the fleet file.",
+    more="Each robot gets what the launch file starts that starts the description; --launch names"
+    " another one, --launch none takes none. The fleet file gives a reason for each key. Each choice is"
+    " tried with a build in memory: if a layout does not work, the first one that works is taken."
+    " Editors complete and check the keys by .fleet.schema.json, which is written beside the fleet"
+    " file.",
 )
 BUILD = Command(
     "build",

@@ -79,6 +79,22 @@ def rewrite_params(
         return _params(job, beside, is_first)
 
 
+def rewrite_values(job: ParamsJob) -> Companion:
+    """Parameters of one node with slots for a robot: nothing is inserted, and no other file is asked.
+
+    Raises InputError as ``rewrite_params``.
+    """
+    with gc_paused():
+        check_no_slots(job.document.text, job.document.file)
+        file = read_params(job.document, job.context, job.known)
+        job = job._replace(known=job.known._replace(sent=file.sent))
+        pages = (it for it in file.pages if not it[0].shared)
+        made = [one for it in pages for one in name_splices(job, *it)]
+        splices = [it for it in made if isinstance(it, Splice)]
+        findings = [it for it in made if isinstance(it, Finding)]
+        return Companion(make_template(job.document.text, splices), file, _once(findings))
+
+
 def _params(job: ParamsJob, beside: Sequence[YamlText], is_first: bool) -> Companion:
     document, context = job.document, job.context
     file = read_params(document, context, job.known, job.own)

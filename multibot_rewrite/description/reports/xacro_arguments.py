@@ -7,6 +7,7 @@ import re
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
@@ -154,6 +155,13 @@ def find_arguments(
         found[name] = _argument(path, given, name, default, tree, reach, plain)
     untried = tuple(it for it in declared if it not in found)
     return XacroArguments(path, tuple(found.values()), untried, read.read)
+
+
+def declared_arguments(path: str, given: Mapping[str, str], reach: Reach) -> Mapping[str, str]:
+    """The arguments that a xacro declares with their defaults; none where it does not expand."""
+    with suppress(InputError):
+        return _declared(expand_traced(path, read_file(path), given, None, reach).sources)
+    return {}
 
 
 def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:

@@ -31,14 +31,26 @@ from multibot_rewrite.fleet.launch.starts import (
     launch_arguments,
 )
 from multibot_rewrite.fleet.outputs.relays import BRIDGE
-from multibot_rewrite.producers.launch.performed import Action, Launching, performed, share
+from multibot_rewrite.producers.launch.performed import END, Action, Launching, performed, share
 from multibot_rewrite.producers.launch.ros_arguments import ros2_run, ros_arguments
-from multibot_rewrite.spelling.start import File, Start, Text, keywords, path_of
+from multibot_rewrite.spelling.start import (
+    File,
+    Led,
+    Start,
+    Text,
+    in_order,
+    keywords,
+    path_of,
+    with_rest,
+)
 from multibot_rewrite.system.records import SIM_TIME, Place
 
 # The transitions of a life cycle, by number, and the states before and after the first.
 _CONFIGURE, _ACTIVATE = 1, 3
 _CONFIGURED = {"start_state": "configuring", "goal_state": "inactive"}
+_INCLUDE = "IncludeLaunchDescription"
+# Handlers are registered in this order.
+_EVENTS = (("OnProcessStart", "on_start"), ("OnProcessExit", "on_exit"))
 _INCLUDED = {GZ: "ros_gz_sim/gz_sim", CLASSIC: "gazebo_ros/gazebo"}
 # More of a value is not shown.
 _SHOWN = 100
@@ -149,11 +161,28 @@ class _Planned(NamedTuple):
         """Yield what is started for a robot, or for all (empty)."""
         missing = [it for it in starts if it.needs not in ("", *self.launch.installed)]
         time = self.is_on(SIM_TIME) if clock is None else clock
-        for it in starts:
-            if it in missing[:1]:
+        for it in in_order(starts):
+            if it.start in missing[:1]:
                 yield Action("LogInfo", {"msg": otherwise})
-            elif it not in missing and (not it.condition or self.is_on(it.condition)):
-                yield from self.process(it, robot, time)
+            elif it.start in missing or (it.start.condition and not self.is_on(it.start.condition)):
+                continue
+            else:
+                yield from self.led(it, robot, time)
+
+    def led(self, it: Led, robot: str, clock: bool) -> Iterator[Action]:
+        """Yield a process after its delay, and before it what starts at its events."""
+        if it.start.process.delay:
+            yield Action("TimerAction", {"period": it.start.process.delay})
+        first, *more = self.process(it.start, robot, clock)
+        for kind, word in _EVENTS:
+            if several := it.at(word):
+                yield Action(kind, {"target_action": first.values})
+                for one in several:
+                    yield from self.led(one, robot, clock)
+                yield Action(END, {})
+        yield from (first, *more)
+        if it.start.process.delay:
+            yield Action(END, {})
 
     def simulator(self, name: str) -> Action:
         """Return the include that starts a simulator."""
@@ -164,15 +193,17 @@ class _Planned(NamedTuple):
             given = [["gui", "false" if headless else "true"], ["world", world]]
         source = f"{share(package)}/launch/{file}.launch.py"
         values = {"launch_description_source": source, "launch_arguments": given}
-        return Action("IncludeLaunchDescription", values)
+        return Action(_INCLUDE, {**values, "environment": self.environment("")})
 
     def process(self, it: Start, robot: str, clock: bool) -> Iterator[Action]:
         """Yield a process; one that is brought up is configured, then activated."""
+        if it.process.is_include or not it.package:
+            yield self.other(it, robot)
+            return
         time = {SIM_TIME: clock}
         own, *inner = (one._replace(parameters=(*one.parameters, time)) for one in it.every)
-        values = self.value(keywords(own._replace(components=tuple(inner))))
-        domains = self.starts.domains
-        environment = {"ROS_DOMAIN_ID": f"{domains[robot]}"} if domains else {}
+        values = self.value(_given(own._replace(components=tuple(inner))))
+        environment = self.environment(robot)
         kind = "ComposableNodeContainer" if inner else "LifecycleNode" if it.brought_up else "Node"
         yield Action(kind, {**values, "output": "screen", "environment": environment})
         if it.brought_up:
@@ -181,6 +212,28 @@ class _Planned(NamedTuple):
             target = {"target_lifecycle_node": number, "entities": entities}
             yield Action("RegisterEventHandler", {**target, **_CONFIGURED})
             yield Action("EmitEvent", {"event": _change(number, _CONFIGURE)})
+
+    def environment(self, robot: str) -> dict[str, str]:
+        """Return the environment of what is started for a robot."""
+        domains = self.starts.domains
+        domain = {"ROS_DOMAIN_ID": f"{domains[robot]}"} if domains else {}
+        return {**{name: it.strip(":") for name, it in self.starts.environment.items()}, **domain}
+
+    def other(self, it: Start, robot: str) -> Action:
+        """Return a command, or the launch file of a package."""
+        environment = self.environment(robot)
+        if not it.process.is_include:
+            values = {**self.value(_given(it)), "output": "screen", "environment": environment}
+            return Action("ExecuteProcess", values)
+        source = f"{share(it.package)}/{it.executable}"
+        words = self.value(it.arguments)
+        given = [[*pair] for pair in zip(words[::2], words[1::2], strict=True)]
+        values = {"launch_description_source": source, "launch_arguments": given}
+        scope = {"namespace": it.namespace.rstrip("/"), "remappings": self.value(it.remappings)}
+        more = {name: one for name, one in scope.items() if one}
+        return Action(
+            _INCLUDE, {**values, **more, "environment": {**environment, **it.environment}}
+        )
 
     def value(self, it: Any) -> Any:
         """Return a value as the launch has it."""
@@ -191,6 +244,12 @@ class _Planned(NamedTuple):
         if isinstance(it, Mapping):
             return {key: self.value(one) for key, one in it.items()}
         return [self.value(one) for one in it] if isinstance(it, list | tuple) else it
+
+
+def _given(it: Start) -> dict[str, Any]:
+    """Return the keywords of a process; nothing else is in the environment of a launch here."""
+    own = {name: with_rest(text, "") for name, text in it.environment.items()}
+    return {name: own if name == "additional_env" else one for name, one in keywords(it).items()}
 
 
 def _planned(starts: FleetStarts, launch: Launching, home: str) -> _Planned:

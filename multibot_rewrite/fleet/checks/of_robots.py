@@ -30,7 +30,8 @@ from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 from multibot_rewrite.fleet.robots.simulators import is_simulated, other_hardware
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import MANAGER
-from multibot_rewrite.producers.addresses import of_hardware, of_parameters
+from multibot_rewrite.producers.addresses import of_hardware, of_parameters, of_words
+from multibot_rewrite.producers.launch.handed_on import for_robot
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.files.ros_names import in_description
 from multibot_rewrite.rules.launch.models import in_each_other
@@ -83,6 +84,7 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
     # What a file for several robots has is told there, or numbered.
     shared = frozenset(path for path, count in of_all.items() if count > 1)
     given = [one for it in robots for one in _of_nodes(it, plan.evidence_of(it), known, shared)]
+    given += [one for it in robots for one in _of_words(it, plan.evidence_of(it))]
     yield from (_said(it, it.hint) for it in _met(robots, given))
 
 
@@ -124,6 +126,16 @@ def _of_nodes(
         found = of_parameters(name, facts.params if facts else {}, own)
         simulated = robot.spec.simulator == "gazebo"
         yield from (it for it in found if it.kind != DEVICE or not simulated)
+
+
+def _of_words(robot: RewrittenRobot, evidence: RobotEvidence) -> Iterator[Address]:
+    """What nodes and processes of launch files have by their words."""
+    spec = robot.spec
+    rows = [(name, it.arguments, it.place) for name, it in evidence.handed_on.items()]
+    own = (it for it in evidence.processes if not it.once)
+    rows += [(it.name, it.node.arguments, it.node.place) for it in own]
+    for name, words, place in rows:
+        yield from of_words(f"/{spec.namespace}/{name}", for_robot(words, spec.name), place)
 
 
 def _for_another_robot(plan: FleetPlan) -> Iterator[Finding]:

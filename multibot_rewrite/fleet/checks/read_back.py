@@ -91,6 +91,10 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             graph = read_own(os.path.join(home, LAUNCH), own)
         except UnreadableError as error:
             return [_fault(f"{error}", Place(LAUNCH, 1), home)], LaunchGraph()
+        # What is not here is started as the sources have it.
+        packages = {it.package for it in made.starts.every if it.process.is_include}
+        notes = (it for it in graph.notes if it.missing not in packages)
+        graph = graph._replace(notes=tuple(notes))
         found = launched(graph, _known(plan))
         seen = found.system
         real = frozenset(it.spec.namespace for it in plan.robots if it.spec.simulator == REAL)

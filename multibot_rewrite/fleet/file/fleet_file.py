@@ -41,7 +41,8 @@ IN_FILE = "the fleet file says so"
 class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
-    parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
+    parameters, vocabulary. ``shared_nodes`` are nodes that run once for all robots, ``own_nodes`` those
+    that each robot has though others of the kind run once.
     ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
     ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots,
     ``shape`` for outputs as the launch files of a vendor take them, ``zenoh`` for configurations;
@@ -72,6 +73,7 @@ class FleetFile(NamedTuple):
     apart: Apart = TOGETHER
     why: str = ""
     shared_places: tuple[tuple[str, tuple[str, int]], ...] = ()
+    own_nodes: tuple[str, ...] = ()
 
 
 def read_fleet(
@@ -107,7 +109,7 @@ def read_fleet(
         tuple(listed(data.get("vocabulary", []))),
         robots,
         files,
-        tuple(it.strip("/") for it in listed(data.get("shared_nodes", []))),
+        _nodes(data, "shared_nodes"),
         data.get("sros2", False),
         data.get("params_style", ""),
         data.get("relayed", False),
@@ -119,7 +121,12 @@ def read_fleet(
         apart_of(read, {it.name: it.namespace for it in robots}),
         why,
         tuple((it, read.places[it,]) for it in LISTS if (it,) in read.places),
+        _nodes(data, "own_nodes"),
     )
+
+
+def _nodes(data: Mapping[str, Any], key: str) -> tuple[str, ...]:
+    return tuple(it.strip("/") for it in listed(data.get(key, [])))
 
 
 def _release(data: Mapping[str, Any], given: str, environment: Mapping[str, str]) -> SaidRelease:

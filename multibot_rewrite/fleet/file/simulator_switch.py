@@ -41,6 +41,11 @@ def is_called_as_switch(argument: str) -> bool:
     return _NAME.search(argument.lower()) is not None
 
 
+def other_values(value: str) -> list[str]:
+    """Return the opposite of a value that is true or false."""
+    return [_OTHERS[value]] if value in _OTHERS else []
+
+
 def hardware_classes(root: _Element) -> list[str]:
     """The hardware classes of a description's ``<ros2_control>``."""
     found = (it.text or "" for it in root.iterfind(".//ros2_control/hardware/plugin"))

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator, Mapping
+from typing import Any, TypeAlias
 
 from multibot_rewrite.base.conventions import BY_HAND
+from multibot_rewrite.base.naming import TF_TOPICS, Naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.checks.lacking import CARTOGRAPHER
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
@@ -44,6 +46,15 @@ from multibot_rewrite.knowledge.programs import (
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
+from multibot_rewrite.producers.launch.handed_on import (
+    DESCRIPTION,
+    SEMANTIC,
+    HandedOn,
+    for_robot,
+    handed_on,
+)
+from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.producers.launch.static_transforms import STATIC, with_frames
 from multibot_rewrite.spelling.domain_bridge import bridge_name, bridge_path
 from multibot_rewrite.spelling.start import (
     File,
@@ -53,31 +64,41 @@ from multibot_rewrite.spelling.start import (
     spawner_of,
     start_of,
 )
+from multibot_rewrite.spelling.targets import placed, target_of
 from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER, Started
-from multibot_rewrite.system.records import PUBLISHES
+from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 STATE = "robot_state_publisher"
+# Their words name files of the robot.
+_WORDS_OF_BUILD = (STATE, CARTOGRAPHER)
+# What launch files themselves set, by robot and node.
+Values: TypeAlias = Mapping[tuple[str, str], Mapping[str, Any]]
 # Started by hand, or once for all robots.
 _BY_HAND = (*BY_HAND, "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
 _DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/stacks.md)"
 _NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
+_NO_NAME = "unnamed"
 _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
 _DOMAIN_BRIDGE = ("domain_bridge", "domain_bridge")
 
 
-def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -> RobotStarts:
+def of_robot(
+    one: FleetPlan, files: Collection[str], bridged: Collection[str], values: Values
+) -> RobotStarts:
     """What the one robot of a plan runs; ``files`` are the paths that the build writes, ``bridged`` the
-    topics that bridges bring from a simulator."""
+    topics that bridges bring from a simulator, ``values`` what launch files themselves set."""
     (robot,) = one.robots
     names = names_of(one.fleet.table, robot.spec.namespace)
     facts = {it.name: it for it in one.evidence_of(robot).nodes}
-    given = _Given(one, robot, names, facts, files, bridged, {})
+    readers = dict(_readers(one, robot))
+    given = _Given(one, robot, names, facts, files, bridged, values, readers, {})
     given = given._replace(left=dict(_left(given)))
     processes = (_started(given, it) for it in given.running if names.started[it].way != COMPONENT)
     relayed = [it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file)]
+    launched = sorted((*processes, *_processes(one, robot)), key=lambda it: it.number)
     starts = (
-        *processes,
+        *launched,
         *(it.start for it in start_poses.start_poses(one).transforms),
         *(it for it in relayed if not it.needs),
         *_domain_bridge(robot, files),
@@ -97,7 +118,8 @@ def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -
 
 
 class _Given(NamedTuple):
-    """What is known of a robot; ``left`` are the nodes that are not started, each with the reason."""
+    """What is known of a robot; ``readers`` are the nodes that get the parameter files of launch files,
+    ``left`` the nodes that are not started, each with the reason."""
 
     plan: FleetPlan
     robot: RewrittenRobot
@@ -105,6 +127,8 @@ class _Given(NamedTuple):
     facts: Mapping[str, NodeFacts]
     files: Collection[str]
     bridged: Collection[str]
+    values: Values
+    readers: Mapping[str, Collection[str]]
     left: Mapping[str, str]
 
     @property
@@ -152,9 +176,8 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
 
 
 def _is_needed(given: _Given, it: NodeFacts) -> bool:
-    """A node under a condition: what nobody else sends is needed, and what only has no name runs."""
-    own = given.plan.evidence_of(given.robot).handed_on.get(it.name)
-    if own is not None and own.is_unnamed:
+    """A node under a condition: what nobody else sends is needed, and what is launched runs."""
+    if it.name in given.plan.evidence_of(given.robot).handed_on:
         return True
     topic = it.when.removeprefix(f"{UNSENT}: ")
     if topic == it.when:
@@ -177,10 +200,11 @@ def _started(given: _Given, name: str) -> Start:
         return controller(given.plan, it)
     program = _program(given, name)
     assert program is not None
-    made = start_of(it, program, _parameters(given, name))
-    made = _with_own(given.plan, given.robot, made, name)
+    made = _with_own(given.plan, given.robot, start_of(it, program, _parameters(given, name)), name)
+    own = given.values.get((given.robot.spec.name, name), {})
+    words = with_frames(made.arguments, own) if facts.kind == STATIC else made.arguments
     return made._replace(
-        arguments=(*made.arguments, *_options(given, facts)),
+        arguments=(*words, *_options(given, facts)),
         components=tuple(_components(given, name)),
         brought_up=is_unmanaged(facts, given.release) and not _is_listed(given, name),
     )
@@ -205,19 +229,72 @@ def _components(given: _Given, container: str) -> Iterator[Start]:
 
 
 def _with_own(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> Start:
-    """A process or component with what a launch file gives it that nobody knows; a description in it
-    is the robot's."""
-    evidence = plan.evidence_of(robot)
-    if name not in evidence.handed_on:
+    """A process or component with what its launch file gives it; a description in it is the robot's."""
+    found = plan.evidence_of(robot).handed_on.get(name)
+    if found is None:
         return it
-    own = evidence.handed_on[name].for_robot(robot.spec.name)
-    texts = {"robot_description": Text(_description(robot))}
-    values = {key: texts.get(key, one) for key, one in own.values.items()}
+    own: HandedOn = for_robot(found._replace(values={}), robot.spec.name)
+    package, program = own.program
+    sources = {DESCRIPTION: robot.spec.description, SEMANTIC: robot.spec.srdf}
+    texts = {
+        key: Text(path_for(robot, expanded_name(sources[key]))) for key in own.texts if sources[key]
+    }
     return it._replace(
         name="" if own.is_unnamed and it.name == name.rpartition("/")[2] else it.name,
-        parameters=(*it.parameters, *([values] if values else [])),
-        arguments=(*it.arguments, *own.arguments),
+        parameters=(*it.parameters, *([texts] if texts else [])),
+        package=package,
+        executable="" if it.plugin else program,
+        plugin=program if it.plugin else "",
+        arguments=it.arguments if own.kind in _WORDS_OF_BUILD else own.arguments,
         environment=own.environment,
+        process=own.process,
+        number=own.number,
+    )
+
+
+def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
+    """The processes of its launch files that are no nodes."""
+    for it in plan.evidence_of(robot).processes:
+        if not it.once:
+            made = _process(it.node, robot.spec.name, robot.spec.namespace, plan.fleet.naming)
+            yield made._replace(arguments=tuple(_with_files(made, robot)))
+
+
+def _with_files(it: Start, robot: RewrittenRobot) -> Iterator[str | File]:
+    """The words of a process, with the robot's own parameter files in those of a launch file."""
+    own = {os.path.realpath(one): one for one in robot.spec.companions.get("params", ())}
+    for word in it.arguments:
+        path = own.get(os.path.realpath(str(word))) if it.process.is_include else None
+        yield word if path is None else File(path_for(robot, path))
+
+
+def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) -> Start:
+    """A process of a robot; of all without a naming, as it is."""
+    made: LaunchedNode = for_robot(it, robot)
+    namespace, name = made.namespace, made.name
+    if naming is not None:
+        above = made.namespace.strip("/")
+        namespace, spelled = placed(space, f"{above}/{name or _NO_NAME}", naming)
+        name = spelled if name else ""
+    given = handed_on(made, made.name).values if not made.process.is_include else {}
+    rules = made.remappings
+    if made.process.is_include and naming is not None:
+        topics = ((f"/{it}", target_of(f"/{it}", TOPIC, space, naming)) for it in TF_TOPICS)
+        rules = tuple((old, new) for old, new in topics if new)
+    is_node, words = bool(made.package), made.arguments
+    if made.process.is_include:
+        words = tuple(part for word in words for part in word.split(":=", 1))
+    return Start(
+        made.package,
+        made.executable,
+        namespace if is_node else "",
+        name,
+        (given,) if given else (),
+        rules,
+        words,
+        environment=dict(made.environment),
+        process=made.process,
+        number=made.number,
     )
 
 
@@ -237,10 +314,13 @@ def _is_listed(given: _Given, name: str) -> bool:
 def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     """Its robot's parameter files, and what no file says of it."""
     robot, facts = given.robot, given.facts[name]
-    found: list[Parameters] = [File(it) for it in params_paths(robot, given.files)]
+    found: list[Parameters] = [File(it) for it in _files(given, name)]
     known = facts.kind
     if facts.usual:
         found.append(dict(facts.usual))
+    values = given.values.get((robot.spec.name, name))
+    if values and known != STATIC:
+        found.append(values)
     if known == MANAGER and (types := dict(_types(given, name))):
         found.append(types)
     if known == start_poses.AMCL and path_for(robot, "start_pose.yaml") in given.files:
@@ -260,6 +340,24 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
         managed = (_called(given, it) for it in given.names.managed.get(name, ()))
         found.append({"autostart": True, "node_names": list(filter(None, managed))})
     return tuple(found)
+
+
+def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, frozenset[str]]]:
+    """The parameter files that launch files name, each with the nodes that get it."""
+    handed = plan.evidence_of(robot).handed_on
+    for it in robot.spec.companions.get("params", ()) if handed else ():
+        path = os.path.realpath(it)
+        nodes = frozenset(node for node, own in handed.items() if path in own.files)
+        if nodes:
+            yield path_for(robot, it), nodes
+
+
+def _files(given: _Given, name: str) -> Iterator[str]:
+    """The parameter files of a node: of those that launch files name a launched one has its own."""
+    launched = name in given.plan.evidence_of(given.robot).handed_on
+    for it in params_paths(given.robot, given.files):
+        if not launched or name in given.readers.get(it, (name,)):
+            yield it
 
 
 def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
@@ -288,7 +386,12 @@ def _description(robot: RewrittenRobot) -> str:
 
 def controller(plan: FleetPlan, it: Started) -> Start:
     """Return the spawner of a controller of the one robot of a plan."""
-    return spawner_of(it, *_as_declared(plan, it.node.node))
+    made = spawner_of(it, *_as_declared(plan, it.node.node))
+    spawned = plan.evidence_of(plan.robots[0]).spawned.get(it.node.node)
+    if spawned is None:
+        return made
+    how, words = spawned.process, (*made.arguments, *spawned.words)
+    return made._replace(process=how, number=spawned.number, arguments=words)
 
 
 def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
@@ -300,7 +403,12 @@ def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
     params = robot.spec.companions.get("params", ())
     if own and OWN_TYPE in own.values and own.values[OWN_TYPE].place.file in params:
         yield from ("--param-file", File(path_for(robot, own.values[OWN_TYPE].place.file)))
-    if controller in evidence.spawned and evidence.spawned[controller].inactive:
+    spawned = evidence.spawned.get(controller)
+    sources = {it.source for it in spawned.parameters} if spawned else ()
+    for it in params if not (own and OWN_TYPE in own.values) else ():
+        if os.path.realpath(it) in sources:
+            yield from ("--param-file", File(path_for(robot, it)))
+    if spawned and spawned.inactive and "--load-only" not in spawned.words:
         yield "--inactive"
 
 
@@ -310,7 +418,8 @@ def _spawned(given: _Given) -> Iterator[Start]:
     if not is_simulated(robot):
         return
     (it,) = spawn.in_folder(given.plan)
-    yield spawn.spawner(it, spawn.is_classic(robot))
+    number = given.plan.evidence_of(robot).placing
+    yield spawn.spawner(it, spawn.is_classic(robot))._replace(number=number)
     path = gz_bridge_path(robot)
     if path in given.files:
         spaces = {it.namespace for it in given.names.nodes.values()}
@@ -328,12 +437,12 @@ def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[St
 
 
 def of_all(
-    plan: FleetPlan, files: Collection[str], simulators: Collection[str]
+    plan: FleetPlan, files: Collection[str], simulators: Collection[str], values: Values
 ) -> tuple[Start, ...]:
     """What runs once for all robots: the bridge of the clock, and nodes that all of them share."""
     names = names_of(plan.fleet.table, "")
     known = {it.name: it for one in plan.evidence.values() for it in one.nodes}
-    shared = tuple(_shared(plan, names, known))
+    shared = (*_shared(plan, names, known, values), *_processes_of_all(plan))
     if BRIDGE_FILE not in files:
         return shared
     bridge = Start(*_BRIDGE, parameters=({"config_file": File(BRIDGE_FILE)},))
@@ -341,7 +450,20 @@ def of_all(
     return (bridge._replace(condition=SIMULATOR), *shared) if simulators else (*shared, bridge)
 
 
-def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -> Iterator[Start]:
+def _processes_of_all(plan: FleetPlan) -> list[Start]:
+    """The processes that run once, each once."""
+    found: list[Start] = []
+    for robot in plan.robots:
+        for it in (one for one in plan.evidence_of(robot).processes if one.once):
+            made = _process(it.node, robot.spec.name, "", None)
+            made = made._replace(number=-1, process=made.process._replace(after=-1))
+            found += [] if made in found else [made]
+    return found
+
+
+def _shared(
+    plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts], values: Values
+) -> Iterator[Start]:
     """The shared nodes have their sections in the files of every robot, and they are alike."""
     first, started = plan.robots[0], []
     for name, it in names.started.items():
@@ -349,12 +471,18 @@ def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -
         program = program_of(facts, plan.file.distro) if facts and name not in _BY_HAND else None
         if facts is None or program is None or name == "ros_gz_bridge":
             continue
-        files = [File(path_for(first, one)) for one in first.spec.companions.get("params", ())]
+        paths = first.spec.companions.get("params", ())
+        files: list[Parameters] = [File(path_for(first, one)) for one in paths]
+        own = values.get((first.spec.name, name))
+        files += [own] if own else []
         if facts.kind in NAV2:
             started.append(it.node.name)
         if plan.file.cell and name == MOVE_GROUP:
             files = [File(parameters_path(plan.file.cell))]
-        yield _with_own(plan, first, start_of(it, program, tuple(files)), name)
+        made = _with_own(plan, first, start_of(it, program, tuple(files)), name)
+        handed = plan.evidence_of(first).handed_on.get(name)
+        rules = made.remappings or (handed.rules if handed else ())
+        yield made._replace(remappings=rules, number=-1)
     if started:
         manager = known_program(LIFECYCLE_MANAGER, plan.file.distro)
         values = {"autostart": True, "node_names": started}

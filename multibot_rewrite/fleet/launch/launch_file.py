@@ -8,12 +8,15 @@ from collections.abc import Collection, Sequence
 
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_actions
 from multibot_rewrite.fleet.launch.launch_python import to_python
 from multibot_rewrite.fleet.launch.starts import GZ, RVIZ, FleetStarts, RobotStarts
 from multibot_rewrite.fleet.outputs import spawn, teleop, world_file
+from multibot_rewrite.fleet.outputs.companion_files import launched_values
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
+from multibot_rewrite.producers.launch.handed_on import for_robot
 from multibot_rewrite.spelling.start import File, Start, shell_line
 
 LAUNCH = "fleet.launch.py"
@@ -36,7 +39,9 @@ def fleet_starts(
     is built, ``bridged`` the topics that bridges bring, ``shown`` the windows of RViz, each with its
     robot, which it opens if somebody has asked for them."""
     paths = frozenset(it.path for it in files)
-    robots = [launch_actions.of_robot(one, paths, bridged) for one in each]
+    values = launched_values(plan).values
+    robots = [launch_actions.of_robot(one, paths, bridged, values) for one in each]
+    environment, robots = _environment(plan, robots)
     simulators = spawn.simulators(plan)
     clocks = {it.spec.name: it.spec.use_sim_time for it in plan.robots}
     first, *others = {*clocks.values()}
@@ -50,15 +55,51 @@ def fleet_starts(
     return FleetStarts(
         f"Start {count} of {source}{facts_of_release(plan.file.distro)}.",
         simulators,
-        launch_actions.of_all(plan, paths, simulators),
+        launch_actions.of_all(plan, paths, simulators, values),
         [_with_windows(it, opened) for it in robots],
         [window for name, window in opened if name not in names],
-        bool(simulators) if clock is None else clock,
+        bool(simulators) or _is_simulated(plan) if clock is None else clock,
         [shell_line(it.start) for one in each for it in teleop.teleops(one)],
         _world(simulators, paths),
         domains_of(plan),
         [window for _, window in shown],
+        environment,
     )
+
+
+def _environment(
+    plan: FleetPlan, robots: Sequence[RobotStarts]
+) -> tuple[dict[str, str], list[RobotStarts]]:
+    """The environment that launch files set for all processes of all robots, and the robots with what
+    they set for one. What starts later is no longer in the domain of its robot: it gets that, too."""
+    own = {
+        it.spec.name: for_robot(plan.evidence_of(it).environment, it.spec.name)
+        for it in plan.robots
+    }
+    first = own[plan.robots[0].spec.name]
+    common = [it for it in first if all(it in every for every in own.values())]
+    domains = domains_of(plan)
+    made = []
+    for robot in robots:
+        more = dict(it for it in own[robot.name] if it not in common)
+        domain = {"ROS_DOMAIN_ID": f"{domains[robot.name]}"} if domains else {}
+        starts = (
+            it._replace(environment={**more, **it.environment, **(domain if _is_later(it) else {})})
+            for it in robot.starts
+        )
+        made.append(robot._replace(starts=tuple(starts)))
+    return dict(common), made
+
+
+def _is_simulated(plan: FleetPlan) -> bool:
+    """Do launch files say that nodes use the time of a simulator, of which nothing else is known?"""
+    robots = (it for it in plan.robots if it.spec.simulator != REAL)
+    handed = (it for robot in robots for it in plan.evidence_of(robot).handed_on.values())
+    return {it.clock for it in handed if it.clock is not None} == {True}
+
+
+def _is_later(it: Start) -> bool:
+    return bool(it.process.delay or it.process.event)
 
 
 def domains_of(plan: FleetPlan) -> dict[str, int]:

@@ -22,7 +22,7 @@ from multibot_rewrite.fleet.launch.starts import (
     RobotStarts,
     launch_arguments,
 )
-from multibot_rewrite.spelling.start import File
+from multibot_rewrite.spelling.start import File, in_order
 
 _NAME = "name"
 # What ament_flake8 allows, and robots of which each has its line to drive.
@@ -32,13 +32,20 @@ _IMPORTS = {
     "ament_index_python.packages": ("PackageNotFoundError", "get_package_prefix"),
     "launch": ("LaunchDescription",),
     "launch.actions": (
-        *("DeclareLaunchArgument", "EmitEvent", "GroupAction", "IncludeLaunchDescription"),
-        *("LogInfo", "OpaqueFunction", "RegisterEventHandler", "SetEnvironmentVariable"),
+        *("AppendEnvironmentVariable", "DeclareLaunchArgument", "EmitEvent", "ExecuteProcess"),
+        *("GroupAction", "IncludeLaunchDescription", "LogInfo", "OpaqueFunction"),
+        *("RegisterEventHandler", "SetEnvironmentVariable", "TimerAction"),
     ),
     "launch.conditions": ("IfCondition",),
+    "launch.event_handlers": ("OnProcessExit", "OnProcessStart"),
     "launch.events": ("matches_action",),
-    "launch.substitutions": ("LaunchConfiguration", "PathJoinSubstitution", "PythonExpression"),
-    "launch_ros.actions": ("ComposableNodeContainer", "LifecycleNode", "Node"),
+    "launch.substitutions": (
+        *("EnvironmentVariable", "LaunchConfiguration", "PathJoinSubstitution"),
+        "PythonExpression",
+    ),
+    "launch_ros.actions": (
+        *("ComposableNodeContainer", "LifecycleNode", "Node", "PushRosNamespace", "SetRemap"),
+    ),
     "launch_ros.descriptions": ("ComposableNode",),
     "launch_ros.event_handlers": ("OnStateTransition",),
     "launch_ros.events.lifecycle": ("ChangeState",),
@@ -72,6 +79,8 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
         yield "", "", *_part("if_installed")
     if any(start.brought_up for start in it.every):
         yield "", "", *_part("brought_up")
+    if any(led.followers for robot in it.robots for led in in_order(robot.starts)):
+        yield "", "", *_part("then")
     made = functions(it.robots)
     for own in made:
         yield ("", "", *_function(own))
@@ -167,6 +176,17 @@ def _robot(it: RobotStarts) -> Iterator[str]:
     yield "    ]"
 
 
+def _environment(it: FleetStarts) -> Iterator[str]:
+    for name, given in it.environment.items():
+        own = f"{value(name)}, {value(given.strip(':'))}"
+        if given.startswith(":"):
+            yield f"AppendEnvironmentVariable({own}),"
+        elif given.endswith(":"):
+            yield f"AppendEnvironmentVariable({own}, prepend=True),"
+        else:
+            yield f"SetEnvironmentVariable({own}),"
+
+
 def _description(it: FleetStarts) -> Iterator[str]:
     yield "def generate_launch_description():"
     first = "the simulator, then " if it.simulators else ""
@@ -183,6 +203,7 @@ def _description(it: FleetStarts) -> Iterator[str]:
     if it.domains:
         number = value(f"{it.domains['']}")
         yield f"            SetEnvironmentVariable('ROS_DOMAIN_ID', {number}),"
+    yield from (f"            {line}" for line in _environment(it))
     for simulator in it.simulators:
         yield from (f"            {line}" for line in _part(f"{simulator} simulator"))
     yield from actions(it.shared, 12)

@@ -12,29 +12,28 @@ import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.params.sections import raw_sections
-from multibot_rewrite.fleet.file.fleet_file import FleetFile
+from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
-from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
-from multibot_rewrite.knowledge.records import Param
-from multibot_rewrite.producers.launch.handed_on import HandedOn
-from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.producers.launch.handed_on import handed_on
+from multibot_rewrite.producers.launch.of_robot import is_of_robot
+from multibot_rewrite.producers.launch.once import once_for_all
+from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
 from multibot_rewrite.system.records import Place
 
 PARAMS = "params"
 # What launch_ros fills in a file with allow_substs.
 _SUBSTITUTED = "$(var "
-# Of these kinds a value that is lost leads to another name; the nodes of managers are written anyway.
-_NAMES = frozenset({"frame", "link", "joint", "topic", "service"})
-_MANAGER = "lifecycle_manager"
+_MAPS, _SERVER = "nav2_map_server", "map_server"
 NOT_REWRITTEN = declare("MF824", "launched-parameters-not-rewritten", NOTE, formats=("fleet",))
 
 
@@ -71,10 +70,19 @@ def _named(spec: RobotSpec) -> Iterator[_Named]:
     """The parameter files that are there without the launch, each once."""
     seen: set[str] = set()
     nodes = launch_of(spec.launch, spec.words[0]).nodes
-    for given, place in ((it, node.place) for node in nodes for it in node.parameters):
+    for given, place in ((it, node.place) for node in nodes for it in _given_to(node)):
         if given.source and given.source not in seen and _sets_parameters(given.source):
             yield _Named(given.source, given.text, place)
         seen.add(given.source)
+
+
+def _given_to(node: LaunchedNode) -> Iterator[ParameterText]:
+    """The parameter files of a node, and those that a launch file which is not here is given."""
+    yield from node.parameters
+    for word in node.arguments if node.process.is_include else ():
+        path = os.path.realpath(word.partition(":=")[2])
+        if path.endswith((".yaml", ".yml")) and os.path.isfile(path):
+            yield ParameterText(path, yaml_of(path).text, path)
 
 
 def _sets_parameters(path: str) -> bool:
@@ -102,37 +110,6 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
     return spec._replace(companions=companions, filled=(*spec.filled, *filled)), notes
 
 
-def set_by_launch(
-    given: Sequence[Run],
-    started: Mapping[str, LaunchedNode],
-    known: KnownNodes,
-    handed: Mapping[str, HandedOn],
-) -> Iterator[Finding]:
-    """The names that launch files themselves give to known nodes which they start: what build writes
-    starts these nodes, too, and has only what stands in parameter files and what is handed on."""
-    for node in given:
-        launched = started.get(node.node)
-        if launched is None or node.fact.known not in known.nodes or node.fact.known == _MANAGER:
-            continue
-        params = known.nodes[node.fact.known].params.values()
-        kept = handed[node.node].values if node.node in handed else ()
-        lost = [it for it in _lost(node, params, launched.place.file) if it not in kept]
-        if lost:
-            message = f"the launch file itself gives {node.node} {shorten(lost)}"
-            hint = "write them into a parameter file of that node, and list it under params"
-            said = f"{message}: what build writes has them not"
-            file, line, *_ = launched.place
-            yield NOT_REWRITTEN.finding(said, hint, level=WARNING, file=file, line=line)
-
-
-def _lost(node: Run, params: Collection[Param], launch: str) -> Iterator[str]:
-    for name, it in node.values.items():
-        param = next((one for one in params if is_called(one, name)), None)
-        named = param is not None and param.kind in _NAMES and str(it.value) != param.default
-        if named and it.place.file == launch:
-            yield name
-
-
 def _written(spec: RobotSpec) -> Iterator[str]:
     yield from filter(None, (spec.description, spec.srdf, spec.simulated))
     yield from (path for paths in spec.companions.values() for path in paths)
@@ -157,6 +134,36 @@ def _has_other(it: _Named, there: str) -> Finding:
     hint = "give the launch what is written for the robot, or give one of them another name"
     file, line, *_ = it.place
     return NOT_REWRITTEN.finding(message, hint, file=file, line=line)
+
+
+def with_one_map(file: FleetFile) -> FleetFile:
+    """The fleet with the topics of map servers that its launch files start among those of all robots.
+
+    Robots with different maps have a server each, as nav2_bringup starts it. Raises InputError for a
+    launch file that cannot be read.
+    """
+    maps: dict[str, set[tuple[object, str]]] = {}
+    for name, yaml, topic in (row for spec in file.robots for row in _maps(spec)):
+        maps.setdefault(name, set()).add((yaml, topic))
+    apart = {it for it in maps if len(maps[it]) > 1 or file.params_style == BRINGUP}
+    own = tuple(dict.fromkeys((*file.own_nodes, *sorted(apart))))
+    topics = [topic for it in maps if it not in own for _, topic in maps[it]]
+    if not topics:
+        return file._replace(own_nodes=own)
+    shared = dict.fromkeys((*file.policy.get("shared_topics", SHARED_TOPICS), *topics))
+    policy: Policy = {**file.policy, "shared_topics": tuple(shared)}
+    return file._replace(own_nodes=own, policy=policy)
+
+
+def _maps(spec: RobotSpec) -> Iterator[tuple[str, object, str]]:
+    """The map servers outside of the robot's namespace: name, map, and the topic from the root."""
+    words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
+    for it in launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ():
+        if it.package == _MAPS and once_for_all(it) and not is_of_robot(it.namespace, words):
+            name = it.name or _SERVER
+            told = handed_on(it, name).values
+            topic = str(told.get("topic_name", "map"))
+            yield name, told.get("yaml_filename"), expand(topic, it.namespace, name)
 
 
 _PACKAGES = ("ros_gz_bridge", "ros_ign_bridge")

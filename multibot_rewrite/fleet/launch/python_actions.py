@@ -10,7 +10,7 @@ from typing import Any
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.launch.each_robot import FLAG, Code
-from multibot_rewrite.spelling.start import File, Start, Text
+from multibot_rewrite.spelling.start import EVENTS, HOW, File, Led, Start, Text, in_order, with_rest
 
 # What stays in one line.
 _SHORT = 66
@@ -33,7 +33,9 @@ def actions(
     """Yield what is started: in a group what depends on one launch argument, and what needs one
     package, which says ``otherwise`` where that is not installed."""
     space = " " * indent
-    for (condition, needs), several in groupby(starts, lambda it: (it.condition, it.needs)):
+    ordered = in_order([*starts])
+    switches = groupby(ordered, lambda it: (it.start.condition, it.start.needs))
+    for (condition, needs), several in switches:
         if condition:
             inner = _processes(several, indent + 8, own)
             yield from (f"{space}GroupAction(", f"{space}    [", *inner, f"{space}    ],")
@@ -48,13 +50,63 @@ def actions(
             yield from _processes(several, indent, own)
 
 
-def _processes(starts: Iterable[Start], indent: int, own: OfRobot) -> Iterator[str]:
+def _processes(several: Iterable[Led], indent: int, own: OfRobot) -> Iterator[str]:
+    """Yield processes, each after its delay."""
     space = " " * indent
-    for it in starts:
-        if it.brought_up:
-            yield from (f"{space}*brought_up(", *_action(it, indent + 4, own), f"{space}),")
+    for it in several:
+        if it.start.process.delay:
+            yield from (f"{space}TimerAction(", f"{space}    period={it.start.process.delay!r},")
+            inner = _led(it, indent + 8, own)
+            yield from (f"{space}    actions=[", *inner, f"{space}    ],", f"{space}),")
         else:
-            yield from _action(it, indent, own)
+            yield from _led(it, indent, own)
+
+
+def _led(it: Led, indent: int, own: OfRobot) -> Iterator[str]:
+    """Yield a process, and what starts at its events."""
+    space = " " * indent
+    if not it.followers:
+        yield from _process(it.start, indent, own)
+        return
+    yield from (f"{space}*then(", *_process(it.start, indent + 4, own))
+    for event in dict.fromkeys(EVENTS.values()):
+        if several := it.at(event):
+            inner = _processes(several, indent + 8, own)
+            yield from (f"{space}    {event}=[", *inner, f"{space}    ],")
+    yield f"{space}),"
+
+
+def _process(it: Start, indent: int, own: OfRobot) -> Iterator[str]:
+    space = " " * indent
+    if it.process.is_include:
+        yield from (f"{space}{line}" for line in _include(it))
+    elif it.brought_up:
+        yield from (f"{space}*brought_up(", *_action(it, indent + 4, own), f"{space}),")
+    else:
+        yield from _action(it, indent, own)
+
+
+def _include(it: Start) -> Iterator[str]:
+    """Yield a launch file of a package, in the namespace of its robot and under its rules."""
+    yield from ("GroupAction(", "    [")
+    yield from (f"        {line}" for line in _scope(it))
+    path = f"PathJoinSubstitution([FindPackageShare({value(it.package)}), {value(it.executable)}])"
+    yield from ("        IncludeLaunchDescription(", f"            {path},")
+    if it.arguments:
+        yield "            launch_arguments=["
+        for name, given in zip(it.arguments[::2], it.arguments[1::2], strict=True):
+            yield f"                ({value(name)}, {value(given)}),"
+        yield "            ],"
+    yield from ("        ),", "    ],", "),")
+
+
+def _scope(it: Start) -> Iterator[str]:
+    for name, given in it.environment.items():
+        yield f"SetEnvironmentVariable({value(name)}, {value(given)}),"
+    if it.namespace.strip("/"):
+        yield f"PushRosNamespace({value(it.namespace)}),"
+    for old, new in it.remappings:
+        yield f"SetRemap({value(old)}, {value(new)}),"
 
 
 def _action(it: Start, indent: int, own: OfRobot) -> Iterator[str]:
@@ -73,12 +125,34 @@ def _action(it: Start, indent: int, own: OfRobot) -> Iterator[str]:
 def _kind(it: Start) -> str:
     if it.plugin:
         return "ComposableNode"
+    if not it.package:
+        return "ExecuteProcess"
     if it.components:
         return "ComposableNodeContainer"
     return "LifecycleNode" if it.brought_up else "Node"
 
 
 def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
+    if it.package:
+        yield from _of_node(it, own)
+    else:
+        yield from lines("cmd=", [*_pairs((it.executable, *it.arguments))], ",")
+    if it.environment:
+        own = {name: _with_rest(name, text) for name, text in it.environment.items()}
+        yield from lines("additional_env=", own, ",")
+    for name in HOW:
+        if given := getattr(it.process, name):
+            yield f"{name}={value(given)},"
+    if not it.plugin:
+        yield "output='screen',"
+
+
+def _with_rest(name: Any, text: Any) -> Any:
+    rest = Code(f"EnvironmentVariable({value(name)}, default_value='')")
+    return text if isinstance(text, Code) else with_rest(text, rest)
+
+
+def _of_node(it: Start, own: OfRobot) -> Iterator[str]:
     for name in ("package", "executable", "plugin", "namespace", "name"):
         if text := getattr(it, name):
             yield f"{name}={value(text)},"
@@ -92,10 +166,6 @@ def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
         yield "remappings=["
         yield from (f"    ({value(old)}, {value(new)})," for old, new in it.remappings)
         yield "],"
-    if it.environment:
-        yield from lines("additional_env=", it.environment, ",")
-    if not it.plugin:
-        yield "output='screen',"
 
 
 def lines(before: str, it: Any, after: str = "") -> list[str]:

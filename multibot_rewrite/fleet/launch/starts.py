@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.spelling.start import File, Start, Text
+from multibot_rewrite.spelling.start import NOTHING, File, Start, Text
 
 # The simulators that it can start.
 CLASSIC, GZ = "classic", "gz"
@@ -38,7 +38,8 @@ class FleetStarts(NamedTuple):
     the windows for all. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to
     type; ``world`` is the simulator's by default, ``domains`` has that of each robot by its name, and
     of all (empty name), where they are not in one. ``shown`` are all windows, those that a fleet
-    without any config has among them: the launch file does not open these."""
+    without any config has among them: the launch file does not open these. ``environment`` is that of
+    all processes; a value with ``:`` in front or at the end is added to what is there."""
 
     head: str
     simulators: Sequence[str]
@@ -50,6 +51,7 @@ class FleetStarts(NamedTuple):
     world: File | str = ""
     domains: Mapping[str, int] = TOGETHER
     shown: Sequence[Start] = ()
+    environment: Mapping[str, str] = NOTHING
 
     @property
     def every(self) -> Iterator[Start]:

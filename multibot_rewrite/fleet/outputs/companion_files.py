@@ -3,11 +3,16 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
 
+from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.file_kinds import LUA, MOVEIT, PARAMS, TREE
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import (
     NAMESPACE_SLOT,
     NUMBER_STEP,
@@ -16,11 +21,13 @@ from multibot_rewrite.companions.context import (
     make_template,
 )
 from multibot_rewrite.companions.formats import made_for_any
-from multibot_rewrite.companions.named_file import LUA, MOVEIT, PARAMS, TREE, Companion, NamedFile
-from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.params.shared_defaults import all_sections
+from multibot_rewrite.companions.named_file import Companion, NamedFile
+from multibot_rewrite.companions.names.node_topics import facts_by_name
+from multibot_rewrite.companions.params.rewrite import rewrite_params, rewrite_values
+from multibot_rewrite.companions.params.shared_defaults import all_sections, missing_defaults
+from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.sites import found_in
-from multibot_rewrite.companions.yaml_text import Splice
+from multibot_rewrite.companions.yaml_text import Splice, read_yaml
 from multibot_rewrite.description.own_ports import said_of_numbers
 from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
@@ -40,6 +47,8 @@ from multibot_rewrite.knowledge.parameter_entries import PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.nodes import children_of
+from multibot_rewrite.producers.launch.handed_on import HandedOn
+from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.spelling.records import Run
 
 # The key of a fleet file -> the kind of the files that it names.
@@ -56,9 +65,92 @@ def companion_files(plan: FleetPlan) -> FilesAndFindings:
         for group in groups:
             for path in group.companions.get(key, ()):
                 yield from _files(plan, group, key, path)
+    yield from launched_values(plan).findings
     if plan.file.params_style != BRINGUP:
         for group in groups:
             yield from () if "params" in group.companions else _own_defaults(plan, group)
+
+
+class LaunchedValues(NamedTuple):
+    """What launch files themselves set for nodes: by robot and node, with the names of that robot; and
+    what is wrong with it."""
+
+    values: Mapping[tuple[str, str], Mapping[str, Any]]
+    findings: tuple[Finding, ...]
+
+
+def launched_values(plan: FleetPlan) -> LaunchedValues:
+    """Return what launch files themselves set for the nodes of each robot.
+
+    Raises InputError for values that rcl refuses.
+    """
+    values: dict[tuple[str, str], Mapping[str, Any]] = {}
+    findings: list[Finding] = []
+    numbers = {it.spec.name: at for at, it in enumerate(plan.robots)}
+    for group in group_robots(plan):
+        for name, it in plan.evidence_of(group.robots[0]).handed_on.items():
+            made = rewrite_values(_values_job(plan, group, name, it))
+            lacking = _lacking(plan, group, name, it)
+            if not (it.values or lacking):
+                continue
+            place = {"file": it.place.file, "line": it.place.line, "column": 1}
+            findings += (one._replace(**place) for one in made.findings)
+            for robot in group.robots:
+                spec = robot.spec
+                own = spec.namespace, spec.tag, numbers[spec.name]
+                text = fill_template(made.template, *own)
+                values[spec.name, name] = {
+                    **_section(text, it.place.file),
+                    **_section(
+                        fill_template(make_template("", [Splice(0, 0, lacking)]), *own), name
+                    ),
+                }
+    return LaunchedValues(values, tuple(findings))
+
+
+def _lacking(plan: FleetPlan, group: RobotGroup, name: str, it: HandedOn) -> str:
+    """The names that a launched node has by default, where robots would share them, as parameters with
+    slots; none of a node of a stack: its section has them."""
+    known, _ = _known(plan, group)
+    evidence = plan.evidence_of(group.robots[0])
+    first, *_ = (*group.companions.get("params", ()), "")
+    has_section = name in group.context.nodes and (not first or os.path.realpath(first) in it.files)
+    if it.kind not in known.nodes or has_section or it.kind == STATIC:
+        return ""
+    if any(node.name == name and node.shared for node in evidence.nodes):
+        return ""
+    given = {key for run in evidence.given if run.node == name for key in run.values}
+    lines = missing_defaults(group.context, known.nodes[it.kind], given | it.values.keys())
+    return "".join(f"{line.path}: {line.value}\n" for line in lines)
+
+
+def _section(text: str, file: str) -> Mapping[str, Any]:
+    """The parameters of the one section of a text."""
+    found: Any = load_yaml(text, file) if text else {}
+    for section in found.values():
+        found = section.get("ros__parameters", found) if isinstance(section, dict) else found
+    return dict(found)
+
+
+def _values_job(plan: FleetPlan, group: RobotGroup, name: str, it: HandedOn) -> ParamsJob:
+    import yaml
+
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+    body = {it.kind or name: {"ros__parameters": dict(it.values)}}
+    text = yaml.dump(body, None, dumper, sort_keys=False, allow_unicode=True)
+    document = read_yaml(text.encode(), it.place.file)
+    known, bare = _known(plan, group)
+    facts = facts_by_name(group.facts, plan.file.distro)
+    return ParamsJob(document, group.context, known, facts, (), bare)
+
+
+def _known(plan: FleetPlan, group: RobotGroup) -> tuple[KnownNodes, frozenset[str]]:
+    """What is known of nodes with the frames that they send, and those that prefix their frames."""
+    evidence = plan.evidence_of(group.robots[0])
+    known = load_known_nodes(plan.file.nodes, plan.file.distro)
+    bare = _at_run_time(plan.fleet.naming, evidence.given, known)
+    sent = _sent(evidence.nodes, group.context.names.declared["link"])
+    return known._replace(sent=known.sent | {*sent}), bare
 
 
 def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesAndFindings:
@@ -121,11 +213,7 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     """A ROS parameter file; what the robot's other parameter files set is not inserted in it."""
     read = params_of(group.robots[0].spec)
     others = [document for it, document in read.items() if it != path]
-    known = load_known_nodes(plan.file.nodes, plan.file.distro)
-    evidence = plan.evidence_of(group.robots[0])
-    nodes = evidence.nodes
-    bare = _at_run_time(plan.fleet.naming, evidence.given, known)
-    known = known._replace(sent=known.sent | {*_sent(nodes, group.context.names.declared["link"])})
+    known, bare = _known(plan, group)
     own = group.robots[0].spec.words if len(group.robots) == 1 else ()
     return rewrite_params(
         read[path],

@@ -17,7 +17,7 @@ from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, launched_by
 from multibot_rewrite.fleet.proposal.fitting import Fitting, check_winner, fitting, not_started
-from multibot_rewrite.fleet.proposal.given_by_launch import files_given, launches_for, readings
+from multibot_rewrite.fleet.proposal.launches import files_given, read_any
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import (
     LEAST,
@@ -97,9 +97,7 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     files["params"] = tuple(sections)
     srdf = _best_srdf(robot, found)
     left |= {it: "another SRDF was taken" for it in found.srdf if it != srdf}
-    others = moveit_of_others(robot, srdf, every) if srdf else {}
-    left |= others
-    files["moveit"] = tuple(_moveit(robot, found, srdf, left)) if srdf else ()
+    files["moveit"] = moveit_beside(robot, srdf, every, left)
     nodes = {name: path for path, names in sections.items() for name in names}
     chosen = {kind: its for kind, its in files.items() if its}
     return Companions(chosen, srdf, dict(_stacks(robot, nodes, srdf)), left)
@@ -135,11 +133,16 @@ def _bridges_of_others(robot: Looked, found: Found) -> dict[str, str]:
     return dict.fromkeys(found.bridge, "the description has nothing for a simulator")
 
 
-def _moveit(robot: Looked, found: Found, srdf: str, left: dict[str, str]) -> Iterator[str]:
-    """MoveIt's files of the folder with most names of the robot and its groups, then of others."""
+def moveit_beside(robot: Looked, srdf: str, found: Found, left: dict[str, str]) -> tuple[str, ...]:
+    """MoveIt's files of the folder with most names of the robot and its groups, then of others; those
+    that are ``left`` out get a reason there."""
+    if not srdf:
+        return ()
+    left |= moveit_of_others(robot, srdf, found)
     every = tuple(it for it in found.moveit if it not in left)
     known = best_folders(robot, srdf, every)
-    yield from _of_kind("moveit", robot, every, left, lambda it: -known[os.path.dirname(it)])
+    near = _of_kind("moveit", robot, every, left, lambda it: -known[os.path.dirname(it)])
+    return tuple(near)
 
 
 def _of_kind(
@@ -169,8 +172,7 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
     """The parameter files that can be read; those with fewest names that the robot has not come first,
     then the nearest. Raises Undecided where none is more likely than another for one node."""
     known = load_known_nodes("", release)
-    launched = launches_for(found.launch, robot.path, found.every)
-    given = files_given(readings(found.launch, robot.path, found.every), found.params)
+    given = files_given(read_any(found.launch), found.params)
     loaded = {*_loaded(robot)}
     asked = {*filter(lambda it: it in found.meant or os.path.abspath(it) in loaded, found.params)}
     read = []
@@ -181,7 +183,7 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
             left[path] = str(error)
             continue
         apart = path not in asked and package_of(path) != package_of(robot.path)
-        if apart and (why := not_started(path, nodes, known, launched, given.get(path, set()))):
+        if apart and (why := not_started(path, nodes, known, found.launch, given.get(path, set()))):
             left[path] = why
             continue
         one = fitting(robot, path, nodes, known, found.bridge)

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+import shlex
+from collections.abc import Iterable, Iterator
 from math import inf
 from typing import Any
 
@@ -13,9 +14,11 @@ from multibot_rewrite.base.wording import one_line
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
+from multibot_rewrite.fleet.proposal.launches import Bringup, Row, said_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
+from multibot_rewrite.producers.launch.once import once_for_all
+from multibot_rewrite.producers.launch.records import LaunchOrder
 
 # Files not taken that are named.
 MOST = 10
@@ -32,6 +35,8 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
     yield "# A fleet of robots, for multibot_rewrite. Change what you like, then:"
     yield f"#   multibot build {name} -o out/     writes everything that the robots need"
     yield f"#   multibot rehearse {name}          tries the plan on a real ROS graph, no simulator"
+    if any(member.bringup for member in it.members):
+        yield f"#   multibot inspect {name}           shows each process with its place and files"
     yield from (f"# {note}" for note in it.notes)
     for key, choice in it.keys.items():
         yield ""
@@ -46,52 +51,44 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield from (f"# {line}" for line in whys)
         yield from _block(key, value)
     left = dict(_left(it, folder))
-    first = {_shown(path, folder) for path in (*it.refused, *it.broken)}
+    first = {os.path.relpath(path, folder) for path in (*it.refused, *it.broken)}
+    home = os.path.relpath(it.members[0].looked.path, folder)
     if left:
         yield ""
         yield "# Found beside them and not taken:"
-        home = os.path.relpath(it.members[0].looked.path, folder)
         rows = sorted(
             left.items(),
             key=lambda row: (row[0] not in first, os.path.relpath(row[0], home).count(".."), row),
         )
         yield from _capped(f"{path}: {' '.join(why.split())}" for path, why in rows)
-    if it.launched.rest:
+    if it.started:
         yield ""
-        yield "# Launch files give nodes more than this fleet has: write the values into params;"
-        yield "# a rule FROM:=TO moves a topic, so say TO in the files of who reads it:"
-        yield from _placed(it.launched.rest, folder)
-    if it.launched.started:
-        yield ""
-        yield "# Launch files start nodes that this fleet does not. `launch: FILE` gives each robot the"
-        yield "# nodes of FILE with their rules:"
-        yield from _placed(it.launched.started, folder)
-    if it.launched.unread:
+        yield "# No launch file is taken: none, or no single one, starts this robot. What they start;"
+        yield f"# to say which: multibot init {shlex.quote(home)} --launch FILE NAME:=VALUE"
+        yield from _placed(it.started, folder)
+    if it.unread:
         yield ""
         yield "# Of launch files could not be read:"
-        yield from _placed(it.launched.unread, folder)
+        yield from _placed(it.unread, folder)
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
     yield "robots:"
     yield from (f"  - {_flow(robot)}" for robot in _robots(it, folder))
 
 
-def _placed(rows: Iterable[tuple[str, int, str]], folder: str) -> Iterator[str]:
+def _placed(rows: Iterable[Row], folder: str) -> Iterator[str]:
     return _capped(f"{os.path.relpath(file, folder)}:{at}: {text}" for file, at, text in rows)
 
 
 def _capped(lines: Iterable[str]) -> Iterator[str]:
-    every = [*lines]
-    yield from (f"#   {line}" for line in every[:MOST])
-    if every[MOST:]:
-        yield f"#   and {len(every) - MOST} more"
+    yield from (f"# {line}" for line in _some(lines))
 
 
 def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
     """Yield what was refused, what cannot be read, and the files of the robots' packages that no robot
     has, each with the reason."""
     for path, why in {**it.refused, **it.broken}.items():
-        yield _shown(path, folder), why
+        yield os.path.relpath(path, folder), why
     taken = {
         path for member in it.members for path in (*member.looked.files, *member.companions.paths)
     }
@@ -102,10 +99,6 @@ def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
     for path in left.keys() - taken - it.broken.keys():
         if package_of(path) in packages:
             yield os.path.relpath(path, folder), left[path]
-
-
-def _shown(path: str, folder: str) -> str:
-    return path if path == VALUES else os.path.relpath(path, folder)
 
 
 def _sentence(text: str) -> str:
@@ -129,14 +122,11 @@ def _common(it: Proposal, folder: str) -> dict[str, tuple[Any, tuple[str, ...]]]
     """What all robots have, if they have one description, with the reasons."""
     if len(it.members) > 1:
         return {}
-    return dict(_of_member(it.members[0], folder, it.launched.values))
+    return dict(_of_member(it.members[0], folder))
 
 
-def _of_member(
-    member: Member, folder: str, launched: Mapping[str, Mapping[str, Any]] = {}
-) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
-    """The keys of a description and its files, each with the reasons; ``launched`` are values that
-    launch files give to nodes."""
+def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
+    """The keys of a description and its files, each with the reasons."""
 
     def here(path: str) -> str:
         return os.path.relpath(path, folder)
@@ -150,6 +140,11 @@ def _of_member(
     if looked.arguments:
         why = "Arguments of the xacro: {robot} stands for the robot's name"
         yield "arguments", (dict(looked.arguments), (why, *_needed(looked)))
+    if member.bringup:
+        yield (
+            "launch",
+            (order_text(member.bringup.order, folder), (*_launched(member.bringup),)),
+        )
     if beside.srdf:
         yield "srdf", (here(beside.srdf), ("The planning groups of MoveIt",))
     if beside.stacks:
@@ -160,11 +155,41 @@ def _of_member(
         for kind, its in beside.files.items()
     }
     whys = ("Files for one robot; the build writes one of each for every robot",)
-    if launched:
-        files["params"] = [*files.get("params", ()), dict(launched)]
-        whys = (*whys, "{NODE: {PARAMETER: value}} is what launch files give a node")
     if files:
         yield "companions", (files, whys)
+
+
+def order_text(it: LaunchOrder, folder: str) -> str:
+    """Return what follows ``ros2 launch``, for a fleet file in a folder."""
+    file = (
+        [it.package, os.path.basename(it.file)]
+        if it.package
+        else [os.path.relpath(it.file, folder)]
+    )
+    return shlex.join([*file, *(f"{name}:={value}" for name, value in it.arguments)])
+
+
+def _launched(it: Bringup) -> Iterator[str]:
+    """Yield what a launch file starts, for each robot and once for all, and the other launch files."""
+    own = [said_of(node) for node in it.graph.nodes if not once_for_all(node)]
+    once = [
+        f"{said_of(node)}, since {why}" for node in it.graph.nodes if (why := once_for_all(node))
+    ]
+    yield f"What {it.name} starts for each robot:"
+    yield from _some(own)
+    if once:
+        yield "Once for all robots; `own_nodes: [NAME]` gives each its own:"
+        yield from _some(once)
+    if it.others:
+        yield "It starts the most; others start this robot as well:"
+        yield from _some([f"--launch {order_text(one, os.curdir)}" for one in it.others])
+
+
+def _some(rows: Iterable[str]) -> Iterator[str]:
+    every = [*dict.fromkeys(rows)]
+    yield from (f"  {row}" for row in every[:MOST])
+    if every[MOST:]:
+        yield f"  and {len(every) - MOST} more"
 
 
 def _needed(it: Looked) -> Iterator[str]:

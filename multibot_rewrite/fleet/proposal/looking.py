@@ -15,7 +15,11 @@ from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.reports.xacro_arguments import find_arguments, names_robots
+from multibot_rewrite.description.reports.xacro_arguments import (
+    declared_arguments,
+    find_arguments,
+    names_robots,
+)
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import expand, expand_whole
@@ -30,6 +34,7 @@ from multibot_rewrite.fleet.file.simulator_switch import (
     suits_simulator,
     switch_for,
 )
+from multibot_rewrite.fleet.proposal.launches import Bringup
 from multibot_rewrite.fleet.proposal.searching import text_of
 
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
@@ -54,8 +59,8 @@ class Looked(NamedTuple):
     ``arguments`` give each robot its own names (``{robot}`` is its name) or are needed to expand it;
     ``needed`` are those of them that were not given, ``switch`` is the one that makes it the simulated
     or the real robot. ``own_tf`` is whether its plugins send tf on a topic of each robot. ``model`` is
-    the file that the simulator gets, where that is another one. ``fault`` is why it cannot be read; the
-    rest is empty then.
+    the file that the simulator gets, where that is another one. ``bringup`` is the launch file that
+    starts it, if there is one. ``fault`` is why it cannot be read; the rest is empty then.
     """
 
     path: str
@@ -70,6 +75,7 @@ class Looked(NamedTuple):
     own_tf: bool = False
     root: etree._Element | None = None
     model: str = ""
+    bringup: Bringup | None = None
     fault: str = ""
 
     @property
@@ -106,6 +112,29 @@ def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
         return _looked(path, text, tuple(given.items()) if xacro else ())
     except InputError as error:
         return Looked(path, fault=str(error))
+
+
+def with_bringup(
+    it: Looked, bringup: Bringup | None, given: Mapping[str, str], reach: Reach
+) -> Looked:
+    """The same with the launch file that starts it, and with the arguments that this gives its xacro,
+    where they are not the default. What was ``given`` counts, and what names a robot stays."""
+    launched = it._replace(bringup=bringup)
+    read = bringup.graph.read if bringup and not it.model else ()
+    own = next((dict(one.arguments) for one in read if one.file == os.path.realpath(it.path)), {})
+    if not own:
+        return launched
+    defaults = declared_arguments(it.path, filled({**own, **given}, ANY), reach)
+    values = {
+        name: os.path.relpath(value, os.path.dirname(it.path)) if os.path.isabs(value) else value
+        for name, value in own.items()
+        if name not in given and not names_robots(name) and defaults.get(name, value) != value
+    }
+    other = _look(it.path, {**dict(it.arguments), **values}, reach)
+    if other.fault:
+        return launched
+    needed = tuple(one for one in it.needed if one not in values)
+    return other._replace(bringup=bringup, needed=needed)
 
 
 def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:

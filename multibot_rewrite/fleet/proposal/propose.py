@@ -21,16 +21,19 @@ from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.named_file import PARAMS
 from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_said
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of
-from multibot_rewrite.fleet.proposal.given_by_launch import (
-    VALUES,
-    Launched,
-    given_by_launch,
+from multibot_rewrite.fleet.proposal.launched import companions_launched
+from multibot_rewrite.fleet.proposal.launches import (
+    Bringup,
+    Reading,
+    Row,
     not_read,
-    readings,
-    started_elsewhere,
+    read_any,
+    started,
 )
 from multibot_rewrite.fleet.proposal.looking import (
     CLASSIC,
@@ -49,6 +52,7 @@ from multibot_rewrite.rules.files.releases import elsewhere
 
 MEANT = "as it was asked for"
 PER_ROBOT, FRAMES = "tf-per-robot", "frames-per-robot"
+_OF_NAV2 = frozenset(("nav2", "nav2_slam", "navigation", "localization", "slam_toolbox"))
 # Metres between the outlines of two robots, and the step to which distances are rounded.
 _GAP, _STEP = 0.5, 0.5
 # Metres, for a robot without a shape whose size is known.
@@ -67,6 +71,11 @@ class Member(NamedTuple):
     radius: float
     is_real: bool = False
 
+    @property
+    def bringup(self) -> Bringup | None:
+        """The launch file that starts its robots; raises nothing."""
+        return self.looked.bringup
+
 
 class Choice(NamedTuple):
     """The value of a key, and why."""
@@ -79,8 +88,9 @@ class Proposal(NamedTuple):
     """A fleet: its keys with their reasons, in the order in which they are written; its robots with
     their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
     ``refused`` files that do not go with the robots and ``broken`` descriptions that cannot be read,
-    each with the reason; ``launched`` is what launch files give its nodes. ``chosen`` is what is not as
-    the files have it, so that the fleet builds."""
+    each with the reason. ``started`` is what launch files start where none of them is the robot's,
+    ``unread`` what could not be read of them. ``chosen`` is what is not as the files have it, so that
+    the fleet builds."""
 
     keys: Mapping[str, Choice]
     members: Sequence[Member]
@@ -88,7 +98,8 @@ class Proposal(NamedTuple):
     notes: tuple[str, ...] = ()
     others: tuple[str, ...] = ()
     refused: Mapping[str, str] = {}
-    launched: Launched = Launched()
+    started: tuple[Row, ...] = ()
+    unread: tuple[Row, ...] = ()
     broken: Mapping[str, str] = {}
     chosen: str = ""
 
@@ -98,11 +109,13 @@ def layout_of(members: Sequence[Member]) -> Choice:
     if any(it.looked.own_tf for it in members):
         return Choice(PER_ROBOT, "plugins of the description send tf on each robot's own topic")
     stacks = {name for it in members for name in it.companions.stacks}
-    if any(it.looked.arguments for it in members) or "moveit" in stacks:
+    launched = {one for it in members if it.bringup for one in it.bringup.graph.packages}
+    named = any(ROBOT in value for it in members for _, value in it.looked.arguments)
+    if named or "moveit" in stacks or "moveit_ros_move_group" in launched:
         return Choice(
             FRAMES, "arms and prefixed frames share one /tf, so one RViz shows all robots"
         )
-    if stacks & {"nav2", "nav2_slam", "navigation", "localization", "slam_toolbox"}:
+    if stacks & _OF_NAV2 or any(it.startswith("nav2_") for it in launched):
         return Choice(PER_ROBOT, "the launch files of Nav2 always give each robot its own /tf")
     return Choice(FRAMES, "one /tf for all robots, so one RViz shows them all")
 
@@ -117,7 +130,14 @@ def affix_of(layout: str) -> Choice | None:
 
 
 def simulator_of(members: Sequence[Member]) -> Choice:
-    """Whether the robots are simulated, by what their descriptions have."""
+    """Whether the robots are simulated, by their launch files, else by what their descriptions have."""
+    launched = {it.bringup.is_simulated: it.bringup.name for it in members if it.bringup}
+    if len(launched) == 1 and all(it.bringup for it in members):
+        ((is_simulated, name),) = launched.items()
+        starts = f"the launch file {name} starts"
+        if is_simulated:
+            return Choice("gazebo", f"{starts} a simulator; write none for real robots")
+        return Choice(REAL, f"{starts} no simulator")
     kinds = {it.looked.simulator for it in members} - {NO_SIMULATOR}
     if not kinds:
         have = "the description has" if len(members) == 1 else "the descriptions have"
@@ -212,7 +232,7 @@ def propose(
     kept = without(found, refused)
     shared_out = [without(kept, of_other_robots(it, robots, kept)) for it in robots]
     members = [
-        _member(it, companions_of(it, own, release.value), called, Reach(trust=wanted.trust))
+        _member(it, _companions(it, own, release.value, wanted), called, Reach(trust=wanted.trust))
         for it, own, called in zip(robots, shared_out, names, strict=True)
     ]
     layout = layout_of(members)
@@ -227,16 +247,29 @@ def propose(
         **worlds_of(members),
     }
     poses = poses_of(members, wanted.apart)
-    stacks = dict.fromkeys(stack for it in members for stack in it.companions.stacks)
-    # Launch files of several robots give each its own values.
-    read = readings(found.launch, robots[0].path, found.every) if len(robots) == 1 else ()
-    launched = given_by_launch(read, stacks, release.value, VALUES not in refused)
-    every = [one for it in robots for one in readings(found.launch, it.path, found.every)]
-    launched = launched._replace(
-        started=started_elsewhere(every, stacks, release.value),
-        unread=tuple(dict.fromkeys(not_read(every))),
+    every = read_any(found.launch)
+    bringups = [it.bringup for it in robots if it.bringup]
+    other = (one for it in every for one in it.graph.nodes if not bringups)
+    unread = (*(Reading(it.order, it.graph) for it in bringups), *every)
+    return Proposal(
+        keys,
+        members,
+        poses,
+        (),
+        _others(found, robots),
+        refused,
+        tuple(started(other)),
+        tuple(dict.fromkeys(not_read(unread))),
     )
-    return Proposal(keys, members, poses, (), _others(found, robots), refused, launched)
+
+
+def _companions(it: Looked, found: Found, release: str, wanted: Wanted) -> Companions:
+    """The files that go with a robot: those of its launch file, else of its folders."""
+    asked = dict.fromkeys(wanted.stacks, MEANT)
+    if it.bringup:
+        return companions_launched(it, it.bringup, found, release, asked)
+    made = companions_of(it, found, release)
+    return made._replace(stacks={**made.stacks, **asked})
 
 
 def _member(it: Looked, beside: Companions, names: tuple[str, ...], reach: Reach) -> Member:

@@ -32,6 +32,7 @@ from multibot_rewrite.description.sources.included_by import (
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.outputs.output_file import PLAN
+from multibot_rewrite.fleet.proposal.launches import read_any
 
 _BUILT = frozenset((MANIFEST, PLAN))
 _ENDS = (
@@ -170,7 +171,7 @@ def _can_be_named(path: str) -> bool:
 
 
 def _sorted(paths: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Each path with its kind; those that others include are none."""
+    """Each path with its kind; those that others include, and no launch file loads, are none."""
     kinds: dict[str, str] = {}
 
     def texts() -> Iterator[tuple[str, bytes]]:
@@ -180,6 +181,10 @@ def _sorted(paths: Iterable[str]) -> Iterator[tuple[str, str]]:
             yield path, data
 
     parts = parts_among(kinds, includers(texts()))
+    # One that a launch file expands by itself is a robot.
+    launch = [it for it, kind in kinds.items() if kind == "launch"] if parts else []
+    loaded = {one.file for it in read_any(launch) for one in it.graph.read}
+    parts = {it for it in parts if os.path.realpath(it) not in loaded}
     yield from (
         (it, kind) for it, kind in kinds.items() if kind != "descriptions" or it not in parts
     )

@@ -15,6 +15,7 @@ from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.robot_spec import REAL
+from multibot_rewrite.fleet.proposal.bringup import Robot, bringup_as_named, bringup_of
 from multibot_rewrite.fleet.proposal.choosing import (
     Candidate,
     Undecided,
@@ -27,24 +28,25 @@ from multibot_rewrite.fleet.proposal.choosing import (
     partner,
 )
 from multibot_rewrite.fleet.proposal.companions import srdf_of
+from multibot_rewrite.fleet.proposal.launches import Bringup
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
     Looked,
     NeededValues,
     in_its_world,
     look,
+    with_bringup,
     with_model,
     with_own_arguments,
     with_semantic_arguments,
 )
-from multibot_rewrite.fleet.proposal.searching import Found, search, text_of
+from multibot_rewrite.fleet.proposal.searching import Found, search
+from multibot_rewrite.producers.launch.records import LaunchOrder
 
 # Descriptions of a folder that are looked at.
 MOST = 60
 # Files that may be of the same robot that are looked at.
 MOST_PARTNERS = 5
-# Packages that start a simulator.
-_SIMULATORS = ("ros_gz_sim", "ros_ign_gazebo", "gazebo_ros")
 
 
 def _silent(_: str) -> None:
@@ -68,6 +70,8 @@ class Wanted(NamedTuple):
     names: tuple[str, ...] = ()
     apart: float = 0.0
     simulator: str = ""
+    launch: tuple[LaunchOrder, ...] | None = None
+    stacks: tuple[str, ...] = ()
     file: str = "fleet.yaml"
     tell: Callable[[str], None] = _silent
 
@@ -196,16 +200,15 @@ def _refuse(which: Sequence[Looked], more: str) -> None:
 
 
 def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> list[Looked]:
-    """The robots with the arguments of their xacros that give each its own names, and with the one that
-    makes them simulated or real: as it was asked for, or as the files are."""
+    """The robots with the launch file that starts each, and the arguments of their xacros that give
+    each its own names and make it simulated or real: as it was asked for, or as the files are."""
     tree = builtin_tree((), wanted.release)
     reach = Reach(trust=wanted.trust)
-    own = [with_own_arguments(it, tree, reach) for it in robots]
-    launched = any(it in text_of(path) for path in found.launch for it in _SIMULATORS)
-    made = [
-        in_its_world(it, _is_simulated(it, wanted) or (launched and not wanted.simulator), reach)
-        for it in own
-    ]
+    launched = (
+        with_bringup(it, _bringup(it, wanted, found), wanted.arguments, reach) for it in robots
+    )
+    own = [with_own_arguments(it, tree, reach) for it in launched]
+    made = [in_its_world(it, _is_simulated(it, wanted), reach) for it in own]
     values = NeededValues(found.launch)
     return [
         with_semantic_arguments(it, srdf_of(it, found), reach, values) if found.srdf else it
@@ -213,6 +216,17 @@ def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> li
     ]
 
 
-def _is_simulated(it: Looked, wanted: Wanted) -> bool:
+def _bringup(it: Looked, wanted: Wanted, found: Found) -> Bringup | None:
+    """The launch file that starts a robot."""
+    if wanted.launch is not None:
+        return next(map(bringup_as_named, wanted.launch), None)
+    files = {*map(os.path.realpath, it.files)}
+    others = {*map(os.path.realpath, found.every)} - files
     has = it.simulator != NO_SIMULATOR
+    robot = Robot(frozenset(files), frozenset(others), wanted.simulator, has, it.control)
+    return bringup_of(robot, found.launch, wanted.trust)
+
+
+def _is_simulated(it: Looked, wanted: Wanted) -> bool:
+    has = it.bringup.is_simulated if it.bringup else it.simulator != NO_SIMULATOR
     return wanted.simulator != REAL if wanted.simulator else has

@@ -19,7 +19,6 @@ from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_data import (
     FleetSource,
     FleetText,
-    values_path,
     without_place,
 )
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
@@ -27,7 +26,6 @@ from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
-from multibot_rewrite.fleet.proposal.given_by_launch import VALUES
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
     Looked,
@@ -97,7 +95,10 @@ def that_builds(
     made = in_a_layout_that_builds(made, errors, wanted)
     if made.notes:
         for other, what in _in_another_world(made, own, found, wanted, refused or {}):
-            if not errors_of(_written(other, wanted), wanted.trust):
+            lost = any(it.bringup for it in made.members) and not all(
+                it.bringup for it in other.members
+            )
+            if not lost and not errors_of(_written(other, wanted), wanted.trust):
                 why = f"{what}, since it does not build as it is: {errors[0][1]}"
                 simulator = Choice(other.keys["simulator"].value, why)
                 return other._replace(keys={**other.keys, "simulator": simulator}, chosen=why)
@@ -147,7 +148,7 @@ def _without_blamed(
     for _ in range(MOST_ROUNDS):
         made = propose(own, found, wanted, out)
         errors = errors_of(_written(made, wanted), wanted.trust)
-        blamed = dict(_blamed(made, errors, wanted.file))
+        blamed = dict(_blamed(made, errors))
         if not blamed:
             break
         out |= blamed
@@ -159,9 +160,7 @@ def _written(it: Proposal, wanted: Wanted) -> FleetText:
     return FleetText(wanted.file, text_of(it, wanted.file))
 
 
-def _blamed(
-    it: Proposal, errors: Iterable[tuple[str, str]], fleet: str
-) -> Iterator[tuple[str, str]]:
+def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
     """The files that were found beside a description and have one of the errors, and which."""
     paths = (path for member in it.members for path in member.companions.paths)
     files = {os.path.abspath(path): path for path in paths}
@@ -170,8 +169,6 @@ def _blamed(
         own = file or os.path.abspath(place.partition(":")[0])
         if own in files:
             yield files[own], line if file else why
-        elif own == os.path.abspath(values_path(fleet)):
-            yield VALUES, line if file else why
 
 
 def errors_of(

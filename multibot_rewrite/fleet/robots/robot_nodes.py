@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 from lxml.etree import _Element
 
@@ -21,7 +22,6 @@ from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.fleet import facts_of, known_nodes
-from multibot_rewrite.fleet.launch.launched_files import set_by_launch
 from multibot_rewrite.fleet.launch.launched_robot import (
     given_with,
     launched_robot,
@@ -52,8 +52,13 @@ from multibot_rewrite.knowledge.stacks import built_in, load_stack
 from multibot_rewrite.producers.ends import BRIDGE_NODE
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.launch.handed_on import HandedOn
-from multibot_rewrite.producers.launch.of_robot import NOTHING, without_robot
+from multibot_rewrite.producers.launch.findings import processes_not_known
+from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing, for_any
+from multibot_rewrite.producers.launch.of_robot import (
+    NOTHING,
+    Launched,
+    without_robot,
+)
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
@@ -82,8 +87,8 @@ class RobotEvidence(NamedTuple):
     where its files and stacks disagree, the controllers that its launch files spawn, whether these
     start all of its nodes and no simulator, the arguments of all that they start, the frames that it
     has in the place of defaults, the transforms that a simulator sends, whether a node of its files
-    sends one of these, which no bridge file of its own has, and what its launch files hand on to nodes
-    that nobody knows."""
+    sends one of these, which no bridge file of its own has, what its launch files hand on to nodes, the
+    processes of these that are no nodes, the environment of all, and the number of what places it."""
 
     given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]
@@ -96,6 +101,9 @@ class RobotEvidence(NamedTuple):
     simulated: tuple[Edge, ...] = ()
     is_placed: bool = False
     handed_on: Mapping[str, HandedOn] = NOTHING
+    processes: tuple[Passing, ...] = ()
+    environment: tuple[tuple[str, str], ...] = ()
+    placing: int = -1
 
 
 def robot_nodes(
@@ -144,21 +152,24 @@ def robot_nodes(
     named = _made_by_arguments(written, given, topics) if topics else written
     marked, shared = apart(tuple(named), file)
     unsimulated = launched is not None and launched.whole and not launched.simulated
-    handed = _for_any(spec, launched.handed_on) if launched else NOTHING
-    lost = set_by_launch(given, started, parameters, handed)
-    said = (*notes, *findings, *shared, *lost)
+    of_launch = _of_launch(spec, launched, file) if launched else ()
+    said = (*notes, *findings, *shared, *processes_not_known(of_launch[1] if of_launch else ()))
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
     placing = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
     is_placed = placing or is_led_elsewhere(member, spec)
-    more = unsimulated, arguments, frames, has.sent, is_placed, handed
+    more = unsimulated, arguments, frames, has.sent, is_placed, *of_launch
     return RobotEvidence(given, known, marked, said, spawned, *more)
 
 
-def _for_any(spec: RobotSpec, handed: Mapping[str, HandedOn]) -> dict[str, HandedOn]:
+def _of_launch(spec: RobotSpec, launched: Launched, file: FleetFile) -> tuple[Any, ...]:
     """What a launch hands on for any robot: it may be asked for one by name."""
     by_name = any(ROBOT in value for it in spec.launch for _, value in it.arguments)
-    return {name: it.for_any(spec.name) if by_name else it for name, it in handed.items()}
+    processes = tuple(
+        it._replace(once=_is_once(it.name, it.once, file)) for it in launched.processes
+    )
+    own = launched.handed_on, processes, launched.environment, launched.placing
+    return tuple(for_any(it, spec.name) for it in own) if by_name else own
 
 
 def _as_written(
@@ -300,13 +311,16 @@ def apart(
     nodes: Sequence[NodeFacts], file: FleetFile
 ) -> tuple[tuple[NodeFacts, ...], tuple[Finding, ...]]:
     """The nodes, those that all robots share marked; findings about managers that would manage them."""
-    if not file.shared_nodes:
-        return tuple(nodes), ()
-    marked = [it._replace(shared=it.shared or it.name in file.shared_nodes) for it in nodes]
+    marked = [it._replace(shared=_is_once(it.name, it.shared, file)) for it in nodes]
+    shared = {it.name: None for it in marked if it.shared}
     managers = [it for it in marked if it.package == MANAGERS and not it.shared]
-    left = {it.name: _without(it, file.shared_nodes) for it in managers}
+    left = {it.name: _without(it, shared) for it in managers}
     kept = tuple(left.get(it.name, it) for it in marked)
     return kept, tuple(_notes(managers, file))
+
+
+def _is_once(name: str, once: bool, file: FleetFile) -> bool:
+    return (once or name in file.shared_nodes) and name not in file.own_nodes
 
 
 def _without(manager: NodeFacts, shared: Collection[str]) -> NodeFacts:
@@ -324,8 +338,8 @@ def _notes(managers: Sequence[NodeFacts], file: FleetFile) -> Iterator[Finding]:
 
 
 def check_shared(file: FleetFile, run: Mapping[str, object]) -> None:
-    """Raises InputError for a shared node that is not among the nodes that robots ``run``."""
-    for name in file.shared_nodes:
-        if name not in run:
+    """Raises InputError for a node of these keys that is not among the nodes that robots ``run``."""
+    for key, names in (("shared_nodes", file.shared_nodes), ("own_nodes", file.own_nodes)):
+        for name in (it for it in names if it not in run):
             near = did_you_mean_one_of(name, tuple(run)) or "name a node of a robot's stack"
-            raise InputError(f"{file.file}: shared_nodes: no robot has a node {name!r}; {near}")
+            raise InputError(f"{file.file}: {key}: no robot has a node {name!r}; {near}")

@@ -25,6 +25,7 @@ from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.describe import text
 from multibot_rewrite.producers.launch.door import of_launch
+from multibot_rewrite.producers.launch.records import FileRead
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 
 _POSTFIX = "multibot_rewrite.cli.urdf_postfix"
@@ -40,18 +41,21 @@ class Output(NamedTuple):
     fault: str = ""
 
 
-def read_commands() -> None:
-    """From now on ``Command`` gives what is known of its output, and no program has to be there."""
+def read_commands() -> list[str]:
+    """From now on ``Command`` gives what is known of its output, and no program has to be there; the
+    lines of programs are in the list."""
+    lines: list[str] = []
     known = of_launch("substitutions")
-    known.Command.perform = _perform
+    known.Command.perform = lambda self, context: _performed(self, context, lines)
     known.FindExecutable.perform = lambda self, context: text(self.name, context)
+    return lines
 
 
-def start_nothing() -> list[str]:
-    """From now on a launch file starts no program itself, either; what is not known of the output of
-    one is in the list."""
+def start_nothing(lines: list[str]) -> list[str]:
+    """From now on a launch file starts no program itself, either, and the ``lines`` of those that it
+    would start are kept; what is not known of the output of one is in the list."""
     lost: list[str] = []
-    started: Any = type("Popen", (_Program,), {"lost": lost})
+    started: Any = type("Popen", (_Program,), {"lost": lost, "lines": lines})
     vars(subprocess)["Popen"] = started
     vars(os)["system"] = lambda line: started(line).returncode
     return lost
@@ -61,13 +65,16 @@ class _Program:
     """A program that is not started: it has ended, and has printed what is known of it."""
 
     lost: list[str]
+    lines: list[str]
     pid = returncode = 0
     stdin: Any = None
 
     def __init__(self, line: Any, *_: object, **options: Any) -> None:
         words = [line] if isinstance(line, str | bytes | os.PathLike) else [*line]
         plain = [os.fsdecode(it) for it in words]
-        found = output_of(plain[0] if len(plain) == 1 else shlex.join(plain))
+        command = plain[0] if len(plain) == 1 else shlex.join(plain)
+        self.lines.append(command)
+        found = output_of(command)
         said = found.fault or f"it starts {' '.join(plain)!r} itself, which is not started here"
         if (found.fault or not found.text) and said not in self.lost:
             self.lost.append(said)
@@ -98,8 +105,9 @@ def faults(context: Any) -> list[str]:
     return [*context.get_locals_as_dict().get(_FAULTS, ())]
 
 
-def _perform(self: Any, context: Any) -> str:
-    found = output_of(text(self.command, context))
+def _performed(self: Any, context: Any, lines: list[str]) -> str:
+    lines.append(text(self.command, context))
+    found = output_of(lines[-1])
     if found.fault and found.fault not in faults(context):
         context.extend_globals({_FAULTS: [*faults(context), found.fault]})
     return found.text
@@ -120,10 +128,26 @@ def output_of(line: str) -> Output:
         return Output("", f"the output of {line!r} is not known: {reason}")
 
 
-def _xacro(words: Sequence[str]) -> str:
+def xacro_of(line: str) -> FileRead | None:
+    """Return the xacro that a line of a program expands; None for another program."""
+    try:
+        program, *words = shlex.split(line)
+    except ValueError:
+        return None
+    is_xacro = os.path.basename(program) == "xacro"
+    return _expanded(words) if is_xacro else None
+
+
+def _expanded(words: Sequence[str]) -> FileRead | None:
     files = [it for it in words if ":=" not in it and not it.startswith("-")]
-    arguments = dict(it.split(":=", 1) for it in words if ":=" in it)
-    return expand(files[0], arguments).decode() if len(files) == 1 else ""
+    given = (it.partition(":=") for it in words if ":=" in it)
+    pairs = tuple((name, value) for name, _, value in given)
+    return FileRead(files[0], pairs) if len(files) == 1 else None
+
+
+def _xacro(words: Sequence[str]) -> str:
+    found = _expanded(words)
+    return expand(found.file, dict(found.arguments)).decode() if found else ""
 
 
 def _cat(words: Sequence[str]) -> str:

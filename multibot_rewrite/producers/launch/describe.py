@@ -11,6 +11,7 @@ import os
 import pathlib
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 import yaml
@@ -28,6 +29,7 @@ from multibot_rewrite.producers.launch.kept_paths import (
     is_made,
     kept_file,
     lasting,
+    lasting_folders,
     read_text,
 )
 from multibot_rewrite.producers.launch.made_files import source_of
@@ -42,6 +44,7 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
 from multibot_rewrite.producers.launch.spawners import controller_files
+from multibot_rewrite.spelling.start import Process
 from multibot_rewrite.system.records import Place
 
 SIMULATOR, CLASSIC = "gzserver", "gazebo_ros"
@@ -63,8 +66,9 @@ _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
 class Visit(NamedTuple):
     """A visit: the context, what has been found, the files that descriptions name, what an event or a
     timer starts with its visit and the locals that it keeps, the place of what is visited, arguments
-    without effect, included files, whether conditions count, what starts it if not the launch itself,
-    and after how many events."""
+    without effect, included files, the environment before the launch, the number of each action that
+    starts a process, whether conditions count, what starts it if not the launch itself, after how many
+    events and seconds, and at which event of which action."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -74,9 +78,25 @@ class Visit(NamedTuple):
     place: Place
     unread: list[UnreadArgument]
     includes: list[LaunchInclude]
+    before: Mapping[str, str]
+    numbers: dict[int, tuple[Any, int]]
     every: bool = False
     later: str = ""
     events: int = 0
+    delay: float = 0.0
+    event: str = ""
+    target: Any = None
+
+    @property
+    def waits(self) -> Process:
+        """What is waited for."""
+        after = self.numbers.get(id(self.target), (None, -1))[1]
+        return Process(delay=self.delay, event=self.event, after=after)
+
+    def start(self, action: Any, it: LaunchedNode) -> None:
+        """Keep what an action starts."""
+        self.numbers[id(action)] = (action, len(self.nodes))
+        self.nodes.append(it)
 
     def wants(self, action: Any) -> bool:
         """Does the condition of an action hold, as far as conditions count?"""
@@ -124,7 +144,7 @@ def node(action: Any, here: Visit) -> LaunchedNode:
         package,
         executable,
         text(_kept(action, "node_name"), here.context) or given.name,
-        given.namespace or _namespace(_kept(action, "node_namespace"), here.context),
+        given.namespace or namespace_of(_kept(action, "node_namespace"), here.context),
         tuple(rules),
         (
             *_described(package, given.own),
@@ -136,14 +156,76 @@ def node(action: Any, here: Visit) -> LaunchedNode:
         here.later,
         place_of(action, here.place.file, (package, executable)),
         _environment(action, here),
+        how_it_runs(action, here),
     )
 
 
 def _environment(action: Any, here: Visit) -> tuple[tuple[str, str], ...]:
-    """What is set for a process: launch keeps it as pairs, its stand-in as it is given."""
+    """What is set for a process, by the launch before it, too: launch keeps it as pairs, its stand-in
+    as it is given."""
     given = getattr(action, "additional_env", None) or ()
     pairs = given.items() if isinstance(given, Mapping) else given
-    return tuple((text(name, here.context), text(value, here.context)) for name, value in pairs)
+    own = {text(name, here.context): text(value, here.context) for name, value in pairs}
+    told = {name: _added(value, here.before.get(name, "")) for name, value in own.items()}
+    return tuple({**changed_environment(here), **told}.items())
+
+
+def changed_environment(here: Visit) -> dict[str, str]:
+    """The variables that the launch has set by now. What it adds to one has ``:`` where the rest is."""
+    now = here.context.environment.items()
+    changed = {name: value for name, value in now if here.before.get(name) != value}
+    found = {name: _added(value, here.before.get(name, "")) for name, value in changed.items()}
+    # Another machine may have some of it.
+    lists = {it for it in found if it.endswith("PATH") and not here.before.get(it)}
+    return {
+        name: f":{value.strip(':')}" if name in lists else value for name, value in found.items()
+    }
+
+
+def _added(value: str, before: str) -> str:
+    """A value of the environment, without what was there before."""
+    if before and value.startswith(f"{before}{os.pathsep}"):
+        return f":{lasting_folders(value.removeprefix(before).strip(':'))}"
+    if before and value.endswith(f"{os.pathsep}{before}"):
+        return f"{lasting_folders(value.removesuffix(before).strip(':'))}:"
+    return lasting_folders(value)
+
+
+def how_it_runs(action: Any, here: Visit) -> Process:
+    """How the process of an action runs. What only a run tells is as usual."""
+    told = getattr(action, "process_description", None) or action
+
+    def own(name: str) -> Any:
+        given = getattr(action, f"_ExecuteLocal__{name}", None)
+        return getattr(action, name, None) if given is None else given
+
+    prefix, cwd = lasting(_told(getattr(told, it, None), here) for it in ("prefix", "cwd"))
+    return here.waits._replace(
+        prefix=prefix,
+        respawn=_is_true(own("respawn"), here),
+        respawn_delay=seconds(own("respawn_delay"), here),
+        cwd=cwd,
+        shell=_is_true(own("shell"), here),
+    )
+
+
+def _told(value: Any, here: Visit) -> str:
+    """A text of an action; empty where only a run tells it."""
+    with suppress(Exception):
+        return str(value) if isinstance(value, bool | int | float) else text(value, here.context)
+    return ""
+
+
+def _is_true(value: Any, here: Visit) -> bool:
+    return _told(value, here).strip().lower() in ("true", "1")
+
+
+def seconds(value: Any, here: Visit) -> float:
+    """A time in seconds; 0 for none, and where only a run tells it."""
+    try:
+        return float(_told(value, here) or 0)
+    except ValueError:
+        return 0.0
 
 
 def _described(package: str, words: tuple[str, ...]) -> Iterator[ParameterText]:
@@ -161,7 +243,7 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
         package,
         plugin,
         text(it.node_name, here.context),
-        _namespace(it.node_namespace, here.context),
+        namespace_of(it.node_namespace, here.context),
         tuple(_rules(it.remappings or (), here.context)),
         tuple(_parameters(own, here)),
         f"/{container.lstrip('/')}",
@@ -172,18 +254,21 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
 
 
 def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
-    """The node of a ``ros2 run`` line, or a simulator; another process is no node that is known."""
+    """The node of a ``ros2 run`` line, a simulator, or else the command."""
     line = [text(it, here.context) for it in getattr(action, "cmd", ())]
     words = [word for it in line for word in it.split()]
     run = ros2_run(words) or _simulator(words)
+    more = here.later, here.place, _environment(action, here), how_it_runs(action, here)
     if run is None:
+        program, *own = lasting(line) or [""]
+        if program:
+            yield LaunchedNode("", program, "", "/", (), (), "", tuple(own), *more)
         return
     given = ros_arguments(run[2])
     values = tuple(_given(given.values, given.files, here))
     namespace = given.namespace or "/"
     names = (run[0], run[1], given.name, namespace)
     kept = _kept_words(run[0], run[1], given.own)
-    more = here.later, here.place, _environment(action, here)
     yield LaunchedNode(*names, given.rules, values, "", kept, *more)
 
 
@@ -216,7 +301,7 @@ def _words(action: Any, context: Any) -> list[str]:
     return [*own, "--ros-args", *ros] if ros else own
 
 
-def _namespace(value: Any, context: Any) -> str:
+def namespace_of(value: Any, context: Any) -> str:
     """The full namespace, below those that groups push."""
     utilities = of_launch_ros("utilities")
     above = context.launch_configurations.get("ros_namespace")

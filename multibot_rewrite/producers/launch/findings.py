@@ -3,19 +3,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.launch.handed_on import HandedOn
+from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
-from multibot_rewrite.system.records import NOT_READ, Place
+from multibot_rewrite.system.records import NOT_KNOWN_PROCESS, NOT_READ, Place
 
 NOT_LAUNCHED = declare("MF821", "node-not-launched", NOTE, formats=("fleet",))
 NOT_KNOWN = declare("MF822", "launched-node-not-known", NOTE, formats=("fleet",))
 NOT_WHOLE = declare(NOT_READ, "launch-not-whole", WARNING, formats=("fleet",))
+PROCESS = declare(NOT_KNOWN_PROCESS, "launched-process-not-known", NOTE, formats=("fleet",))
+TWICE = declare("MF860", "launched-twice", NOTE, formats=("fleet",))
 STOOD_IN = "launch is not installed here: a stand-in read the launch file"
 _WITHOUT_VALUES = "the node is in the plan without what the file sets"
 
@@ -25,22 +28,29 @@ def launch_findings(
     unknown: Mapping[str, LaunchedNode],
     handed: Mapping[str, HandedOn],
     left: Iterable[NodeFacts],
+    passing: Sequence[Passing],
 ) -> Iterator[Finding]:
     """What of launch files is not known, launched nodes that are not, by their names, with what is
-    handed on to them, and nodes of stacks that are left out."""
+    handed on to them, and nodes of stacks that are left out; ``passing`` are launch files that are not
+    here, among others."""
+    included = {it.node.package for it in passing if it.node.process.is_include}
     if graph.stood_in:
         place = Place(next((it.place.file for it in graph.nodes), ""), 1)
         yield NOT_WHOLE.finding(STOOD_IN, "", **_place(place))._replace(level=NOTE)
     for note in graph.notes:
+        hint = "the nodes that it starts are not in the plan"
         hint = (
-            _WITHOUT_VALUES if note.parameters else "the nodes that it starts are not in the plan"
+            f"{hint}; build starts it in each robot's namespace"
+            if note.missing in included
+            else hint
         )
+        hint = _WITHOUT_VALUES if note.parameters else hint
         yield NOT_WHOLE.finding(note.message, hint, **_place(note.place))
     for name, it in unknown.items():
         message = f"node {name} ({it.package} {it.executable}) is not known"
         hint = "describe it in a file of nodes (docs/stacks.md); the plan has its name alone"
         if handed[name].names:
-            hint = f"{hint}, build hands on as they are: {shorten(handed[name].names)}"
+            hint = f"{hint}, build hands on {shorten(handed[name].names)}"
         yield NOT_KNOWN.finding(message, hint, **_place(it.place))
     for node in left:
         if not node.when:
@@ -48,6 +58,24 @@ def launch_findings(
             hint = "leave out the stack, or name the launch file that starts it, too"
             place = Place(next((it.place.file for it in graph.nodes), ""), 1)
             yield NOT_LAUNCHED.finding(message, hint, **_place(place))
+
+
+def processes_not_known(passing: Iterable[Passing]) -> Iterator[Finding]:
+    """What is started as it is, and is no node that is known."""
+    for one in (it for it in passing if not it.node.process.is_include):
+        words = shorten([one.node.executable, *one.node.arguments])
+        how = "once for all robots" if one.once else "for each robot"
+        message = f"process {one.name} ({words}) is no node that is known; build starts it {how}"
+        hint = "own_nodes and shared_nodes say how often; its words are the same for all robots"
+        yield PROCESS.finding(message, hint, **_place(one.node.place))
+
+
+def started_twice(it: LaunchedNode, other: LaunchedNode, name: str) -> Finding:
+    """Return that launch files start two nodes of one name."""
+    where = f"{os.path.basename(other.place.file)}:{other.place.line}"
+    message = f"node {name} is started twice, also in {where}"
+    hint = "ROS wants one name for each: name the launch file that starts one, or give one another name"
+    return TWICE.finding(message, hint, **_place(it.place))
 
 
 def not_read(graph: LaunchGraph) -> Iterator[Finding]:

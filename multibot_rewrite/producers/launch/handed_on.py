@@ -1,65 +1,119 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a launch file itself gives a node that nobody knows: what is built gives it the same."""
+"""What a launch file itself gives a process: what is built gives it the same, for each robot."""
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Mapping
+import shlex
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
-from multibot_rewrite.base.naming import TWIN
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.companions.names.placeholders import filled
 from multibot_rewrite.producers.evidence.parameter_files import values_for
 from multibot_rewrite.producers.launch.parameter_texts import document_of, has_sections
 from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.spelling.start import AS_USUAL, Process
+from multibot_rewrite.system.records import NOWHERE, Place
 
 # Whoever starts the node decides it.
 _CLOCK = "use_sim_time"
+DESCRIPTION, SEMANTIC = "robot_description", "robot_description_semantic"
+# What stands for the robot, as in parameter files of vendors.
+_ROBOT = "<robot>"
+# They run the program that follows.
+_RUNNERS = frozenset(("sudo", "env", "nice", "bash", "sh", "python3", "python", "xterm", "exec"))
 
 
 class HandedOn(NamedTuple):
-    """The parameters that are in no file, the words of the program and its environment. ``is_unnamed``
-    is true if it always starts, and only its code has its name."""
+    """The parameters that are in no file, the words of the program and its environment, how it runs,
+    and where the launch file has it; ``texts`` are the descriptions among its parameters.
+    ``is_unnamed`` is true if only its code has its name. ``files`` are its parameter files, ``clock``
+    is its ``use_sim_time``, if it is said. ``number`` is its place in the launch,
+    ``program`` are its package and program or class, ``kind`` is what it is known as."""
 
     values: Mapping[str, Any]
-    arguments: tuple[str, ...]
-    environment: Mapping[str, str]
+    arguments: tuple[str, ...] = ()
+    environment: Mapping[str, str] = {}
+    process: Process = AS_USUAL
+    texts: tuple[str, ...] = ()
     is_unnamed: bool = False
+    rules: tuple[tuple[str, str], ...] = ()
+    number: int = -1
+    place: Place = NOWHERE
+    program: tuple[str, str] = ("", "")
+    kind: str = ""
+    files: tuple[str, ...] = ()
+    clock: bool | None = None
 
     @property
     def names(self) -> list[str]:
         """What all of it is called, for people."""
-        return [*self.values, *self.arguments, *self.environment]
-
-    def for_any(self, robot: str) -> HandedOn:
-        """Return the same of a launch for one robot, without that robot."""
-        word = re.compile(rf"(?<![A-Za-z0-9]){re.escape(robot)}(?![A-Za-z0-9])")
-        return HandedOn(*(_each(it, lambda text: word.sub(TWIN, text)) for it in self))
-
-    def for_robot(self, robot: str) -> HandedOn:
-        """Return the same for a robot."""
-        return HandedOn(*(_each(it, lambda text: text.replace(TWIN, robot)) for it in self))
+        return [*self.values, *self.texts, *self.arguments, *self.environment]
 
 
-def handed_on(node: LaunchedNode, name: str) -> HandedOn:
+class Passing(NamedTuple):
+    """A process that is no node of a robot: what it is called, and if it runs once for all robots."""
+
+    node: LaunchedNode
+    name: str
+    once: bool
+
+
+def handed_on(
+    node: LaunchedNode, name: str, of_all: Collection[tuple[str, str]] = (), number: int = -1
+) -> HandedOn:
     """Return what a launch file gives a node that is called so, but for the files that are there
-    without the launch: these are rewritten, and what they set later counts."""
+    without the launch: these are rewritten, and what they set later counts. ``of_all`` is the
+    environment of all processes."""
     full = expand(name.rpartition("/")[2], node.namespace, "")
     values: dict[str, Any] = {}
     for it in node.parameters:
         told = values_for(full, [document_of(it.file, it.text)]) if has_sections(it) else {}
         values |= {key: one.value for key, one in told.items()}
         values = {key: one for key, one in values.items() if not (it.source and key in told)}
-    values.pop(_CLOCK, None)
-    is_unnamed = not (node.name or node.later)
-    return HandedOn(values, node.arguments, dict(node.environment), is_unnamed)
+    clock = values.pop(_CLOCK, None)
+    texts = tuple(key for key in (DESCRIPTION, SEMANTIC) if values.pop(key, None) is not None)
+    own = dict(it for it in node.environment if it not in of_all)
+    program = node.package, node.executable
+    more = not node.name, node.remappings, number, node.place, program
+    found = HandedOn(values, node.arguments, own, node.process, texts, *more)
+    files = tuple(dict.fromkeys(it.source for it in node.parameters if it.source))
+    return found._replace(files=files, clock=clock if isinstance(clock, bool) else None)
 
 
-def _each(it: Any, change: Any) -> Any:
-    """Return a value with each text in it changed."""
+def for_any(it: Any, robot: str) -> Any:
+    """Return what a launch for one robot gives, without that robot."""
+    word = re.compile(rf"(?<![A-Za-z0-9]){re.escape(robot)}(?![A-Za-z0-9])")
+    return _each(it, lambda text: word.sub(_ROBOT, text))
+
+
+def for_robot(it: Any, robot: str) -> Any:
+    """Return the same for a robot."""
+    return _each(it, lambda text: filled(text, robot))
+
+
+def process_name(it: LaunchedNode) -> str:
+    """Return what a process is called that is no node: by its launch file, program or script."""
+    try:
+        words = [it.executable, *it.arguments] if it.package else shlex.split(it.executable)
+    except ValueError:
+        words = it.executable.split()
+    words = [*words, *("" if it.package else " ".join(it.arguments)).split()]
+    own = (word for word in words if word[:1] != "-" and os.path.basename(word) not in _RUNNERS)
+    return os.path.basename(next(own, it.executable))
+
+
+def _each(it: Any, change: Callable[[str], str]) -> Any:
+    """Return a value with each text in it changed, but for places."""
     if isinstance(it, Mapping):
         return {key: _each(one, change) for key, one in it.items()}
+    if isinstance(it, Place):
+        return it
+    if hasattr(it, "_fields"):
+        return type(it)(*(_each(one, change) for one in it))
     if isinstance(it, list | tuple):
         return type(it)(_each(one, change) for one in it)
     return change(it) if isinstance(it, str) else it

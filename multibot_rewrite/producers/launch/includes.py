@@ -14,6 +14,8 @@ from multibot_rewrite.producers.launch.describe import (
     SIMULATOR,
     SIMULATORS,
     Visit,
+    changed_environment,
+    namespace_of,
     parameters,
     text,
 )
@@ -65,6 +67,18 @@ def simulator(error: BaseException, include: Any, here: Visit) -> list[LaunchedN
     program = "create" if spawns else SIMULATOR
     own = LaunchedNode(package, program, "", "/", (), (), "", kept, here.later, here.place)
     return [own, *(_bridge(words, here) if name == _SPAWNS_BRIDGED else ())]
+
+
+def not_here(error: BaseException, include: Any, here: Visit) -> list[LaunchedNode]:
+    """A launch file of a package that is missing here, with the arguments that are known."""
+    it, package = included(include, here), missing_package(error)
+    if not package or not it.file.startswith(f"{package}/"):
+        return []
+    words = tuple(f"{name}:={value}" for name, value in it.arguments if value)
+    names = package, it.file.removeprefix(f"{package}/"), "", namespace_of(None, here.context)
+    environment = tuple(changed_environment(here).items())
+    how = here.waits._replace(is_include=True)
+    return [LaunchedNode(*names, (), (), "", words, here.later, here.place, environment, how)]
 
 
 def _bridge(given: Mapping[str, str], here: Visit) -> Iterator[LaunchedNode]:

@@ -36,3 +36,14 @@ def read_text(path: str) -> str:
 def kept_file(path: str) -> str:
     """The real path of a file that is there when the launch is over, else nothing."""
     return os.path.realpath(path) if os.path.isfile(path) and not is_made(path) else ""
+
+
+def lasting_folders(text: str) -> str:
+    """A list of folders, as they are when the launch is over: in the place of one with links to the
+    sources of packages the folders of these, each once."""
+    found: dict[str, None] = {}
+    for it in lasting(text.split(os.pathsep)):
+        links = [one.path for one in os.scandir(it)] if is_made(it) and os.path.isdir(it) else []
+        found |= dict.fromkeys(os.path.dirname(os.path.realpath(one)) for one in links)
+        found |= {} if links else {it: None}
+    return os.pathsep.join(found)

@@ -9,36 +9,58 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import count
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.knowledge.controller_ways import controller_way
-from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
+from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.evidence.remapped import remapped
 from multibot_rewrite.producers.launch.bridges import bridge_rows
-from multibot_rewrite.producers.launch.findings import launch_findings
-from multibot_rewrite.producers.launch.handed_on import HandedOn, handed_on
+from multibot_rewrite.producers.launch.describe import SIMULATOR, SIMULATORS
+from multibot_rewrite.producers.launch.findings import launch_findings, started_twice
+from multibot_rewrite.producers.launch.handed_on import (
+    HandedOn,
+    Passing,
+    handed_on,
+    process_name,
+)
 from multibot_rewrite.producers.launch.known_node import (
     check_names,
     guessed_name,
     known_node,
     own_name,
 )
+from multibot_rewrite.producers.launch.once import once_for_all
 from multibot_rewrite.producers.launch.parameter_texts import OWN, document_of, has_sections
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
-from multibot_rewrite.producers.launch.static_transforms import with_static_transform
+from multibot_rewrite.producers.launch.static_transforms import (
+    STATIC,
+    frames_in,
+    with_static_transform,
+)
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
 
+# Their words have names, or name files of the robot.
+_WORDS_OF_BUILD = (
+    "static_transform_publisher",
+    "robot_state_publisher",
+    "rviz2",
+    "cartographer_node",
+)
+# Packages of launch files alone, and how those of their nodes begin.
+_FAMILIES = {"nav2_bringup": "nav2_"}
 NO_NAME = "the launch file gives it no name"
 NOTHING: Mapping[str, HandedOn] = {}
 
@@ -46,7 +68,9 @@ NOTHING: Mapping[str, HandedOn] = {}
 class Launched(NamedTuple):
     """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
     its name, the controllers that are spawned by theirs, if that is all that runs, findings, if they
-    start a simulator, or what is for one, and what those that nobody knows are given by their names."""
+    start a simulator, or what is for one, what each of them is given by its name, and the processes
+    that are no nodes. ``environment`` is what all processes have, ``placing`` is the number of what
+    puts the robot into its simulator."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[Run, ...]
@@ -56,11 +80,16 @@ class Launched(NamedTuple):
     findings: tuple[Finding, ...]
     simulated: bool = False
     handed_on: Mapping[str, HandedOn] = NOTHING
+    processes: tuple[Passing, ...] = ()
+    environment: tuple[tuple[str, str], ...] = ()
+    placing: int = -1
 
 
 class _Pair(NamedTuple):
     node: LaunchedNode
     facts: NodeFacts
+    number: int
+    is_second: bool = False
 
 
 def with_launched(
@@ -74,7 +103,8 @@ def with_launched(
     """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
     spawned, notes = spawned_in(graph.nodes)
     graph = graph._replace(notes=(*graph.notes, *notes))
-    pairs = [_pair(it, stack, known, words) for it in graph.nodes if not passes(it)]
+    each = [(number, it) for number, it in enumerate(graph.nodes) if not passes(it)]
+    pairs, twice = _each_once(_pair(number, it, stack, known, words) for number, it in each)
     spawned, lost = under_managers(spawned, _managers(pairs) if graph.whole else ())
     nodes = {it.facts.name: it.facts for it in pairs}
     left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
@@ -89,17 +119,56 @@ def with_launched(
     given = list(_controllers(spawned, pairs, words, parameters))
     given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
     unknown = {it.facts.name: it.node for it in pairs if not it.facts.is_known}
-    handed = {it.facts.name: _handed(it, parameters) for it in pairs if _is_own(it, release)}
+    of_all = graph.environment
+    handed = {it.facts.name: _handed(it, of_all, _is_own(it, release)) for it in pairs}
+    numbered = (it._replace(number=at) for at, it in enumerate(graph.nodes))
+    processes = (
+        it
+        for it in numbered
+        if passes(it) and not _is_built(it) and not (it.process.is_include and _stands(it, kept))
+    )
+    passing = tuple(_passing(it, words, of_all) for it in processes)
     return Launched(
         (*kept, *nodes.values(), *hosted),
         tuple({it.node: it for it in reversed(given)}.values()),
         {it.facts.name: it.node for it in pairs},
         dict(_under_manager(spawned, pairs, words, release)),
         graph.whole,
-        (*launch_findings(graph, unknown, handed, left), *lost),
+        (*launch_findings(graph, unknown, handed, left, passing), *twice, *lost),
         any(it.package in programs().simulators for it in graph.nodes),
         handed,
+        passing,
+        graph.environment,
+        next((at for at, it in enumerate(graph.nodes) if _program(it) in programs().spawners), -1),
     )
+
+
+def _each_once(pairs: Iterable[_Pair]) -> tuple[list[_Pair], list[Finding]]:
+    """The nodes, of which each has a name of its own, and findings about those that are started twice.
+
+    Of two that are alike the later one counts. Another one without a name, or of another program, is
+    called otherwise.
+    """
+    found: dict[str, _Pair] = {}
+    findings: list[Finding] = []
+    for it in pairs:
+        name, other = it.facts.name, found.get(it.facts.name)
+        if other is None:
+            found[name] = it
+            continue
+        alike = _program(it.node) == _program(other.node) and bool(it.node.name)
+        same = alike or _given_to(it.node) == _given_to(other.node)
+        if it.node.name or same:
+            findings.append(started_twice(it.node, other.node, name))
+        if not same:
+            name = next(one for n in count(2) if (one := f"{name}_{n}") not in found)
+        found[name] = it._replace(facts=it.facts._replace(name=name), is_second=not same)
+    return [*found.values()], findings
+
+
+def _given_to(it: LaunchedNode) -> tuple[object, ...]:
+    """What a launch file says of a node, but for where."""
+    return it.package, it.executable, it.remappings, it.parameters, it.arguments
 
 
 def _is_own(it: _Pair, release: str) -> bool:
@@ -108,12 +177,37 @@ def _is_own(it: _Pair, release: str) -> bool:
     return known not in built_in(release).nodes if known else not it.facts.is_known
 
 
-def _handed(it: _Pair, known: KnownNodes) -> HandedOn:
-    """What its launch file gives a node, without names: another rule tells those that are known."""
-    own, facts = handed_on(it.node, it.facts.name), known.nodes.get(it.facts.known)
-    params = facts.params.values() if facts else ()
-    plain = {key: v for key, v in own.values.items() if not any(is_called(p, key) for p in params)}
-    return own._replace(values=plain)
+def _handed(it: _Pair, of_all: Collection[tuple[str, str]], is_own: bool) -> HandedOn:
+    """What its launch file gives a node; what is built gives a known one its name."""
+    found = handed_on(it.node, it.facts.name, of_all, it.number)
+    if it.facts.known == STATIC:
+        found = found._replace(values={**found.values, **frames_in(it.node.arguments)})
+    texts = found.texts if is_own else ()
+    unnamed = found.is_unnamed and is_own and not it.is_second
+    return found._replace(texts=texts, is_unnamed=unnamed, kind=it.facts.known)
+
+
+def _is_built(it: LaunchedNode) -> bool:
+    """Is it what a build makes of the robot's own files: a spawner, or of a simulator?"""
+    is_simulator = it.package in SIMULATORS and it.executable == SIMULATOR
+    return is_simulator or is_spawner(it) or _program(it) in programs().spawners
+
+
+def _stands(include: LaunchedNode, stack: Iterable[NodeFacts]) -> bool:
+    """Does the robot's stack have the nodes of a launch file that is not here?"""
+    family = _FAMILIES.get(include.package, include.package)
+    own = (it.package for it in stack if it.origin != NO_ORIGIN)
+    return any(it == family or (family[-1] == "_" and it.startswith(family)) for it in own)
+
+
+def _passing(
+    it: LaunchedNode, words: Collection[str], of_all: Collection[tuple[str, str]]
+) -> Passing:
+    """A process with its own environment, and its namespace below the robot's."""
+    own = it._replace(environment=tuple(pair for pair in it.environment if pair not in of_all))
+    once = bool(once_for_all(it)) and not is_of_robot(it.namespace, words)
+    below = own if once else own._replace(namespace=f"/{_below(it.namespace, '', words)}")
+    return Passing(below, process_name(it), once)
 
 
 def _managers(pairs: Iterable[_Pair]) -> dict[str, None]:
@@ -154,12 +248,18 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
 
 
 def passes(it: LaunchedNode) -> bool:
-    """Does the program do its work and end, or is it a simulator?"""
-    program = f"{it.package}/{it.executable}"
-    return not it.package or is_spawner(it) or program in programs().passing
+    """Is it no node of a robot: a program that does its work and ends, a simulator, a command, or a
+    launch file?"""
+    is_none = not it.package or it.process.is_include
+    return is_none or is_spawner(it) or _program(it) in programs().passing
+
+
+def _program(it: LaunchedNode) -> str:
+    return f"{it.package}/{it.executable}"
 
 
 def _pair(
+    number: int,
     it: LaunchedNode,
     stack: Sequence[NodeFacts],
     known: Mapping[str, NodeFacts],
@@ -174,16 +274,16 @@ def _pair(
     rows = bridge_rows(it, words)
     found = facts._replace(
         name=_below(it.namespace, name, words),
-        endpoints=rows or _unmapped(facts),
+        endpoints=rows or (*_unmapped(facts), *(_only_named(it, facts, name) if base else ())),
         known=facts.kind if base else "",
         # A node that usually serves all robots, in the namespace of one, is that robot's.
-        shared=facts.shared and not _is_of_robot(it.namespace, words),
+        shared=bool(facts.shared or once_for_all(it)) and not is_of_robot(it.namespace, words),
         when=it.later or unnamed,
         container=_below(it.container, "", words),
         origin=_origin(it.place),
         is_known=facts.is_known or bool(rows),
     )
-    return _Pair(it, found)
+    return _Pair(it, found, number)
 
 
 def _unknown(it: LaunchedNode, name: str) -> NodeFacts:
@@ -194,8 +294,19 @@ def _unknown(it: LaunchedNode, name: str) -> NodeFacts:
 
 def _named_by(it: LaunchedNode) -> tuple[Endpoint, ...]:
     """What the rules of a node that nobody knows name: topics, as far as anybody can say."""
-    names = dict.fromkeys(old for old, _ in it.remappings if not check_topic_name(old))
+    own = (old for old, _ in it.remappings if not check_topic_name(old))
+    # It may send or read transforms: under these rules they are its robot's.
+    names = dict.fromkeys((*own, *(f"/{topic}" for topic in TF_TOPICS)))
     return tuple(Endpoint(TOPIC, "", old) for old in names)
+
+
+def _only_named(it: LaunchedNode, facts: NodeFacts, name: str) -> Iterator[Endpoint]:
+    """What the rules of a known node name besides its own topics: the program may have more."""
+    there = {expand(end.name, it.namespace, name) for end in facts.endpoints}
+    there |= {f"/{topic}" for topic in TF_TOPICS}
+    for old in dict.fromkeys(old for old, _ in it.remappings if not check_topic_name(old)):
+        if expand(old, it.namespace, name) not in there:
+            yield Endpoint(TOPIC, "", old)
 
 
 def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
@@ -203,7 +314,8 @@ def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
     return tuple(end._replace(remapped="") for end in facts.endpoints)
 
 
-def _is_of_robot(namespace: str, words: Collection[str]) -> bool:
+def is_of_robot(namespace: str, words: Collection[str]) -> bool:
+    """Is a namespace that of a robot, or below it?"""
     return namespace.strip("/").partition("/")[0] in words
 
 

@@ -27,12 +27,20 @@ from multibot_rewrite.producers.launch.stand_in.packages import (
     PackageNotFoundError,
 )
 from multibot_rewrite.producers.launch.stand_in.parameters import evaluate_parameters
-from multibot_rewrite.producers.launch.stand_in.processes import RegisterEventHandler
+from multibot_rewrite.producers.launch.stand_in.processes import (
+    ExecuteProcess,
+    OnProcessExit,
+    OnProcessStart,
+    RegisterEventHandler,
+    TimerAction,
+)
 from multibot_rewrite.producers.launch.stand_in.ros import ComposableNode, LifecycleNode
 from multibot_rewrite.producers.launch.stand_in.values import Kept, LaunchContext, text_of
 from multibot_rewrite.producers.launch.visit import EXECUTED
 from multibot_rewrite.system.records import Place
 
+# Where what starts later ends.
+END = "end"
 _OF_COMPONENT = ("package", "node_plugin", "node_name", "node_namespace")
 
 
@@ -143,13 +151,32 @@ class _Seen(NamedTuple):
         if isinstance(entity, DeclareLaunchArgument) or kind not in EXECUTED:
             if not is_wanted(entity, self.context):
                 return
-            yield Action(kind, self.values(entity), place_of(entity, self.path))
+            name, inner = self.later(entity)
+            yield Action(name, self.values(entity), place_of(entity, self.path))
+            for it in inner:
+                yield from self.below(it)
+            yield from [Action(END, {})] * bool(inner)
         if kind in EXECUTED:
             for it in entity.visit(self.context) or ():
                 yield from self.below(it)
 
+    def later(self, entity: Any) -> tuple[str, Sequence[Any]]:
+        """Return what an action is called, and what it starts later: by its event, or after a time."""
+        if isinstance(entity, TimerAction):
+            return type(entity).__name__, vars(entity)["actions"]
+        handler = entity.event_handler if isinstance(entity, RegisterEventHandler) else None
+        if isinstance(handler, OnProcessStart | OnProcessExit):
+            return type(handler).__name__, handler.actions
+        return type(entity).__name__, ()
+
     def values(self, entity: Any) -> dict[str, Any]:
         """Return what an action is given, evaluated."""
+        _, inner = self.later(entity)
+        if isinstance(entity, TimerAction):
+            return {"period": vars(entity)["period"]}
+        if isinstance(entity, RegisterEventHandler) and inner:
+            first = entity.event_handler.target_action
+            return {"target_action": self.values(first)}
         if isinstance(entity, RegisterEventHandler):
             return self.kept(entity.event_handler)
         if isinstance(entity, LifecycleNode):
@@ -160,7 +187,11 @@ class _Seen(NamedTuple):
             given = entity.launch_arguments
             found["launch_description_source"] = text_of(self.context, location)
             found["launch_arguments"] = [[text_of(self.context, one) for one in it] for it in given]
-        if hasattr(entity, "node_executable"):
+            given = self.context.launch_configurations
+            space, rules = (given.get(it) for it in ("ros_namespace", "ros_remaps"))
+            scope = {"namespace": space, "remappings": [[*it] for it in rules or ()]}
+            found |= {name: it for name, it in scope.items() if it}
+        if isinstance(entity, ExecuteProcess | IncludeLaunchDescription):
             found["environment"] = dict(self.context.environment)
         return found
 

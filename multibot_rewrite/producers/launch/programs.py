@@ -14,12 +14,13 @@ class Programs(NamedTuple):
     """Executables whose node is called otherwise than its entry, and those that are no node of a robot.
 
     ``spawners`` put a description into a simulator, ``simulators`` are packages that only a simulated
-    robot needs."""
+    robot needs; ``once`` has patterns of what runs once for all robots, by the reason."""
 
     names: Mapping[str, str]
     passing: Collection[str]
     spawners: Collection[str]
     simulators: Collection[str]
+    once: Mapping[str, Collection[str]]
 
 
 @cache

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from multibot_rewrite.producers.launch.commands import faults, read_commands, start_nothing
-from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit
+from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit, changed_environment
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import (
     failure,
@@ -24,8 +24,13 @@ from multibot_rewrite.producers.launch.failures import (
 from multibot_rewrite.producers.launch.includes import unread_of
 from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
-from multibot_rewrite.producers.launch.read_files import descriptions_in, keep_reads
-from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote, LaunchOrder
+from multibot_rewrite.producers.launch.read_files import descriptions_in, files_read, keep_reads
+from multibot_rewrite.producers.launch.records import (
+    LaunchArgument,
+    LaunchGraph,
+    LaunchNote,
+    LaunchOrder,
+)
 from multibot_rewrite.producers.launch.source_packages import add_empty, add_file, add_sources
 from multibot_rewrite.producers.launch.stand_in import standing_in
 from multibot_rewrite.producers.launch.unknown_modules import add_unknown
@@ -55,21 +60,22 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     of_launch_ros("actions")
     keep_places()
     keep_sources()
-    read_commands()
-    unsure, reads = [] if order.trusted else start_nothing(), keep_reads()
+    lines, reads = read_commands(), keep_reads()
+    unsure = [] if order.trusted else start_nothing(lines)
     # A launch file may look at the command line itself.
     sys.argv = order.command_line
     missing: list[str] = []
     while (graph := _tried(order, folder, missing)) is None:
         pass
-    files = (*graph.files, *descriptions_in(reads))
+    files = (*graph.files, *descriptions_in(reads.paths))
     # What the launch files of these start is known without them.
     said = (*_lost(graph.notes), *SIMULATORS)
     unsaid = [it for it in missing if it not in said]
     whole = Place(os.path.abspath(order.file), 1)
     more = (*map(not_installed, unsaid), *dict.fromkeys(unsure))
-    notes = (LaunchNote(whole, it, parameters=it in unsure) for it in more)
-    return graph._replace(notes=(*graph.notes, *notes), files=files)
+    own = (LaunchNote(whole, it, parameters=it in unsure) for it in more)
+    notes = (*graph.notes, *own)
+    return graph._replace(notes=notes, files=files, read=files_read(lines, reads))
 
 
 def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph | None:
@@ -135,15 +141,33 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     folder = {"current_launch_file_directory": os.path.dirname(path)}
     context.extend_locals({"current_launch_file_path": path, **folder})
     context.launch_configurations.update(order.arguments)
-    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], order.every)
+    before = dict(context.environment)
+    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, order.every)
     unread_of(path, dict(order.arguments), seen)
     visit_all(description, seen)
+    declared = _declared(description)
     for it in faults(context):
         seen.note(it, parameters=True)
     notes = tuple(dict.fromkeys(_with_unset(seen.notes, path)))
     files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
     found = LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
-    return found._replace(includes=tuple(seen.includes))
+    own = tuple(changed_environment(seen).items())
+    return found._replace(includes=tuple(seen.includes), environment=own, declared=declared)
+
+
+def _declared(description: Any) -> tuple[LaunchArgument, ...]:
+    """The arguments of a launch file and of what it includes, each once; a default that is made of
+    others is not known."""
+    found: dict[str, LaunchArgument] = {}
+    for it, _ in getattr(description, _ASKED)():
+        given = it.default_value
+        parts = given if isinstance(given, list | tuple) else [given or ""]
+        plain = [one if isinstance(one, str) else getattr(one, "text", None) for one in parts]
+        default = "".join(map(str, plain)) if None not in plain else ""
+        found.setdefault(
+            it.name, LaunchArgument(it.name, default, tuple(map(str, it.choices or ())))
+        )
+    return tuple(found.values())
 
 
 def _with_unset(notes: Iterable[LaunchNote], path: str) -> Iterator[LaunchNote]:

@@ -1,34 +1,101 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The descriptions that a launch file reads itself: of a text that a node gets, the file is known."""
+"""The files that a launch file reads: of a description that a node gets, the file is known."""
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable, Iterator
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
+from types import ModuleType
+from typing import Any, cast
 
-from multibot_rewrite.producers.launch.records import ParameterText
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.launch.commands import xacro_of
+from multibot_rewrite.producers.launch.kept_paths import lasting
+from multibot_rewrite.producers.launch.records import FileRead, ParameterText
 
+# Descriptions, and what else robots have: an XML file may be a manifest.
 _ENDINGS = (".urdf", ".sdf", ".xml", ".model")
+_KEPT = (".urdf", ".sdf", ".model", ".srdf", ".yaml", ".yml")
+_XACRO = ".xacro"
+_ENDS = (*_ENDINGS, *_KEPT, _XACRO)
 _LIMIT = 1 << 24
 
 
-def keep_reads() -> list[str]:
-    """From now on every description that is opened in this process is in the list."""
-    found: list[str] = []
+class Reads(NamedTuple):
+    """What is read in this process: files of a robot that are opened, and xacros that are expanded with
+    values of arguments."""
+
+    paths: list[str]
+    xacros: list[FileRead]
+
+
+def keep_reads() -> Reads:
+    """From now on all that is read in this process is kept."""
+    found = Reads([], [])
 
     def opened(event: str, words: tuple[Any, ...]) -> None:
-        if event == "open" and isinstance(words[0], str) and words[0].endswith(_ENDINGS):
-            found.append(words[0])
+        if event == "open" and isinstance(words[0], str) and words[0].endswith(_ENDS):
+            found.paths.append(words[0])
 
     sys.addaudithook(opened)
+    sys.meta_path.insert(0, _Xacro(found))
     return found
 
 
+class _Xacro:
+    """Finds the module xacro, with a function that keeps what it is given."""
+
+    def __init__(self, found: Reads) -> None:
+        self.found = found
+
+    def find_spec(self, name: str, *_: object) -> ModuleSpec | None:
+        """Return how xacro is loaded; None for other modules."""
+        if name != "xacro":
+            return None
+        sys.meta_path.remove(cast(Any, self))
+        spec = find_spec(name)
+        loader: Any = spec.loader if spec else None
+        if loader:
+            load = loader.exec_module
+            loader.exec_module = lambda module: self.keep(module, load)
+        return spec
+
+    def keep(self, module: ModuleType, load: Callable[[ModuleType], None]) -> None:
+        """Load the module; from then on what it expands is kept: it has just opened the file."""
+        load(module)
+        expand = vars(module)["process_doc"]
+
+        def process_doc(doc: Any, *words: Any, **options: Any) -> Any:
+            given = {"mappings": next(iter(words), None), **options}["mappings"] or {}
+            pairs = tuple((key, it) for key, it in dict(given).items() if isinstance(it, str))
+            last = [it for it in self.found.paths if it.endswith(_XACRO)][-1:]
+            self.found.xacros.extend(FileRead(it, pairs) for it in last)
+            return expand(doc, *words, **options)
+
+        vars(module)["process_doc"] = process_doc
+
+
+def files_read(lines: Iterable[str], reads: Reads) -> tuple[FileRead, ...]:
+    """The xacros that ``lines`` of programs and the launch file expand, with their arguments, and other
+    files that it reads."""
+    xacros = (*filter(None, map(xacro_of, lines)), *reads.xacros)
+    other = (FileRead(it) for it in reads.paths if it.endswith(_KEPT))
+    real = (it._replace(file=os.path.realpath(it.file)) for it in (*xacros, *other))
+    kept = (it._replace(arguments=_lasting(it.arguments)) for it in real)
+    return tuple(dict.fromkeys(kept))
+
+
+def _lasting(pairs: Sequence[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    return tuple((name, lasting((value,))[0]) for name, value in pairs)
+
+
 def descriptions_in(paths: Iterable[str]) -> Iterator[tuple[str, ParameterText]]:
-    """The text of each of these files."""
-    for path in dict.fromkeys(map(os.path.realpath, paths)):
+    """The text of each of these files that a node may get for its description."""
+    plain = (it for it in paths if it.endswith(_ENDINGS))
+    for path in dict.fromkeys(map(os.path.realpath, plain)):
         if os.path.isfile(path) and os.path.getsize(path) < _LIMIT:
             with open(path, encoding="utf-8", errors="replace") as file:
                 yield path, ParameterText(path, file.read(), path)

@@ -13,6 +13,7 @@ from typing import Any
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.package_files import file_of_package
+from multibot_rewrite.spelling.start import AS_USUAL, Process
 from multibot_rewrite.system.records import Place
 
 # What starts a node that another program has ended before.
@@ -57,7 +58,9 @@ class ParameterText(NamedTuple):
 class LaunchedNode(NamedTuple):
     """A node that a launch file starts.
 
-    ``executable`` is the plugin of a component, ``name`` is empty where the node has its own.
+    ``executable`` is the plugin of a component, ``name`` is empty where the node has its own. What has
+    no ``package`` is a command, ``process.is_include`` says that it is a launch file which is not here.
+    ``number`` is its place in the launch, where that is asked.
     ``container`` is the full name of the node that a component is loaded into. ``later`` says what
     starts it if not the launch itself. ``place`` is where the launch file has it. ``environment`` is
     what is set for its process.
@@ -74,6 +77,8 @@ class LaunchedNode(NamedTuple):
     later: str
     place: Place
     environment: tuple[tuple[str, str], ...] = ()
+    process: Process = AS_USUAL
+    number: int = -1
 
 
 class LaunchNote(NamedTuple):
@@ -110,10 +115,29 @@ class LaunchInclude(NamedTuple):
     arguments: tuple[tuple[str, str], ...]
 
 
+class LaunchArgument(NamedTuple):
+    """An argument that a launch file, or one that it includes, declares: ``default`` is empty where it
+    has none that is known before the launch."""
+
+    name: str
+    default: str
+    choices: tuple[str, ...]
+
+
+class FileRead(NamedTuple):
+    """A description, an SRDF or a YAML file that a launch file reads, with the arguments that it gives
+    to a xacro."""
+
+    file: str
+    arguments: tuple[tuple[str, str], ...] = ()
+
+
 class LaunchGraph(NamedTuple):
     """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
     the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
-    launch is not installed and its stand-in read them. ``unread`` are arguments without effect."""
+    launch is not installed and its stand-in read them. ``unread`` are arguments without effect,
+    ``environment`` is what they set for all processes. ``declared`` are the arguments that there are,
+    ``read`` is what the launch files themselves read."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
@@ -121,6 +145,9 @@ class LaunchGraph(NamedTuple):
     stood_in: bool = False
     unread: tuple[UnreadArgument, ...] = ()
     includes: tuple[LaunchInclude, ...] = ()
+    environment: tuple[tuple[str, str], ...] = ()
+    declared: tuple[LaunchArgument, ...] = ()
+    read: tuple[FileRead, ...] = ()
 
     @property
     def whole(self) -> bool:
@@ -182,13 +209,27 @@ def orders_in_words(
 def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
     """What several launch files start, as one."""
     return LaunchGraph(
-        tuple(node for it in graphs for node in it.nodes),
+        tuple(_joined_nodes(graphs)),
         tuple(note for it in graphs for note in it.notes),
         tuple(file for it in graphs for file in it.files),
         any(it.stood_in for it in graphs),
         tuple(one for it in graphs for one in it.unread),
         tuple(one for it in graphs for one in it.includes),
+        tuple({pair: None for it in graphs for pair in it.environment}),
+        tuple(one for it in graphs for one in it.declared),
+        tuple(one for it in graphs for one in it.read),
     )
+
+
+def _joined_nodes(graphs: Sequence[LaunchGraph]) -> Iterator[LaunchedNode]:
+    """The nodes of all, with the numbers of those that they wait for among all."""
+    first = 0
+    for graph in graphs:
+        for it in graph.nodes:
+            after = it.process.after
+            moved = it.process._replace(after=after + first) if after >= 0 else it.process
+            yield it._replace(process=moved)
+        first += len(graph.nodes)
 
 
 def orders_of(text: str) -> tuple[float, list[LaunchOrder]]:
@@ -198,13 +239,12 @@ def orders_of(text: str) -> tuple[float, list[LaunchOrder]]:
 
 
 def _order(file: str, arguments: Any, roots: Any, *more: Any) -> LaunchOrder:
-    pairs = tuple((name, value) for name, value in arguments)
-    return LaunchOrder(file, pairs, tuple(roots), *more)
+    return LaunchOrder(file, _pairs(arguments), tuple(roots), *more)
 
 
 def graph_of(values: Any) -> LaunchGraph:
     """The graph that is this in JSON; raises what an unexpected value does."""
-    nodes, notes, files, stood_in, unread, includes = values
+    nodes, notes, files, stood_in, unread, includes, environment, declared, read = values
     found = (LaunchNote(Place(*place), *rest) for place, *rest in notes)
     return LaunchGraph(
         tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes),
@@ -212,11 +252,15 @@ def graph_of(values: Any) -> LaunchGraph:
         tuple((path, ParameterText(*it)) for path, it in files),
         stood_in,
         tuple(UnreadArgument(Place(*place), *rest) for place, *rest in unread),
-        tuple(
-            LaunchInclude(Place(*place), file, tuple((name, value) for name, value in given))
-            for place, file, given in includes
-        ),
+        tuple(LaunchInclude(Place(*place), file, _pairs(given)) for place, file, given in includes),
+        _pairs(environment),
+        tuple(LaunchArgument(name, given, tuple(words)) for name, given, words in declared),
+        tuple(FileRead(file, _pairs(given)) for file, given in read),
     )
+
+
+def _pairs(rows: Any) -> tuple[tuple[str, str], ...]:
+    return tuple((name, value) for name, value in rows)
 
 
 _FIELDS = LaunchedNode._fields
@@ -226,10 +270,11 @@ def _node(values: Mapping[str, Any]) -> LaunchedNode:
     return LaunchedNode(
         **{
             **values,
-            "remappings": tuple((old, new) for old, new in values["remappings"]),
+            "remappings": _pairs(values["remappings"]),
             "parameters": tuple(ParameterText(*it) for it in values["parameters"]),
             "arguments": tuple(values["arguments"]),
             "place": Place(*values["place"]),
-            "environment": tuple((name, value) for name, value in values["environment"]),
+            "environment": _pairs(values["environment"]),
+            "process": Process(*values["process"]),
         }
     )

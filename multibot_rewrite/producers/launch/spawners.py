@@ -15,16 +15,20 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.producers.launch.ros_arguments import ros_arguments
+from multibot_rewrite.spelling.start import AS_USUAL, Process
 from multibot_rewrite.system.records import Place
 
 SPAWNER = "controller_manager/spawner"
 _ONE = "--controller"
+_TIMES = ("--controller-manager-timeout", "--switch-timeout", "--service-call-timeout")
+_SWITCHES = ("--load-only", "--activate-as-group", "--unload-on-kill", "--switch-asap")
 
 
 class Spawned(NamedTuple):
     """A controller that a spawner loads into ``manager`` (a full name): its type where the spawner
     says it, its parameters, remap rules, what starts the spawner if not the launch itself, where the
-    launch file has that, and if it stays inactive."""
+    launch file has that, if it stays inactive, the number of the spawner, how that runs, and its
+    further words."""
 
     name: str
     manager: str
@@ -34,6 +38,9 @@ class Spawned(NamedTuple):
     later: str
     place: Place
     inactive: bool = False
+    number: int = -1
+    process: Process = AS_USUAL
+    words: tuple[str, ...] = ()
 
     @property
     def full_name(self) -> str:
@@ -62,9 +69,10 @@ def spawned_in(nodes: Iterable[LaunchedNode]) -> tuple[tuple[Spawned, ...], tupl
     """The controllers that these spawners load, and notes of those whose arguments are not right."""
     found: list[Spawned] = []
     notes: list[LaunchNote] = []
-    for node in filter(is_spawner, nodes):
+    for number, node in enumerate(nodes):
         try:
-            found += _spawned(node)
+            own = _spawned(node) if is_spawner(node) else ()
+            found += (it._replace(number=number, process=node.process) for it in own)
         except ValueError as error:
             notes.append(LaunchNote(node.place, f"the arguments of a spawner are wrong: {error}"))
     return tuple(found), tuple(notes)
@@ -116,7 +124,8 @@ def _spawned(node: LaunchedNode) -> Iterator[Spawned]:
         own = (node.parameters, rules, node.later, node.place)
         inactive = given.inactive or given.stopped or given.load_only
         for name in given.controller_names:
-            yield Spawned(name, manager, given.controller_type, *own, inactive)
+            made = Spawned(name, manager, given.controller_type, *own, inactive)
+            yield made._replace(words=tuple(_further(given)))
 
 
 def _each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
@@ -129,6 +138,16 @@ def _each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
     for at, end in zip(starts, (*starts[1:], len(words)), strict=True):
         one = _parser(names="+").parse_args(list(words[at + 1 : end]))
         yield _below(one, vars(top))
+
+
+def _further(given: argparse.Namespace) -> Iterator[str]:
+    """The words that say how a controller is loaded; ``--inactive`` has a meaning of its own."""
+    for flag in _TIMES:
+        if value := getattr(given, flag[2:].replace("-", "_"), None):
+            yield from (flag, value)
+    for flag in _SWITCHES:
+        if getattr(given, flag[2:].replace("-", "_"), False):
+            yield flag
 
 
 def _below(one: argparse.Namespace, top: Mapping[str, object]) -> argparse.Namespace:
@@ -148,6 +167,6 @@ def _parser(names: str) -> _Parser:
         parser.add_argument(flag, action="store_true")
     parser.add_argument("-u", "--unload-on-kill", action="store_true")
     parser.add_argument("--switch-asap", action=argparse.BooleanOptionalAction)
-    for value in ("--controller-manager-timeout", "--switch-timeout", "--service-call-timeout"):
+    for value in _TIMES:
         parser.add_argument(value)
     return parser

@@ -20,19 +20,35 @@ def with_static_transform(node: NodeFacts, words: Sequence[str]) -> NodeFacts:
     """
     if node.known != STATIC:
         return node
-    named = _named(words)
+    named = frames_in(words)
     frames = tuple(_framed(it, named) for it in node.frames)
     known = {it.parameter for it in frames if it.given and it.default}
     sends = (SentTransform(_PARENT, _CHILD),) if {_PARENT, _CHILD} <= known else ()
     return node._replace(frames=frames, sends=sends)
 
 
-def _named(words: Sequence[str]) -> Mapping[str, str]:
-    """Flags, or the last two words (tf2_ros jazzy, static_transform_broadcaster_program.cpp)."""
+def frames_in(words: Sequence[str]) -> Mapping[str, str]:
+    """Return the frames in the words of a static_transform_publisher, by their parameters: behind
+    flags, or the last two (tf2_ros jazzy, static_transform_broadcaster_program.cpp)."""
     flags = {flag: word for flag, word in pairwise(words) if flag.startswith("--")}
     if flags:
         return {_FLAGS[flag]: word for flag, word in flags.items() if flag in _FLAGS}
     return dict(zip((_PARENT, _CHILD), words[-2:], strict=True)) if len(words) in (8, 9) else {}
+
+
+def with_frames(words: Sequence[str], frames: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the words with other frames."""
+    named = frames_in(words)
+    if not any(word.startswith("--") for word in words):
+        return (
+            (*words[:-2], *(frames.get(it, named[it]) for it in (_PARENT, _CHILD)))
+            if named
+            else (*words,)
+        )
+    flags = ("", *words[:-1])
+    return tuple(
+        frames.get(_FLAGS.get(flag, ""), it) for flag, it in zip(flags, words, strict=True)
+    )
 
 
 def _framed(frame: FrameParameter, named: Mapping[str, str]) -> FrameParameter:

@@ -18,10 +18,17 @@ from multibot_rewrite.producers.launch.describe import (
     is_wanted,
     node,
     process,
+    seconds,
     text,
 )
 from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset
-from multibot_rewrite.producers.launch.includes import included, path_of, simulator, unread_of
+from multibot_rewrite.producers.launch.includes import (
+    included,
+    not_here,
+    path_of,
+    simulator,
+    unread_of,
+)
 from multibot_rewrite.producers.launch.places import place_of
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
@@ -115,7 +122,7 @@ def _failed(entity: Any, error: BaseException, here: Visit) -> None:
             known = simulator(error, entity, here)
         except TypeError as wrong:
             known, error = [], wrong
-        here.nodes.extend(known)
+        here.nodes.extend(known or not_here(error, entity, here))
         if known:
             return
     reason = failure(error)
@@ -161,7 +168,7 @@ def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
     # launch/later.py: an action for a robot gets its options when it runs, or others run in its place.
     instead = entity.resolve(seen.context) if type(entity).__name__ == "OfRobot" else None
     if instead is None:
-        seen.nodes.append(node(entity, seen))
+        seen.start(entity, node(entity, seen))
         _ended(entity, seen)
     return instead
 
@@ -198,7 +205,8 @@ def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit)
 
 def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if seen.wants(entity):
-        seen.nodes.extend(process(entity, seen))
+        for it in process(entity, seen):
+            seen.start(entity, it)
         _ended(entity, seen)
     return None
 
@@ -216,6 +224,12 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not timer and not actions:
         message = f"what {type(handler).__name__} starts is decided only at run time"
         seen.note(message)
+    if timer:
+        seen = seen._replace(delay=seen.delay + seconds(entity.period, seen))
+    else:
+        target = getattr(handler, "_OnActionEventBase__action_matcher", None)
+        target = getattr(handler, "target_action", target)
+        seen = seen._replace(delay=0.0, event=type(handler).__name__, target=target)
     _wait(actions, word, seen, timer)
     return None
 
@@ -236,6 +250,7 @@ def _ended(entity: Any, seen: Visit) -> None:
     """What ``on_exit`` of a program starts."""
     actions = getattr(entity, "_ExecuteLocal__on_exit", None)
     if not callable(actions):
+        seen = seen._replace(delay=0.0, event="OnProcessExit", target=entity)
         _wait(_flat(actions), "at an event (on_exit)", seen)
 
 

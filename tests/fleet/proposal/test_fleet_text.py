@@ -11,7 +11,6 @@ import yaml
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.fleet.proposal.companions import Companions
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
-from multibot_rewrite.fleet.proposal.given_by_launch import VALUES, Launched
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Choice, Member, Proposal
 
@@ -30,15 +29,15 @@ KEYS = {
     "layout": Choice("tf-per-robot", "plugins send tf"),
     "distro": Choice("jazzy", "the newest"),
 }
-REST = (("w/a.launch.py", 7, "amcl: y"),)
 ONE = Proposal(
     KEYS,
     [Member(ROVER, BESIDE, ("robot1", "robot2"), 0.5)],
     {"robot1": {"x": 0.0, "y": 0.0}},
     ("A note",),
     ("first.urdf", "w/more.urdf"),
-    {"w/z/bad.yaml": "it is bad", VALUES: "values are bad"},
-    Launched({"amcl": {"a": 1}}, REST),
+    {"w/z/bad.yaml": "it is bad"},
+    (("w/a.launch.py", 7, "amcl: y"),),
+    (("w/b.launch.py", 1, "it fails"),),
 )
 COMMON: dict[str, Any] = {
     "description": "r.urdf.xacro",
@@ -46,7 +45,7 @@ COMMON: dict[str, Any] = {
     "arguments": {"prefix": "{robot}_", "x": "1", "sim": "on"},
     "srdf": "r.srdf",
     "stack": ["nav2", "moveit"],
-    "companions": {"params": ["p.yaml", "q.yaml", {"amcl": {"a": 1}}], "rviz": "v.rviz"},
+    "companions": {"params": ["p.yaml", "q.yaml"], "rviz": "v.rviz"},
 }
 OTHERS = "".join(f"#   {it.name}: {it.about}\n" for it in LAYOUTS if it.name != "tf-per-robot")
 TEXT = f"""\
@@ -84,22 +83,23 @@ srdf: r.srdf
 stack: [nav2, moveit]
 
 # Files for one robot; the build writes one of each for every robot
-# {{NODE: {{PARAMETER: value}}}} is what launch files give a node
 companions:
-  params: [p.yaml, q.yaml, {{amcl: {{a: 1}}}}]
+  params: [p.yaml, q.yaml]
   rviz: v.rviz
 
 # Found beside them and not taken:
-#   {VALUES}: values are bad
 #   z/bad.yaml: it is bad
 #   a/b/o.yaml: why two
 #   c.yaml: why
 #   more.urdf: another description
 #   ../first.urdf: another description
 
-# Launch files give nodes more than this fleet has: write the values into params;
-# a rule FROM:=TO moves a topic, so say TO in the files of who reads it:
+# No launch file is taken: none, or no single one, starts this robot. What they start;
+# to say which: multibot init r.urdf.xacro --launch FILE NAME:=VALUE
 #   a.launch.py:7: amcl: y
+
+# Of launch files could not be read:
+#   b.launch.py:1: it fails
 
 # Start poses in metres and radians: x, y, z, roll, pitch, yaw
 robots:
@@ -118,19 +118,18 @@ def test_the_whole_text_of_one_description() -> None:
 
 def test_robots_of_several_descriptions_have_their_own_keys() -> None:
     bare = Member(ARM, Companions({}, "", {}, {}), ("arm1",), 0.5)
-    two = ONE._replace(members=[*ONE.members, bare], launched=Launched())
-    own = {**COMMON, "companions": {"params": ["p.yaml", "q.yaml"], "rviz": "v.rviz"}}
+    two = ONE._replace(members=[*ONE.members, bare], started=())
     assert yaml.safe_load(text_of(two, "w/fleet.yaml")) == {
         "layout": "tf-per-robot",
         "distro": "jazzy",
         "robots": [
-            {"name": "robot1", **own, "pose": {"x": 0, "y": 0}},
-            {"name": "robot2", **own},
+            {"name": "robot1", **COMMON, "pose": {"x": 0, "y": 0}},
+            {"name": "robot2", **COMMON},
             {"name": "arm1", "description": "arm.urdf"},
         ],
     }
-    small = ONE._replace(members=[bare], refused={}, others=(), launched=Launched(), notes=())
-    assert "not taken" not in (text := text_of(small, "w/f")) and "Launch files" not in text
+    small = ONE._replace(members=[bare], refused={}, others=(), started=(), unread=(), notes=())
+    assert "not taken" not in (text := text_of(small, "w/f")) and "launch file" not in text
 
 
 @pytest.mark.parametrize(("count", "more"), [(10, ""), (12, "#   and 2 more\n")])

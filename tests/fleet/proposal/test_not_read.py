@@ -136,11 +136,16 @@ def generate_launch_description():
 
 
 def test_the_fleet_file_names_them(tmp_path: Path) -> None:
+    """Where it is open which of them starts the robot."""
     (tmp_path / "car.urdf").write_text(robot("car", "wheel"))
-    node = "Node(package='own', executable='twist.py')"
-    (tmp_path / "up.launch.py").write_text(UP.format(node))
+    for name in ("up", "down"):
+        node = f"Node(package='own', executable='{name}.py')"
+        (tmp_path / f"{name}.launch.py").write_text(UP.format(node))
     taken(tmp_path)
-    assert "#   up.launch.py:3: twist.py (own)\n" in (tmp_path / "fleet.yaml").read_text()
+    text = (tmp_path / "fleet.yaml").read_text()
+    assert (
+        "#   up.launch.py:3: own up.py\n" in text and "#   down.launch.py:3: own down.py\n" in text
+    )
 
 
 def test_hidden_files_are_none_of_the_robot(tmp_path: Path) -> None:

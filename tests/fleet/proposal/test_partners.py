@@ -90,5 +90,6 @@ def test_without_a_winner_one_is_named(package: Path, capsys: Any) -> None:
     assert "husky.yaml (husky_base), " in said and "tb3.yaml (tb3/front/scan)" in said
     assert said.endswith("husky.yaml\n")
     (package / "nav.launch.py").write_text(GIVES)
-    assert made(package, "rover.urdf")["companions"]["params"] == ["tb3.yaml"]
+    launched = made(package, "rover.urdf")
+    assert launched["launch"] == "nav.launch.py" and "companions" not in launched
     assert made(package, "rover.urdf", "husky.yaml")["companions"]["params"] == ["husky.yaml"]

@@ -148,9 +148,10 @@ def test_a_robot_has_links_and_acts(looked: Looked, said: str) -> None:
 @pytest.mark.parametrize(
     ("has", "asked", "package", "simulated"),
     [
-        ("gz", "", "", True),
-        ("", "", "", False),
+        ("gz", "", "own", False),
+        ("", "", "own", False),
         ("", "", "ros_gz_sim", True),
+        ("gz", "gazebo", "own", True),
         ("", "none", "ros_gz_sim", False),
     ],
 )
@@ -158,12 +159,18 @@ def test_a_launch_file_that_starts_a_simulator_is_for_simulated_robots(
     has: str, asked: str, package: str, simulated: bool, tmp_path: Path, monkeypatch: Any
 ) -> None:
     launch = tmp_path / "sim.launch.py"
-    launch.write_text(f"Node(package='{package}')")
+    publisher = "Node(package='robot_state_publisher', executable='robot_state_publisher')"
+    nodes = f"{publisher}, Node(package='{package}', executable='driver')"
+    launch.write_text(
+        "from launch import LaunchDescription; from launch_ros.actions import Node\n"
+        f"def generate_launch_description(): return LaunchDescription([{nodes}])\n"
+    )
     told = []
     monkeypatch.setattr(seeing, "in_its_world", lambda it, is_so, _: told.append(bool(is_so)) or it)
     looked = Looked(str(tmp_path / "a.urdf"), **({"simulator": has} if has else {}))
     found = search([])._replace(launch=(str(launch),))
-    assert seeing.with_arguments([looked], wanted(simulator=asked), found) == [looked]
+    (made,) = seeing.with_arguments([looked], wanted(simulator=asked), found)
+    assert made._replace(bringup=None) == looked
     assert told == [simulated]
 
 

@@ -116,6 +116,31 @@ def test_of_two_files_that_fit_alike_one_is_asked_for(
     assert fleet["companions"].get("params", []) == taken
 
 
+NODES = """\
+from launch import LaunchDescription
+from launch_ros.actions import Node
+def generate_launch_description():
+    names = ["driver", "lidar"][:{}]
+    publisher = Node(package="robot_state_publisher", executable="robot_state_publisher")
+    return LaunchDescription([publisher, *(Node(package="own", executable=it) for it in names)])
+"""
+
+
+@pytest.mark.parametrize(
+    ("answer", "taken"), [("", "two.launch.py"), ("2", "one.launch.py"), ("none", None)]
+)
+def test_of_several_launch_files_that_start_it_one_is_asked_for(
+    answer: str, taken: str | None, folder: Path
+) -> None:
+    for at, name in enumerate(("one", "two"), 1):
+        (folder / f"{name}.launch.py").write_text(NODES.format(at))
+    answers = ["", "", answer, *[""] * 4]
+    shown, fleet = talked(folder, answers, "--simulator", "none", "rover.urdf")
+    assert "1: two.launch.py" in shown and "2: one.launch.py" in shown
+    assert "Launch file that starts the robot [1/2/none] (1)" in shown
+    assert fleet.get("launch") == taken
+
+
 WARNED = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:property name="pi" value="3"/>

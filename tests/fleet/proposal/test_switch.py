@@ -184,7 +184,7 @@ def test_a_hardware_class_that_is_an_argument(plugin: str, hardware: str, folder
 
 
 def test_a_file_of_controllers_that_launch_files_give_is_given(folder: Path) -> None:
-    """A launch file gives a node of the fleet a value, too, which stands in the fleet file then."""
+    """What a launch file beside the description starts is named: it does not spawn the controllers."""
     write(folder, "use_sim", "true")
     xacro = folder / "rover.urdf.xacro"
     declared = '<xacro:arg name="simple" default="true"/><xacro:arg name="controllers" default=""/>'
@@ -200,7 +200,8 @@ def test_a_file_of_controllers_that_launch_files_give_is_given(folder: Path) -> 
     )
     fleet = fleet_of(folder)
     assert fleet["arguments"] == {"controllers": "control.yaml"}
-    assert {"ekf_filter_node": {"frequency": 20.0}} in fleet["companions"]["params"]
+    node = "ekf_filter_node (robot_localization ekf_node): frequency"
+    assert f"#   up.launch.py:2: {node}\n" in (folder / "fleet.yaml").read_text()
     assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out")]) == 0
     loaded = f"<parameters>{folder}/out/robot1/control.yaml</parameters>"
     assert loaded in (folder / "out" / "robot1" / "rover.urdf").read_text()

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``multibot inspect FLEET``: each process that the launch files of a fleet start, for whom and why."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator
+
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.cli.output import deliver
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
+from multibot_rewrite.fleet.file.fleet_file import FleetFile, read_fleet
+from multibot_rewrite.fleet.file.robot_spec import RobotSpec
+from multibot_rewrite.fleet.launch.launched_robot import launch_of
+from multibot_rewrite.fleet.proposal.launches import said_of
+from multibot_rewrite.producers.launch.once import once_for_all
+from multibot_rewrite.producers.launch.records import LaunchedNode
+
+_COLUMNS = ("for", "process", "place", "files", "why")
+_EACH = "each robot"
+
+
+class _Row(NamedTuple):
+    """A process: the robot or robots that it is for, what it is, where a launch file has it, the
+    parameter files that it reads, and why it runs once for all robots, or later."""
+
+    whose: str
+    process: str
+    place: str
+    files: tuple[str, ...]
+    why: str
+
+
+def run(options: argparse.Namespace, path: str) -> int:
+    """Show the processes; returns the exit code. Raises UsageError for a fleet without launch files."""
+    file = read_fleet(path, options.distro or "", os.environ)
+    rows = [*_rows(file, options.trust)]
+    if not rows:
+        raise UsageError(f"{path}: no robot has a launch file; multibot plan {path} has its nodes")
+    if options.form == JSON:
+        deliver(options, json_bytes({"processes": [it._asdict() for it in rows]}))
+    else:
+        shown = [(*it[:3], ", ".join(it.files), it.why) for it in rows]
+        deliver_report(options, (Grid(_COLUMNS, shown),))
+    return DONE
+
+
+def _rows(file: FleetFile, trust: bool) -> Iterator[_Row]:
+    """Yield the processes of each robot, and those of all robots once; those with the same launch files
+    have them in common."""
+    launches = dict.fromkeys(it.launch for it in file.robots if it.launch)
+    for launch in launches:
+        robots = [it for it in file.robots if it.launch == launch]
+        whose = _EACH if len(robots) == len(file.robots) else ", ".join(it.name for it in robots)
+        yield from dict.fromkeys(_of_robot(robots[0], whose, file, trust))
+
+
+def _of_robot(robot: RobotSpec, whose: str, file: FleetFile, trust: bool) -> Iterator[_Row]:
+    orders = [it._replace(trusted=trust) for it in robot.launch]
+    for it in launch_of(orders, robot.name).nodes:
+        why = _why_once(it, file)
+        files = (os.path.relpath(one.source) for one in it.parameters if one.source)
+        place = f"{os.path.relpath(it.place.file)}:{it.place.line}"
+        reason = why or it.later
+        yield _Row("all robots" if why else whose, said_of(it), place, (*files,), reason)
+
+
+def _why_once(it: LaunchedNode, file: FleetFile) -> str:
+    """Why a process runs once, by the fleet file and by what it is."""
+    names = {it.name or it.executable, os.path.basename(it.executable)}
+    if not names.isdisjoint(file.own_nodes):
+        return ""
+    return "shared_nodes names it" if not names.isdisjoint(file.shared_nodes) else once_for_all(it)

@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which launch file of a repository is the robot's bringup: it starts the description's publisher or
+spawner, no other file includes it, and it is for the simulator, or for the real robot, as it is wanted.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.fleet.file.robot_spec import REAL
+from multibot_rewrite.fleet.file.simulator_switch import is_called_as_switch, other_values
+from multibot_rewrite.fleet.launch.launched_robot import launch_of
+from multibot_rewrite.fleet.proposal.launches import (
+    Bringup,
+    Reading,
+    is_of_robot,
+    read_any,
+    read_as,
+)
+from multibot_rewrite.producers.launch.programs import programs
+from multibot_rewrite.producers.launch.records import (
+    LaunchArgument,
+    LaunchedNode,
+    LaunchGraph,
+    LaunchOrder,
+)
+
+# A robot to read a launch file for.
+ANY = "robot1"
+# Launch files that are read with their own arguments, and orders of one of them with a switch.
+_MOST, _MOST_SWITCHES = 16, 8
+_PUBLISHERS = ("robot_state_publisher", "robot_state_publisher::RobotStatePublisher")
+# What shows a description and moves nothing.
+_SHOWING = (
+    *_PUBLISHERS,
+    "joint_state_publisher",
+    "joint_state_publisher_gui",
+    "static_transform_publisher",
+)
+# Words in the names of launch files.
+_WORD = re.compile(r"[a-z0-9]+")
+_TRIALS = frozenset(("demo", "test", "example", "fake", "mock", "dummy", "multi"))
+_SIMULATIONS = frozenset(
+    (
+        "sim",
+        "simulation",
+        "simulator",
+        "gazebo",
+        "gz",
+        "ign",
+        "ignition",
+        "mujoco",
+        "isaac",
+        "webots",
+    )
+)
+
+
+class Robot(NamedTuple):
+    """The robot that a launch file is to start: the files of its description, and those of others;
+    ``simulator`` is "none" for a real one, and empty where nobody said which it is: then it is what
+    ``has_simulator`` says of the description, if there is a launch file for it. ``has_control`` is
+    whether it has a controller manager."""
+
+    files: frozenset[str]
+    others: frozenset[str]
+    simulator: str
+    has_simulator: bool
+    has_control: bool = False
+
+    @property
+    def is_simulated(self) -> bool:
+        """Is it wanted in a simulator?"""
+        return self.simulator != REAL if self.simulator else self.has_simulator
+
+
+def bringup_as_named(order: LaunchOrder) -> Bringup:
+    """The launch file that was named. Raises InputError where it cannot be read, or starts nothing."""
+    graph = launch_of([order], ANY)
+    unread = [it.message for it in graph.notes if not it.parameters]
+    if unread and not graph.nodes:
+        raise InputError(f"{order.file}: the launch file cannot be read: {unread[0]}")
+    return Bringup(order, graph, _is_simulated(graph))
+
+
+def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | None:
+    """The launch file that starts most processes of the robot, of those that are for its simulator, or
+    for the real one; one that is called as a trial comes last. None where none starts the robot."""
+    every = read_any(launch)
+    included = _included(every)
+    roots = [it for it in every if not it.why and it.file not in included]
+    likely = [it for it in roots if _starts(it.graph, robot)]
+    starting = [it for it in likely if _reads(it.graph) & robot.files] or likely
+    if not starting:
+        return _beside(roots, robot, trust)
+    starting = sorted(starting, key=_rank)[:_MOST]
+    read = _with_own_arguments(starting, every, robot, trust)
+    # What is not said is simulated where a launch file does it.
+    wanted = robot.is_simulated or not robot.simulator
+    for simulated in (wanted, *([] if robot.simulator else [not wanted])):
+        fits = [it for it in read if _is_simulated(it.graph) == simulated]
+        if fits:
+            first, *others = sorted(fits, key=lambda it: (_tries(it, simulated), _rank(it)))
+            return Bringup(first.order, first.graph, simulated, tuple(it.order for it in others))
+    return None
+
+
+def _with_own_arguments(
+    likely: Sequence[Reading], every: Sequence[Reading], robot: Robot, trust: bool
+) -> list[Reading]:
+    """The launch files with the arguments with which they start the robot as it is wanted: their own,
+    else with a switch; else files that these include. All that start it, where none does it so."""
+
+    def starting(orders: Iterable[LaunchOrder]) -> list[Reading]:
+        read = read_as(it._replace(trusted=trust) for it in orders)
+        return [it for it in read if not it.why and _is_bringup(it.graph, robot)]
+
+    def fits(read: Iterable[Reading]) -> bool:
+        return any(_is_simulated(it.graph) == robot.is_simulated for it in read)
+
+    found = starting(LaunchOrder(it.file) for it in likely)
+    if not fits(found):
+        found += starting(_switched(likely, _passed(every)))
+    if not fits(found):
+        below = (one.file for it in likely for one in it.graph.includes)
+        found += starting(LaunchOrder(it) for it in [*dict.fromkeys(below)][:_MOST] if _is_here(it))
+    return found
+
+
+def _is_here(file: str) -> bool:
+    return os.path.isabs(file) and os.path.isfile(file)
+
+
+def _included(read: Iterable[Reading]) -> frozenset[str]:
+    """The paths of the launch files that another one includes."""
+    files = {os.path.realpath(it.file): it.file for it in read}
+    named = (
+        os.path.realpath(one.file)
+        for it in read
+        for one in it.graph.includes
+        if os.path.realpath(one.file) != os.path.realpath(it.file)
+    )
+    return frozenset(files[it] for it in named if it in files)
+
+
+def _passed(read: Iterable[Reading]) -> Mapping[str, set[str]]:
+    """The values that launch files give to the arguments of others."""
+    found: dict[str, set[str]] = {}
+    for name, value in (pair for it in read for one in it.graph.includes for pair in one.arguments):
+        found.setdefault(name, set()).add(value)
+    return found
+
+
+def _switched(likely: Iterable[Reading], passed: Mapping[str, set[str]]) -> Iterator[LaunchOrder]:
+    """Yield the launch files with one argument that may choose between simulator and real robot."""
+    for it in likely:
+        switches = (
+            (one.name, value)
+            for one in it.graph.declared
+            if is_called_as_switch(one.name)
+            for value in _others(one, passed.get(one.name, set()))
+        )
+        for pair in [*switches][:_MOST_SWITCHES]:
+            yield LaunchOrder(it.file, (pair,))
+
+
+def _others(it: LaunchArgument, passed: set[str]) -> list[str]:
+    """Other values of an argument: those that launch files give it, that it may have, the opposite."""
+    values = [*sorted(passed), *it.choices, *other_values(it.default)]
+    return [value for value in dict.fromkeys(values) if value not in ("", it.default)]
+
+
+def _starts(graph: LaunchGraph, robot: Robot) -> bool:
+    """Does a launch file start the publisher or spawner of the description, as far as it is known which
+    one that is, and of one robot?"""
+    read = _reads(graph)
+    of_another = read & robot.others and not read & robot.files
+    return any(map(_publishes, graph.nodes)) and not of_another
+
+
+def _reads(graph: LaunchGraph) -> set[str]:
+    return {it.file for it in graph.read}
+
+
+def _is_bringup(graph: LaunchGraph, robot: Robot) -> bool:
+    """Does it start more than what shows the description, and no second robot?"""
+    homes = {it.namespace for it in graph.nodes if it.executable in _PUBLISHERS}
+    # What is said of a file as a whole starts nothing by itself.
+    unread = any(it.place.line > 1 and not it.parameters for it in graph.notes)
+    shows = not unread and all(it.executable in _SHOWING for it in _own(graph))
+    return len(homes) < 2 and (_is_simulated(graph) or not shows)
+
+
+def _beside(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | None:
+    """The only launch file that starts something of a robot, where none publishes its description: a
+    build does that, but spawns no controllers."""
+    found = [it for it in roots if any(map(is_of_robot, it.graph.nodes))]
+    if len(found) != 1 or robot.has_control:
+        return None
+    (read,) = read_as([LaunchOrder(found[0].file, trusted=trust)])
+    nodes = any(map(is_of_robot, read.graph.nodes))
+    simulated = robot.is_simulated or _is_simulated(read.graph)
+    return Bringup(read.order, read.graph, simulated) if nodes else None
+
+
+def _publishes(it: LaunchedNode) -> bool:
+    return it.executable in _PUBLISHERS or f"{it.package}/{it.executable}" in programs().spawners
+
+
+def _is_simulated(graph: LaunchGraph) -> bool:
+    return not graph.packages.isdisjoint(programs().simulators)
+
+
+def _own(graph: LaunchGraph) -> list[LaunchedNode]:
+    return [it for it in graph.nodes if is_of_robot(it)]
+
+
+def _tries(it: Reading, simulated: bool) -> bool:
+    """Is a launch file called as a trial, or as one of a simulator that nothing here is known of?"""
+    words = {*_WORD.findall(os.path.basename(it.file).lower())}
+    return bool(words & (_TRIALS if simulated else _TRIALS | _SIMULATIONS))
+
+
+def _rank(it: Reading) -> tuple[object, ...]:
+    """Most processes of a robot first, then the one that can be read whole, then a short path."""
+    return -len(set(_own(it.graph))), not it.graph.whole, len(it.file), it.file

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The launch files of a repository, read behind fences: what each starts with any arguments, and what
+one starts with those that it is given."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
+
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.description.sources.included_by import data_of_file
+from multibot_rewrite.producers.launch.child import read_launch_files
+from multibot_rewrite.producers.launch.handed_on import handed_on
+from multibot_rewrite.producers.launch.programs import programs
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
+from multibot_rewrite.system.tool_nodes import is_viewer
+
+# For each launch file.
+_SECONDS = 10.0
+# Names of parameters that are shown of one process.
+_SHOWN = 3
+_DESCRIPTION = "robot_description"
+_USUAL_TOPICS = frozenset(("tf", "tf_static", _DESCRIPTION))
+# A place and what is said of it.
+Row = tuple[str, int, str]
+
+
+class Reading(NamedTuple):
+    """A launch file with what it starts and includes, or why it cannot be read."""
+
+    order: LaunchOrder
+    graph: LaunchGraph = LaunchGraph()
+    why: str = ""
+
+    @property
+    def file(self) -> str:
+        """The path of the launch file."""
+        return self.order.file
+
+
+class Bringup(NamedTuple):
+    """The launch file that starts a robot, as it is launched, and what it starts; ``others`` start the
+    robot as well. ``is_simulated`` is true if it starts a simulator, or puts the robot into one."""
+
+    order: LaunchOrder
+    graph: LaunchGraph
+    is_simulated: bool
+    others: tuple[LaunchOrder, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The name of the launch file, without its folder."""
+        return os.path.basename(self.order.file)
+
+
+def read_any(launch: Sequence[str]) -> list[Reading]:
+    """What launch files start with any arguments; what one of them includes is in that one alone."""
+    # What others include is read with them.
+    texts = {it: data_of_file(it) for it in launch}
+    named = {
+        it
+        for it in launch
+        if any(os.fsencode(os.path.basename(it)) in texts[one] for one in launch if one != it)
+    }
+    ordered = sorted(launch, key=lambda it: it in named)
+    return read_as([LaunchOrder(it, every=True) for it in ordered])
+
+
+def read_as(orders: Iterable[LaunchOrder]) -> list[Reading]:
+    """What launch files start, each as it is launched."""
+    every = tuple(orders)
+    return _read(every, tuple(_time(it.file) for it in every)) if every else []
+
+
+@lru_cache(maxsize=16)
+def _read(orders: tuple[LaunchOrder, ...], times: tuple[object, ...]) -> list[Reading]:
+    """Read launch files in one process; ``times`` tell their changes."""
+    read = read_launch_files(orders, _SECONDS)
+    return [
+        Reading(order, why=f"{it}".removeprefix(f"{order.file}: the launch file cannot be read: "))
+        if isinstance(it, InputError)
+        else Reading(order, it)
+        for order, it in zip(orders, read, strict=True)
+    ]
+
+
+def _time(file: str) -> tuple[int, int]:
+    try:
+        found = os.stat(file)
+    except OSError:  # whoever reads it says so
+        return 0, 0
+    return found.st_mtime_ns, found.st_size
+
+
+def not_read(read: Iterable[Reading]) -> Iterator[Row]:
+    """Yield what of each launch file could not be read: the first of it."""
+    for it in read:
+        notes = [one for one in it.graph.notes if not (one.parameters or one.missing)]
+        if it.why:
+            yield it.file, 1, it.why
+        elif notes:
+            more = f" (and {len(notes) - 1} more)" if notes[1:] else ""
+            yield notes[0].place.file, notes[0].place.line, f"{notes[0].message}{more}"
+
+
+def started(nodes: Iterable[LaunchedNode]) -> Iterator[Row]:
+    """Yield what is started of robots, each once at its first place: no simulator, and no program that
+    ends or only looks."""
+    known = set()
+    for it in (one for one in nodes if one.executable and is_of_robot(one)):
+        text = said_of(it)
+        if text not in known:
+            yield it.place.file, it.place.line, text
+        known.add(text)
+
+
+def said_of(it: LaunchedNode) -> str:
+    """Return what a process is: its name, what runs it, its remap rules and given parameters."""
+    first = [word for word in it.arguments[:1] if not word.startswith(("-", os.sep))]
+    program = " ".join(filter(None, (it.package, it.executable, *first)))
+    who = f"{it.name} ({program})" if it.name else program
+    rules = (f"{a}:={b}" for a, b in it.remappings if _is_moved(a, b))
+    values = handed_on(it, it.name or it.executable).values
+    named = [name for name in values if not name.startswith(_DESCRIPTION)]
+    given = ", ".join((*rules, *([shorten(named, _SHOWN)] if named else ())))
+    return f"{who}: {given}" if given else who
+
+
+def files_given(read: Iterable[Reading], paths: Iterable[str]) -> dict[str, set[str]]:
+    """Those of some files that nodes or included launch files get as parameters, each with the packages
+    of these nodes, of which an included file tells none."""
+    found: dict[str, set[str]] = {}
+    for path, package in (one for it in read for one in _files(it.graph)):
+        found.setdefault(path, set()).add(package)
+    real = {it: os.path.realpath(it) for it in paths}
+    return {it: found[path] for it, path in real.items() if path in found}
+
+
+def _files(it: LaunchGraph) -> Iterator[tuple[str, str]]:
+    yield from ((value, "") for one in it.includes for _, value in one.arguments if value)
+    for node in it.nodes:
+        yield from ((given.source, node.package) for given in node.parameters if given.source)
+
+
+def is_of_robot(it: LaunchedNode) -> bool:
+    """Is it a process of a robot, no simulator, and no program that ends or only looks?"""
+    ways = programs()
+    passes = f"{it.package}/{it.executable}" in ways.passing or it.package in ways.simulators
+    return not passes and not is_viewer(it.executable)
+
+
+def _is_moved(topic: str, target: str) -> bool:
+    """Does a rule move a topic of which not every robot has its own?"""
+    is_name = topic.rpartition(":")[2].startswith("__")
+    return bool(topic and target) and not is_name and topic.rpartition("/")[2] not in _USUAL_TOPICS

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which processes of a launch file run once for all robots: simulators, map servers, windows, tools."""
+
+from __future__ import annotations
+
+from fnmatch import fnmatchcase
+
+from multibot_rewrite.base.conventions import only_looks
+from multibot_rewrite.producers.launch.programs import programs
+from multibot_rewrite.producers.launch.records import LaunchedNode
+
+_LOOKS = "it only looks, or passes on what a person asks for"
+
+
+def once_for_all(node: LaunchedNode) -> str:
+    """Return why a process runs once for all robots; empty if each robot has its own."""
+    program = node.executable.rpartition("/")[2]
+    command = f"{node.package}/{program}"
+    told = (command, f"{command} {node.arguments[0]}" if node.arguments else command)
+    rows = ((why, it) for why, every in programs().once.items() for it in every)
+    found = (why for why, it in rows if any(fnmatchcase(one, it) for one in told))
+    return next(found, _LOOKS if only_looks(node.name or program) or only_looks(program) else "")

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``multibot inspect FLEET``: each process of the launch files, for each robot or once for all."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.cli.multibot import main
+
+LAUNCH = """\
+from launch import LaunchDescription
+from launch.actions import TimerAction
+from launch_ros.actions import Node
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package='nav2_map_server', executable='map_server', name='map_server'),
+        Node(package='own', executable='driver', parameters=['FOLDER/p.yaml', {'rate': 1}]),
+        TimerAction(period=1.0, actions=[Node(package='own', executable='late')]),
+        Node(package='rviz2', executable='rviz2'),
+    ])
+"""
+FLEET = """\
+layout: both
+description: r.urdf
+launch: up.launch.py
+{}
+robots: [{{name: a}}, {{name: b{}}}]
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "r.urdf").write_text('<robot name="r"><link name="l"/></robot>')
+    (tmp_path / "p.yaml").write_text("driver: {ros__parameters: {a: 1}}\n")
+    (tmp_path / "up.launch.py").write_text(LAUNCH.replace("FOLDER", str(tmp_path)))
+    return tmp_path
+
+
+def inspected(
+    folder: Path, capsys: pytest.CaptureFixture[str], more: str = "", own: str = ""
+) -> list[str]:
+    (folder / "fleet.yaml").write_text(FLEET.format(more, own))
+    assert main(["inspect", "fleet.yaml", "--form", "json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["processes"]
+    return [
+        " | ".join((it["whose"], it["process"], it["place"], ",".join(it["files"]), it["why"]))
+        for it in rows
+    ]
+
+
+MAP = "map_server (nav2_map_server map_server) | up.launch.py:6 | "
+SHOWN = [
+    f"all robots | {MAP} | all robots have the map that it serves",
+    "each robot | own driver: rate | up.launch.py:7 | p.yaml | ",
+    "all robots | rviz2 rviz2 | up.launch.py:9 |  | it only looks, or passes on what a person asks for",
+    "each robot | own late | up.launch.py:8 |  | after a time",
+]
+
+
+def test_each_process_is_shown(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert inspected(folder, capsys) == SHOWN
+    assert main(["inspect", "fleet.yaml"]) == 0
+    assert "up.launch.py:8" in capsys.readouterr().out
+
+
+def test_the_fleet_file_says_otherwise(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = inspected(folder, capsys, "own_nodes: [map_server]\nshared_nodes: [late]")
+    assert f"each robot | {MAP} | " in found
+    assert "all robots | own late | up.launch.py:8 |  | shared_nodes names it" in found
+
+
+def test_a_robot_without_a_launch_file_has_none(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert inspected(folder, capsys, own=", launch: []")[1] == SHOWN[1].replace("each robot", "a")
+    (folder / "fleet.yaml").write_text("layout: both\ndescription: r.urdf\nrobots: [{name: a}]\n")
+    assert main(["inspect", "fleet.yaml"]) == 2
+    said = capsys.readouterr().err
+    assert "fleet.yaml: no robot has a launch file" in said and len(said.splitlines()) == 1

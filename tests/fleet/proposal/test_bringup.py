@@ -1,0 +1,380 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which launch file ``multibot init`` takes, with which arguments, and what it reads."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from rule_examples import DESCRIPTION
+
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.proposal.bringup import Robot, bringup_of
+
+IMPORTS = "; ".join(
+    f"from {it} import *"
+    for it in ("launch", "launch.actions", "launch.conditions", "launch.substitutions",
+               "launch.launch_description_sources", "launch_ros.actions", "launch_ros.substitutions")
+)  # fmt: skip
+RSP = "Node(package='robot_state_publisher', executable='robot_state_publisher'{})"
+PUBLISHER = RSP.format("")
+READ = RSP.format(", parameters=[{{'robot_description': open('{}').read()}}]")
+DRIVER = "Node(package='acme', executable='driver')"
+LIDAR = "Node(package='acme', executable='lidar')"
+GZ = "Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'robot_description'])"
+BRIDGE = "Node(package='ros_gz_bridge', executable='parameter_bridge')"
+MUJOCO = "Node(package='acme', executable='mujoco')"
+GUI = "Node(package='joint_state_publisher_gui', executable='joint_state_publisher_gui')"
+RVIZ = "Node(package='rviz2', executable='rviz2')"
+SWITCH = "DeclareLaunchArgument('use_sim', default_value='false')"
+ASKED = f"GroupAction([{GZ}], condition=IfCondition(LaunchConfiguration('use_sim')))"
+UNASKED = f"GroupAction([{DRIVER}], condition=UnlessCondition(LaunchConfiguration('use_sim')))"
+BOTH = f"{SWITCH}; {PUBLISHER}; {ASKED}; {UNASKED}"
+MODE = "DeclareLaunchArgument('hw_mode', default_value='real', choices=['real', 'gazebo'])"
+SIM = "PythonExpression([repr('gazebo'), ' == ', repr('gazebo')])"
+FAILS = "1 / 0"
+
+
+def include(name: str, given: str = "") -> str:
+    """An include of a launch file beside this one."""
+    return f"IncludeLaunchDescription('FOLDER/{name}.launch.py', launch_arguments=[{given}])"
+
+
+def write(folder: Path, files: dict[str, str]) -> list[str]:
+    """Write launch files of actions; return their paths."""
+    paths = []
+    for name, actions in files.items():
+        path = folder / f"{name}.launch.py"
+        listed = ", ".join(actions.replace("FOLDER", str(folder)).split("; "))
+        path.write_text(
+            f"{IMPORTS}\ndef generate_launch_description(): return LaunchDescription([{listed}])\n"
+        )
+        paths.append(str(path))
+    return paths
+
+
+# What launch files start, whether the description has a simulator, what was asked for, which is taken.
+ROWS: dict[str, tuple[dict[str, str], bool, str, str]] = {
+    "the publisher's": ({"a": LIDAR, "b": f"{PUBLISHER}; {DRIVER}"}, False, "", "b"),
+    "the spawner's": ({"a": LIDAR, "b": f"{GZ}"}, True, "", "b"),
+    "no other includes it": (
+        {"a": f"{PUBLISHER}; {DRIVER}", "b": f"{include('a')}; {LIDAR}"}, False, "", "b",
+    ),
+    "that of the simulator": (
+        {"a": f"{PUBLISHER}; {DRIVER}", "b": f"{PUBLISHER}; {GZ}"}, True, "", "b",
+    ),
+    "that of the real robot": (
+        {"a": f"{PUBLISHER}; {DRIVER}", "b": f"{PUBLISHER}; {GZ}"}, True, "none", "a",
+    ),
+    "a bridge is of a simulator": (
+        {"a": f"{PUBLISHER}; {DRIVER}", "b": f"{PUBLISHER}; {BRIDGE}"}, True, "", "b",
+    ),
+    "with its switch": ({"a": BOTH}, True, "", "a use_sim:=true"),
+    "without its switch": ({"a": BOTH}, True, "none", "a"),
+    "the value that a file passes": (
+        {"a": f"DeclareLaunchArgument('sim_kind', default_value='off'); {PUBLISHER}; {DRIVER}; "
+              "GroupAction([" + GZ + "], condition=LaunchConfigurationEquals('sim_kind', 'gz')); "
+              + LIDAR,
+         "b": include("a", "('sim_kind', 'gz')"), "c": include("a")},
+        True, "", "b",
+    ),
+    "a file that the simulator's includes": (
+        {"a": BOTH, "b": include("a", "('use_sim', 'true')")}, True, "none", "a",
+    ),
+    "no simulator, nobody asked": ({"a": f"{PUBLISHER}; {DRIVER}"}, True, "", "a"),
+    "no simulator, it was asked for": ({"a": f"{PUBLISHER}; {DRIVER}"}, True, "gazebo", ""),
+    "a simulator beside a description without one": ({"a": f"{PUBLISHER}; {GZ}"}, False, "", "a"),
+    "the most processes": (
+        {"a": f"{PUBLISHER}; {DRIVER}", "b": f"{PUBLISHER}; {DRIVER}; {LIDAR}"}, False, "", "b",
+    ),
+    "windows do not count": (
+        {"a": f"{PUBLISHER}; {DRIVER}; {RVIZ}; {RVIZ}", "b": f"{PUBLISHER}; {DRIVER}; {LIDAR}"},
+        False, "", "b",
+    ),
+    "a trial comes last": (
+        {"up": f"{PUBLISHER}; {DRIVER}", "demo": f"{PUBLISHER}; {DRIVER}; {LIDAR}"}, False, "", "up",
+    ),
+    "another simulator's is not real": (
+        {"up": f"{PUBLISHER}; {DRIVER}", "my_sim": f"{PUBLISHER}; {MUJOCO}; {LIDAR}"}, False, "", "up",
+    ),
+    "what only shows it": ({"a": f"{PUBLISHER}; {GUI}; {RVIZ}"}, False, "", ""),
+    "two robots": (
+        {"a": "; ".join(RSP.format(f", namespace='{it}'") for it in "ab") + f"; {GZ}"}, True, "", "",
+    ),
+    "another description's": ({"a": f"{READ.format('FOLDER/other.urdf')}; {DRIVER}"}, False, "", ""),
+    "its own": (
+        {"a": f"{READ.format('FOLDER/other.urdf')}; {DRIVER}; {LIDAR}",
+         "b": f"{READ.format('FOLDER/robot.urdf')}; {DRIVER}"}, False, "", "b",
+    ),
+    "what surely reads it": (
+        {"a": f"{PUBLISHER}; {DRIVER}; {LIDAR}", "b": f"{READ.format('FOLDER/robot.urdf')}; {DRIVER}"},
+        False, "", "b",
+    ),
+    "one beside it": ({"a": DRIVER}, False, "", "a"),
+    "several beside it": ({"a": DRIVER, "b": LIDAR}, False, "", ""),
+    "one that fails": ({"a": f"{PUBLISHER}; {FAILS}", "b": f"{PUBLISHER}; {DRIVER}"}, False, "", "b"),
+    "a ring": ({"a": include("b"), "b": include("a"), "c": f"{PUBLISHER}; {DRIVER}"}, False, "", "c"),
+    "nothing": ({}, False, "", ""),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", ROWS)
+def test_the_launch_file_that_is_taken(kind: str, tmp_path: Path) -> None:
+    files, has_simulator, simulator, taken = ROWS[kind]
+    for name in ("robot", "other"):
+        (tmp_path / f"{name}.urdf").write_text(DESCRIPTION)
+    own, others = (frozenset((str(tmp_path / f"{it}.urdf"),)) for it in ("robot", "other"))
+    found = bringup_of(
+        Robot(own, others, simulator, has_simulator), write(tmp_path, files), trust=False
+    )
+    assert bool(found) == bool(taken)
+    if found:
+        words = (found.name.partition(".")[0], *(f"{a}:={b}" for a, b in found.order.arguments))
+        assert " ".join(words) == taken
+
+
+def test_a_controller_manager_is_started_by_no_launch_file_beside_it(tmp_path: Path) -> None:
+    """Nothing would spawn its controllers."""
+    launch = write(tmp_path, {"a": DRIVER})
+    robot = Robot(frozenset(), frozenset(), "", True, has_control=True)
+    assert bringup_of(robot, launch, trust=False) is None
+
+
+XACRO = """\
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="sim" default="false"/><xacro:arg name="wheel" default="big"/>
+  <xacro:arg name="prefix" default=""/><xacro:arg name="file" default=""/>
+  <xacro:property name="mass"><inertial><mass value="1"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></xacro:property>
+  <link name="$(arg prefix)base_link"><xacro:insert_block name="mass"/></link>
+  <link name="$(arg prefix)$(arg wheel)"><xacro:insert_block name="mass"/></link>
+  <joint name="$(arg prefix)j" type="continuous">
+    <parent link="$(arg prefix)base_link"/><child link="$(arg prefix)$(arg wheel)"/>
+  </joint>
+  <gazebo>
+    <plugin filename="$(arg sim)-system" name="acme::Sim"><file>$(arg file)</file></plugin>
+  </gazebo>
+</robot>
+"""
+GIVEN = "sim:=true wheel:=big prefix:=front_ file:={}/config/control.yaml"
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A package with a xacro."""
+    folder = tmp_path / "rover"
+    for name, text in {
+        "package.xml": "<package><name>rover</name></package>",
+        "urdf/rover.urdf.xacro": XACRO,
+        "config/control.yaml": "driver: {ros__parameters: {a: 1}}\n",
+        "config/unread.yaml": "amcl: {ros__parameters: {alpha1: 0.2}}\n",
+        "config/bridge.yaml": "- ros_topic_name: scan\n  gz_topic_name: scan\n",
+        "config/unread_bridge.yaml": "- ros_topic_name: imu\n  gz_topic_name: imu\n",
+        "rviz/rover.rviz": "Visualization Manager: {}\n",
+        "rviz/a.rviz": "Visualization Manager: {}\n",
+        "launch/.keep": "",
+    }.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    return folder
+
+
+def fleet_of(folder: Path, *words: str, code: int = 0) -> Any:
+    """The fleet file of a folder, which builds."""
+    file = folder.parent / "fleet.yaml"
+    assert main(["init", str(folder), "--yes", "-q", "--force", "-o", str(file), *words]) == code
+    if code == 0:
+        assert main(["build", str(file), "-o", str(folder.parent / "out"), "-q"]) == 0
+    return yaml.safe_load(file.read_text()) if file.exists() else None
+
+
+PATH = "PathJoinSubstitution([FindPackageShare('rover'), '{}'])"
+DESCRIBED = RSP.format(
+    ", parameters=[{'robot_description': Command(['xacro ', "
+    + PATH.format("urdf/rover.urdf.xacro") + ", ' " + GIVEN.format("', FindPackageShare('rover'), '")
+    + "'])}]"
+)  # fmt: skip
+PROCESSED = (
+    RSP.format(
+        ", parameters=[{'robot_description': __import__('xacro').process_file(str(__import__('pathlib')"
+        ".Path(__file__).parent.parent / 'urdf/rover.urdf.xacro'), mappings={'sim': 'true'}).toxml()}]"
+    )
+)  # fmt: skip
+
+
+def test_the_arguments_that_a_launch_file_gives_a_xacro_are_the_robots(package: Path) -> None:
+    """Not those that are the default; the name of a robot is each one's own; a path is relative."""
+    write(package / "launch", {"up": f"{DESCRIBED}; {GZ}"})
+    fleet = fleet_of(package)
+    assert fleet["launch"] == "rover/launch/up.launch.py"
+    assert fleet["arguments"] == {
+        "sim": "true",
+        "file": "../config/control.yaml",
+        "prefix": "{robot}_",
+    }
+    assert fleet_of(package, "sim:=maybe")["arguments"]["sim"] == "maybe"
+
+
+def test_a_xacro_that_a_launch_file_expands_itself(package: Path) -> None:
+    write(package / "launch", {"up": f"{PROCESSED}; {GZ}"})
+    assert fleet_of(package)["arguments"] == {"sim": "true", "prefix": "{robot}_"}
+
+
+SHOWN = RVIZ[:-1] + f", arguments=['-d', {PATH.format('rviz/rover.rviz')}])"
+BRIDGED = BRIDGE[:-1] + f", parameters=[{{'config_file': {PATH.format('config/bridge.yaml')}}}])"
+CONTROLLED = DRIVER[:-1] + f", name='driver', parameters=[{PATH.format('config/control.yaml')}])"
+
+
+def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
+    """The parameter files of nodes are in the build without a word in the fleet file."""
+    write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}; {BRIDGED}; {CONTROLLED}"})
+    fleet = fleet_of(package)
+    assert "stack" not in fleet
+    assert fleet["companions"] == {
+        "rviz": "rover/rviz/rover.rviz",
+        "bridge": ["rover/config/bridge.yaml"],
+    }
+    assert (package.parent / "out/robot1/control.yaml").exists()
+    text = (package.parent / "fleet.yaml").read_text()
+    shown = text.partition("What up.launch.py starts for each robot:\n")[2].partition("launch:")[0]
+    assert [it.removeprefix("#").strip() for it in shown.splitlines()] == [
+        "robot_state_publisher robot_state_publisher",
+        "ros_gz_sim create",
+        "ros_gz_bridge parameter_bridge: config_file",
+        "driver (acme driver)",
+        "Once for all robots; `own_nodes: [NAME]` gives each its own:",
+        "rviz2 rviz2, since it only looks, or passes on what a person asks for",
+    ]
+    assert "unread" not in text
+
+
+NAV2 = (
+    "IncludeLaunchDescription([FindPackageShare('nav2_bringup'), '/launch/localization_launch.py'], "
+    f"launch_arguments=[('params_file', {PATH.format('config/unread.yaml')})])"
+)
+
+
+def test_a_file_that_goes_to_what_is_not_installed_is_taken(package: Path) -> None:
+    """The vendor's include is started as it is: no stack stands for it."""
+    write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}; {NAV2}"})
+    fleet = fleet_of(package, "--simulator", "none")
+    assert "stack" not in fleet
+    assert fleet["companions"] == {"params": ["rover/config/unread.yaml"]}
+
+
+SRDF = '<robot name="rover"><group name="arm"><joint name="j"/></group></robot>'
+MAKES = "__import__('moveit_configs_utils').launches.generate_move_group_launch('rover')"
+MOVES = "Node(package='moveit_ros_move_group', executable='move_group')"
+
+
+@pytest.mark.parametrize(("starts", "stack"), [(MAKES, ["moveit"]), (MOVES, None), (LIDAR, None)])
+def test_moveit_has_its_files_where_it_is_started(
+    starts: str, stack: list[str] | None, package: Path
+) -> None:
+    (package / "config/rover.srdf").write_text(SRDF)
+    (package / "config/kinematics.yaml").write_text("arm: {kinematics_solver: a/A}\n")
+    write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}; {starts}"})
+    fleet = fleet_of(package, "--simulator", "none")
+    assert fleet.get("stack") == stack
+    files = {"moveit": ["rover/config/kinematics.yaml"]} if starts != LIDAR else None
+    assert fleet.get("companions") == files
+    assert fleet.get("srdf") == (files and "rover/config/rover.srdf")
+
+
+def test_a_stack_that_is_asked_for_is_beside_the_launch_file(package: Path) -> None:
+    write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}"})
+    fleet = fleet_of(package, "--stack", "localization")
+    assert fleet["launch"] and fleet["stack"] == ["localization"]
+    assert fleet["companions"]["params"] == ["rover/config/unread.yaml"]
+    assert "simulator: none" in (package.parent / "fleet.yaml").read_text()
+
+
+def test_another_launch_file_is_one_command_away(package: Path, capsys: Any) -> None:
+    one, two = f"{PUBLISHER}; {DRIVER}", f"{PUBLISHER}; {DRIVER}; {LIDAR}"
+    paths = write(package / "launch", {"one": one, "two": two})
+    file = package.parent / "fleet.yaml"
+    assert main(["init", str(package), "--yes", "-o", str(file)]) == 0
+    said = capsys.readouterr().err
+    (command,) = [
+        it for it in said.splitlines() if "two.launch.py starts most of 2 launch files" in it
+    ]
+    words = command.rpartition("multibot ")[2].split()
+    assert main([*words, "--yes", "-q", "--force", "-o", str(file)]) == 0
+    assert yaml.safe_load(file.read_text())["launch"] == "rover/launch/one.launch.py"
+    assert "two.launch.py" not in file.read_text(), "it was named"
+    assert paths[0].endswith("one.launch.py")
+
+
+@pytest.mark.parametrize(
+    ("words", "launch"),
+    [
+        (["FOLDER/launch/two.launch.py"], "rover/launch/two.launch.py"),
+        (
+            ["FOLDER/launch/up.launch.py", "use_sim:=true"],
+            "rover/launch/up.launch.py use_sim:=true",
+        ),
+        (["FOLDER/launch/up.launch.py use_sim:=true"], "rover/launch/up.launch.py use_sim:=true"),
+        (["rover", "two.launch.py"], "rover/launch/two.launch.py"),
+        (["none"], None),
+    ],
+)
+def test_the_launch_file_is_named(words: list[str], launch: str | None, package: Path) -> None:
+    write(package / "launch", {"up": BOTH, "two": f"{PUBLISHER}; {DRIVER}"})
+    given = [it.replace("FOLDER", str(package)) for it in words]
+    assert fleet_of(package, "--launch", *given, code=0).get("launch") == launch
+
+
+LONG = "\n".join(f"x{at} = {at}" for at in range(10_000))
+BAD = {
+    "it raises": ("x = 1 / 0", "ZeroDivisionError"),
+    "it needs an argument": (
+        "x = DeclareLaunchArgument('ip')", "it has to be given ip; write ip:=VALUE after it",
+    ),
+    "it includes itself": ("x = IncludeLaunchDescription(__file__)", "without an end"),
+    "it writes": ("x = open('FOLDER/made', 'w')", "give --trust"),
+    "it starts nothing": ("x = LogInfo(msg='a')", "starts no node with these arguments"),
+    "it is no Python": (")", "SyntaxError"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_a_bad_launch_file_that_is_named_is_one_line(kind: str, package: Path, capsys: Any) -> None:
+    line, said = BAD[kind]
+    bad = package / "launch" / "bad.launch.py"
+    bad.write_text(
+        f"{IMPORTS}\n{line.replace('FOLDER', str(package))}\n"
+        "def generate_launch_description(): return LaunchDescription([x])\n"
+    )
+    assert fleet_of(package, "--launch", str(bad), code=2) is None
+    error = capsys.readouterr().err
+    assert len(error.splitlines()) == 1 and said in error and str(bad) in error
+    assert not (package / "made").exists()
+
+
+def test_a_bad_launch_file_is_named_in_the_fleet_file(package: Path) -> None:
+    """The others are read all the same."""
+    write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}"})
+    (package / "launch/bad.launch.py").write_text("raise ValueError('no')\n")
+    assert fleet_of(package)["launch"] == "rover/launch/up.launch.py"
+    assert (
+        "rover/launch/bad.launch.py:1: ValueError: no"
+        in (package.parent / "fleet.yaml").read_text()
+    )
+
+
+def test_a_long_launch_file_and_one_that_imports_what_is_not_here(package: Path) -> None:
+    (path,) = write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}"})
+    Path(path).write_text(f"import acme_tools\n{LONG}\n{Path(path).read_text()}")
+    assert fleet_of(package)["launch"] == "rover/launch/up.launch.py"
+
+
+def test_a_launch_file_is_for_one_description(package: Path, capsys: Any) -> None:
+    write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}"})
+    shutil.copy(package / "urdf/rover.urdf.xacro", package / "urdf/b.urdf.xacro")
+    both = [str(package / "urdf" / it) for it in ("rover.urdf.xacro", "b.urdf.xacro")]
+    words = ["--launch", str(package / "launch/up.launch.py")]
+    assert main(["init", *both, "--yes", "-o", "-", *words]) == 2
+    assert "--launch is for one description" in capsys.readouterr().err

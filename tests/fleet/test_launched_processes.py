@@ -1,0 +1,471 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every process of a launch file is in the fleet: started as the vendor starts it, for each robot."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rule_examples import DESCRIPTION
+
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.producers.launch.performed import Action, Launching, performed
+
+AFFIX = {
+    "postfix": "postfix",
+    **dict.fromkeys(("both", "tf-per-robot", "frames-per-robot"), "prefix"),
+}
+FLEET = """\
+layout: {layout}
+affix: {affix}
+distro: jazzy
+launch: up.launch.py
+{more}
+robots:
+  - {{name: robot1, description: robot.urdf}}
+  - {{name: robot2, description: robot.urdf}}
+"""
+LAUNCH = """\
+from launch import LaunchDescription
+from launch.actions import *
+from launch.conditions import IfCondition
+from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import *
+from launch_ros.descriptions import ComposableNode
+from launch_ros.substitutions import FindPackageShare
+
+
+def here(executable, **more):
+    return Node(package='acme', executable=executable, **more)
+
+
+def generate_launch_description():
+    SETUP
+    return LaunchDescription([
+        BODY
+    ])
+"""
+
+
+def actions(
+    folder: Path,
+    body: str,
+    setup: str = "first = here('first')",
+    more: str = "simulator: none",
+    layout: str = "both",
+    given: dict[str, str] | None = None,
+) -> list[Action]:
+    """What the launch file of a build does, but for its own arguments."""
+    text = LAUNCH.replace("SETUP", setup).replace("BODY", body)
+    (folder / "robot.urdf").write_text(DESCRIPTION)
+    (folder / "up.launch.py").write_text(text)
+    (folder / "fleet.yaml").write_text(FLEET.format(more=more, layout=layout, affix=AFFIX[layout]))
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out")]) == 0
+    launches = [Launching(given or {"robots": "robot2"})]
+    (done,) = performed(str(folder / "out/fleet.launch.py"), launches)
+    assert not done.error
+    return [it for it in done.actions if it.kind != "DeclareLaunchArgument"]
+
+
+def told(found: Sequence[Action]) -> list[str]:
+    """The actions in their order, by what they start; without the robot_state_publisher."""
+    words = [_word(it) for it in found]
+    return [it for it in words if it != "robot_state_publisher"]
+
+
+def _word(it: Action) -> str:
+    first = it.values.get("executable") or it.values.get("cmd", [it.kind])[0]
+    target = it.values.get("target_action", {}).get("executable", "")
+    return f"{it.kind} of {target}" if target else str(first)
+
+
+def of(found: Sequence[Action], word: str) -> dict[str, Any]:
+    """The values of the one action that starts something."""
+    (values,) = (it.values for it in found if _word(it) == word)
+    return dict(values)
+
+
+def test_a_command_is_started_for_each_robot(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    body = """
+        ExecuteProcess(cmd=['MicroXRCEAgent', 'serial', '--dev', '/dev/ttyS1'], cwd='/srv',
+            additional_env={'LEVEL': '4'}, respawn=True, respawn_delay=2.5, prefix='nice'),
+        ExecuteProcess(cmd=['cat /proc/uptime | wc'], shell=True),
+    """
+    found = actions(tmp_path, body, given={"robots": "2"})
+    every = [it.values for it in found if it.kind == "ExecuteProcess"]
+    agent = {
+        "cmd": ["MicroXRCEAgent", "serial", "--dev", "/dev/ttyS1"],
+        "additional_env": {"LEVEL": "4"},
+        **{"prefix": "nice", "respawn": True, "respawn_delay": 2.5, "cwd": "/srv"},
+        **{"output": "screen", "environment": {}},
+    }
+    shell = {"cmd": ["cat /proc/uptime | wc"], "shell": True, "output": "screen", "environment": {}}
+    assert every == [agent, shell, agent, shell]
+    said = capsys.readouterr().err
+    assert said.count("MF859") == 2
+    assert "process MicroXRCEAgent (MicroXRCEAgent, serial, --dev" in said
+    assert "2 other processes started as they are" in said
+
+
+def test_a_command_runs_once_where_the_fleet_file_says_so(tmp_path: Path) -> None:
+    body = "ExecuteProcess(cmd=['MicroXRCEAgent']), ExecuteProcess(cmd=['ros2', 'bag', 'record']),"
+    found = told(actions(tmp_path, body, given={"robots": "2"}))
+    assert (found.count("MicroXRCEAgent"), found.count("ros2")) == (2, 1)
+    more = "simulator: none\nshared_nodes: [MicroXRCEAgent]\nown_nodes: [ros2]"
+    found = told(actions(tmp_path, body, more=more, given={"robots": "2"}))
+    assert (found.count("MicroXRCEAgent"), found.count("ros2")) == (1, 2)
+
+
+def test_a_script_of_a_shell_is_called_by_its_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    actions(tmp_path, "ExecuteProcess(cmd=['python3', '-u', '/opt/acme/wheels.py', '--fast']),")
+    assert "process wheels.py (python3, -u" in capsys.readouterr().err
+
+
+ORDER = """
+        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[
+            here('second'),
+            TimerAction(period=2.0, actions=[here('third')]),
+        ])),
+        RegisterEventHandler(OnProcessStart(target_action=first, on_start=[
+            ExecuteProcess(cmd=['beep'])])),
+        first,
+        TimerAction(period=4.0, actions=[here('late', on_exit=[here('last')])]),
+"""
+
+
+@pytest.mark.parametrize("layout", ["both", "tf-per-robot", "frames-per-robot", "postfix"])
+def test_order_and_delays_are_those_of_the_vendor(tmp_path: Path, layout: str) -> None:
+    found = actions(tmp_path, ORDER, layout=layout)
+    assert told(found) == [
+        *("OnProcessStart of first", "beep", "end"),
+        *("OnProcessExit of first", "second", "TimerAction", "third", "end", "end"),
+        "first",
+        *("TimerAction", "OnProcessExit of late", "last", "end", "late", "end"),
+    ]
+    assert [it.values["period"] for it in found if it.kind == "TimerAction"] == [2.0, 4.0]
+
+
+def test_what_waits_for_a_process_that_is_not_there_starts_at_once(tmp_path: Path) -> None:
+    """The build puts robots into their simulator itself; output of a process is no event of it."""
+    body = """
+        RegisterEventHandler(OnProcessExit(target_action=never, on_exit=[here('second')])),
+        RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event: None)),
+        first, never,
+    """
+    setup = "first = here('first'); never = here('never', condition=IfCondition('false'))"
+    assert told(actions(tmp_path, body, setup)) == ["first", "second"]
+
+
+def test_a_process_in_a_domain_of_its_own_starts_later_in_it(tmp_path: Path) -> None:
+    """What a timer starts is outside of the group that sets the domain (launch_service.py)."""
+    more = "simulator: none\ndomains: {robot1: 11, robot2: 12}"
+    found = actions(tmp_path, ORDER, more=more)
+    for word in ("second", "third", "late", "last", "beep"):
+        assert of(found, word)["additional_env"] == {"ROS_DOMAIN_ID": "12"}
+    assert "additional_env" not in of(found, "first")
+
+
+INCLUDE = """
+        GroupAction([
+            PushRosNamespace('front'),
+            SetEnvironmentVariable('SIDE', 'left'),
+            IncludeLaunchDescription(
+                PathJoinSubstitution([FindPackageShare('lidar_x'), 'launch', 'x.launch.py']),
+                launch_arguments={'port': '/dev/ttyUSB1', 'id': WHO}.items()),
+        ]),
+"""
+
+
+@pytest.mark.parametrize(
+    ("layout", "space", "rules"),
+    [
+        ("both", "/robot2/front", [["/tf", "tf"], ["/tf_static", "tf_static"]]),
+        ("tf-per-robot", "/robot2/front", [["/tf", "tf"], ["/tf_static", "tf_static"]]),
+        ("frames-per-robot", "/robot2/front", []),
+    ],
+)
+def test_a_launch_file_that_is_not_here_is_included_for_each_robot(
+    layout: str,
+    space: str,
+    rules: list[list[str]],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    body = INCLUDE.replace("WHO", "'7'")
+    found = actions(tmp_path, body, layout=layout)
+    values = of(found, "IncludeLaunchDescription")
+    assert values.pop("remappings", []) == rules
+    assert values == {
+        "launch_description_source": "/lidar_x/share/lidar_x/launch/x.launch.py",
+        "launch_arguments": [["port", "/dev/ttyUSB1"], ["id", "7"]],
+        "namespace": space,
+        "environment": {"SIDE": "left"},
+    }
+    said = capsys.readouterr().err
+    assert "package 'lidar_x' is not installed here" in said
+    assert "build starts it in each robot's namespace" in said
+    assert "1 part of launch files not read" in said
+
+
+def test_an_argument_of_an_include_may_name_the_robot(tmp_path: Path) -> None:
+    body = f"DeclareLaunchArgument('who', default_value=''), {INCLUDE}"
+    body = body.replace("WHO", "['unit_', LaunchConfiguration('who')]")
+    found = actions(tmp_path, body, given={"robots": "2"})
+    # Nothing of the launch file names a robot here.
+    assert {
+        it.values["launch_arguments"][1][1] for it in found if "launch_arguments" in it.values
+    } == {"unit_"}
+    text = (tmp_path / "fleet.yaml").read_text()
+    (tmp_path / "fleet.yaml").write_text(
+        text.replace("up.launch.py", '"up.launch.py who:={robot}"')
+    )
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    (done,) = performed(str(tmp_path / "out/fleet.launch.py"), [Launching({})])
+    given = [
+        it.values["launch_arguments"] for it in done.actions if "launch_arguments" in it.values
+    ]
+    assert [it[1] for it in given] == [["id", "unit_robot1"], ["id", "unit_robot2"]]
+
+
+def test_the_environment_of_a_launch_is_that_of_all(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OLD_PATH", "/old")
+    body = """
+        SetEnvironmentVariable('RMW', 'zenoh'),
+        AppendEnvironmentVariable('OLD_PATH', '/more'),
+        SetEnvironmentVariable('GZ_SIM_RESOURCE_PATH', '/meshes'),
+        here('first'),
+        GroupAction([SetEnvironmentVariable('SIDE', 'left'), here('second')]),
+    """
+    found = actions(tmp_path, body)
+    common = {"RMW": "zenoh", "OLD_PATH": "/more", "GZ_SIM_RESOURCE_PATH": "/meshes"}
+    assert of(found, "first")["environment"] == common
+    assert "additional_env" not in of(found, "first")
+    assert of(found, "second")["additional_env"] == {"SIDE": "left"}
+    printed = (tmp_path / "out/fleet.launch.py").read_text()
+    assert "AppendEnvironmentVariable('OLD_PATH', '/more')" in printed
+    assert "AppendEnvironmentVariable('GZ_SIM_RESOURCE_PATH', '/meshes')" in printed
+    assert "SetEnvironmentVariable('RMW', 'zenoh')" in printed
+
+
+def test_values_of_known_nodes_are_given_with_the_names_of_the_robot(tmp_path: Path) -> None:
+    body = """
+        Node(package='robot_state_publisher', executable='robot_state_publisher',
+            parameters=[{'robot_description': 'x', 'publish_frequency': 50.0}], respawn=True),
+        Node(package='slam_toolbox', executable='async_slam_toolbox_node', name='slam',
+            parameters=[{'base_frame': 'base_link', 'max_laser_range': 7.5}]),
+        Node(package='tf2_ros', executable='static_transform_publisher',
+            arguments=['0', '0', '1', '0', '0', '0', 'base_link', 'mast']),
+        Node(package='tf2_ros', executable='static_transform_publisher',
+            arguments=['--z', '1', '--frame-id', 'mast', '--child-frame-id', 'eye']),
+        here('omni.py', parameters=[{'odom_frame_id': 'odom', 'base_frame_id': 'base_link'}]),
+    """
+    found = actions(tmp_path, body, layout="frames-per-robot")
+    state = of(found, "robot_state_publisher")
+    assert state["parameters"][0] == {"publish_frequency": 50.0} and state["respawn"] is True
+    slam = of(found, "async_slam_toolbox_node")
+    # By default both would have one odom.
+    assert slam["parameters"][0] == {
+        **{"base_frame": "robot2/base_link", "max_laser_range": 7.5},
+        "odom_frame": "robot2/odom",
+    }
+    one, other = (it.values for it in found if _word(it) == "static_transform_publisher")
+    assert one["arguments"][-2:] == ["robot2/base_link", "robot2/mast"]
+    assert other["arguments"][2:] == [
+        *("--frame-id", "robot2/mast", "--child-frame-id", "robot2/eye"),
+    ]
+    assert one["name"] != other["name"]
+    own = {"odom_frame_id": "robot2/odom", "base_frame_id": "robot2/base_link"}
+    assert of(found, "omni.py")["parameters"][0] == own
+
+
+def test_a_container_is_the_one_of_the_vendor(tmp_path: Path) -> None:
+    body = """
+        ComposableNodeContainer(package='rclcpp_components', executable='component_container_mt',
+            name='box', namespace='front', composable_node_descriptions=[
+                ComposableNode(package='q', plugin='q::Q', name='part',
+                    parameters=[{'rate': 1.5, 'frame_id': 'base_link'}])]),
+    """
+    box = of(actions(tmp_path, body, layout="tf-per-robot"), "component_container_mt")
+    assert (box["namespace"], box["name"]) == ("/robot2/front", "box")
+    (part,) = box["composable_node_descriptions"]
+    assert (part["plugin"], part["name"]) == ("q::Q", "part")
+    assert part["parameters"][0] == {"rate": 1.5, "frame_id": "base_link"}
+
+
+def test_two_nodes_of_one_name_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    row = "Node(package='acme', executable='{}', name='eyes'),\n"
+    body = "".join(map(row.format, ("eyes", "eyes", "ears")))
+    found = told(actions(tmp_path, body))
+    assert found == ["eyes", "ears"]
+    said = [it for it in capsys.readouterr().err.splitlines() if "MF860" in it]
+    assert len(said) == 2 and "node eyes is started twice, also in up.launch.py" in said[0]
+
+
+def test_two_nodes_without_a_name_both_run(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    body = "here('eyes', arguments=['left']), here('eyes', arguments=['right']),"
+    every = [it.values for it in actions(tmp_path, body) if _word(it) == "eyes"]
+    assert [it["arguments"] for it in every] == [["left"], ["right"]]
+    # What the code calls the first one is not known; two of one name would disturb each other.
+    assert [it.get("name") for it in every] == [None, "eyes_2"]
+    assert "MF860" not in capsys.readouterr().err
+
+
+def test_robots_with_different_bringups_have_each_its_own(tmp_path: Path) -> None:
+    other = LAUNCH.replace("SETUP", "pass").replace(
+        "BODY", "ExecuteProcess(cmd=['winch']), here('crane', prefix='nice'),"
+    )
+    (tmp_path / "crane.launch.py").write_text(other)
+    text = FLEET.replace("name: robot2,", "name: robot2, launch: crane.launch.py,")
+    fleet = text.format(more="simulator: none", layout="both", affix="prefix")
+    actions(tmp_path, "here('first'), ExecuteProcess(cmd=['agent']),")
+    (tmp_path / "fleet.yaml").write_text(fleet)
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    (done,) = performed(str(tmp_path / "out/fleet.launch.py"), [Launching({})])
+    found = [it for it in done.actions if it.kind != "DeclareLaunchArgument"]
+    assert told(found) == ["first", "agent", "winch", "crane"]
+    assert of(found, "crane")["prefix"] == "nice"
+
+
+def test_one_device_for_two_robots_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    body = """
+        DeclareLaunchArgument('who', default_value='x'),
+        ExecuteProcess(cmd=['MicroXRCEAgent', 'serial', '--dev', '/dev/ttyUSB0']),
+        here('lidar', arguments=['/dev/ttyUSB1', '--rate', '5']),
+        here('mcu', parameters=[{'port': '/dev/ttyACM0'}]),
+        here('web', arguments=['--port=8080', ['--out=/dev/', LaunchConfiguration('who')]]),
+    """
+    actions(tmp_path, body)
+    text = (tmp_path / "fleet.yaml").read_text()
+    (tmp_path / "fleet.yaml").write_text(
+        text.replace("up.launch.py", '"up.launch.py who:={robot}"')
+    )
+    capsys.readouterr()
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    said = [it for it in capsys.readouterr().err.splitlines() if "MB412" in it]
+    for device in ("dev /dev/ttyUSB0", "/dev/ttyUSB1", "port /dev/ttyACM0", "port 8080"):
+        assert [device in it for it in said].count(True) == 1, (device, said)
+    assert len(said) == 4
+
+
+def test_a_node_gets_the_parameter_files_of_its_own(tmp_path: Path) -> None:
+    """A section for all nodes reaches those alone that the launch file gives it to."""
+    for name in ("one", "two", "own"):
+        (tmp_path / f"{name}.yaml").write_text(f"/**:\n  ros__parameters: {{{name}: 1}}\n")
+    body = """
+        here('one', parameters=['FOLDER/one.yaml']),
+        here('two', parameters=['FOLDER/two.yaml', {'rate': 5}]),
+        here('none'),
+    """.replace("FOLDER", str(tmp_path))
+    found = actions(tmp_path, body, more="simulator: none\ncompanions: {params: own.yaml}")
+    files = {
+        name: [Path(it).name for it in of(found, name)["parameters"] if isinstance(it, str)]
+        for name in ("one", "two", "none")
+    }
+    # What the user names is for all.
+    assert files == {
+        "one": ["own.yaml", "one.yaml"],
+        "two": ["own.yaml", "two.yaml"],
+        "none": ["own.yaml"],
+    }
+
+
+def test_rules_and_words_of_known_programs_are_kept(tmp_path: Path) -> None:
+    body = """
+        Node(package='robot_state_publisher', executable='robot_state_publisher',
+            remappings=[('/joint_states', '/arm/joint_states'), ('more', '/arm/more')]),
+        Node(package='controller_manager', executable='ros2_control_node',
+            parameters=['FOLDER/c.yaml']),
+        Node(package='controller_manager', executable='spawner', arguments=[
+            'joints', '--controller-manager-timeout', '120', '--activate-as-group']),
+    """.replace("FOLDER", str(tmp_path))
+    text = "{joints: {type: joint_state_broadcaster/JointStateBroadcaster}}"
+    (tmp_path / "c.yaml").write_text(f"controller_manager:\n  ros__parameters: {text}\n")
+    found = actions(tmp_path, body, layout="tf-per-robot")
+    rules = of(found, "robot_state_publisher")["remappings"]
+    assert ["joint_states", "arm/joint_states"] in rules and ["more", "arm/more"] in rules
+    words = of(found, "spawner")["arguments"]
+    assert words[-3:] == ["--controller-manager-timeout", "120", "--activate-as-group"]
+
+
+@pytest.mark.parametrize(("more", "clock"), [("simulator: none", "false"), ("", "true")])
+def test_nodes_on_simulated_time_are_on_it(more: str, clock: str, tmp_path: Path) -> None:
+    """The launch file says so, whatever simulates them; the fleet file says that they are real."""
+    body = "here('one', parameters=[{'use_sim_time': True}]), here('two'),"
+    actions(tmp_path, body, more=more)
+    printed = (tmp_path / "out/fleet.launch.py").read_text()
+    assert f"'use_sim_time',\n                default_value='{clock}'" in printed
+
+
+def test_what_is_added_to_a_path_is_added_to_that_of_the_machine(tmp_path: Path) -> None:
+    """What the variable has where the launch file is read is not for the robot."""
+    body = """
+        ExecuteProcess(cmd=['a'], additional_env={'PATH': '/own:' + OLD, 'X': 'y'}),
+        ExecuteProcess(cmd=['b'], additional_env={'PATH': OLD + ':/own'}),
+    """
+    found = actions(tmp_path, body.replace("OLD", "__import__('os').environ['PATH']"))
+    assert of(found, "a")["additional_env"] == {"PATH": ["/own:", ""], "X": "y"}
+    assert of(found, "b")["additional_env"] == {"PATH": ["", ":/own"]}
+    assert os.environ["PATH"] not in (tmp_path / "out/fleet.launch.py").read_text()
+
+
+def test_a_folder_of_packages_is_that_of_their_sources(tmp_path: Path) -> None:
+    """The folder with links to sources is gone when the launch has been read."""
+    package = tmp_path / "ws/acme"
+    (package / "launch").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>acme</name></package>")
+    share = "__import__('ament_index_python').get_package_share_directory('acme')"
+    body = f"SetEnvironmentVariable('GZ_SIM_RESOURCE_PATH', {share} + '/..'), here('first'),"
+    text = LAUNCH.replace("SETUP", "pass").replace("BODY", body)
+    (package / "launch/up.launch.py").write_text(text)
+    (tmp_path / "robot.urdf").write_text(DESCRIPTION)
+    fleet = FLEET.replace("up.launch.py", "ws/acme/launch/up.launch.py")
+    (tmp_path / "fleet.yaml").write_text(
+        fleet.format(more="simulator: none", layout="both", affix="prefix")
+    )
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    (done,) = performed(str(tmp_path / "out/fleet.launch.py"), [Launching({"robots": "1"})])
+    environment = of(done.actions, "first")["environment"]
+    assert [Path(it) for it in environment["GZ_SIM_RESOURCE_PATH"].split(":")] == [tmp_path / "ws"]
+
+
+def test_files_of_what_is_not_here_are_the_robots(tmp_path: Path) -> None:
+    """A parameter file among the arguments of an include, and that of a spawner."""
+    (tmp_path / "lidar.yaml").write_text("lidar:\n  ros__parameters: {frame_id: base_link}\n")
+    text = "{joints: {type: joint_state_broadcaster/JointStateBroadcaster}}"
+    (tmp_path / "c.yaml").write_text(f"controller_manager:\n  ros__parameters: {text}\n")
+    body = INCLUDE.replace("'id': WHO", "'params_file': 'FOLDER/lidar.yaml'")
+    body += """
+        Node(package='controller_manager', executable='ros2_control_node',
+            parameters=['FOLDER/c.yaml']),
+        Node(package='controller_manager', executable='spawner',
+            arguments=['joints', '--param-file', 'FOLDER/c.yaml']),
+    """
+    found = actions(tmp_path, body.replace("FOLDER", str(tmp_path)), layout="frames-per-robot")
+    given = dict(of(found, "IncludeLaunchDescription")["launch_arguments"])
+    own = tmp_path / "out/robot2/lidar.yaml"
+    assert given == {"port": "/dev/ttyUSB1", "params_file": str(own)}
+    assert "frame_id: robot2/base_link" in own.read_text()
+    words = of(found, "spawner")["arguments"]
+    assert words[-2:] == ["--param-file", str(tmp_path / "out/robot2/c.yaml")]
+
+
+def test_a_stack_stands_for_a_launch_file_that_is_not_here(tmp_path: Path) -> None:
+    """Its nodes are known; started both ways each robot would have them twice."""
+    body = INCLUDE.replace("'id': WHO", "'id': '7'").replace("lidar_x", "slam_toolbox")
+    found = told(actions(tmp_path, body, more="stack: slam_toolbox"))
+    assert "IncludeLaunchDescription" not in found
+    assert any("slam_toolbox_node" in it for it in found)
