@@ -175,6 +175,7 @@ class NodeFacts(NamedTuple):
     ``usual`` are the parameters of the stack's own file, for a robot none of whose files has any.
     ``prefix_switch`` is a parameter: unless it is false, the node puts its namespace before its frames.
     ``is_known`` is false for a node that nobody knows: its ends are those that its remap rules name.
+    ``untold`` is what its source does not tell before it runs, each with its place.
     """
 
     name: str
@@ -205,6 +206,7 @@ class NodeFacts(NamedTuple):
     usual: tuple[tuple[str, str | float], ...] = ()
     by_sensor: tuple[tuple[str, tuple[tuple[str, str | float], ...]], ...] = ()
     is_known: bool = True
+    untold: tuple[str, ...] = ()
 
     @property
     def kind(self) -> str:

@@ -32,7 +32,7 @@ def _tools(kinds: tuple[str, ...]) -> tuple[Parser, QueryCursor]:
         import tree_sitter_cpp
     except ImportError:
         raise UsageError(
-            "reading C++ needs tree-sitter; pip install tree-sitter tree-sitter-cpp"
+            "reading C++ needs tree-sitter; pip install 'multibot_rewrite[sources]'"
         ) from None
     language = tree_sitter.Language(tree_sitter_cpp.language())
     query = tree_sitter.Query(language, "\n".join(f"({kind}) @found" for kind in kinds))
