@@ -154,6 +154,14 @@ class Claim(NamedTuple):
     releases: str = ""
 
 
+class Untold(NamedTuple):
+    """What the source of a node does not tell before it runs, with its place; a value of its
+    ``parameter`` tells it."""
+
+    text: str
+    parameter: str = ""
+
+
 class NodeFacts(NamedTuple):
     """A known node: its default name, its package, and its endpoints.
 
@@ -175,7 +183,7 @@ class NodeFacts(NamedTuple):
     ``usual`` are the parameters of the stack's own file, for a robot none of whose files has any.
     ``prefix_switch`` is a parameter: unless it is false, the node puts its namespace before its frames.
     ``is_known`` is false for a node that nobody knows: its ends are those that its remap rules name.
-    ``untold`` is what its source does not tell before it runs, each with its place.
+    ``untold`` is what its source does not tell.
     """
 
     name: str
@@ -206,7 +214,7 @@ class NodeFacts(NamedTuple):
     usual: tuple[tuple[str, str | float], ...] = ()
     by_sensor: tuple[tuple[str, tuple[tuple[str, str | float], ...]], ...] = ()
     is_known: bool = True
-    untold: tuple[str, ...] = ()
+    untold: tuple[Untold, ...] = ()
 
     @property
     def kind(self) -> str:

@@ -141,7 +141,7 @@ def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
             stack=stack,
             place=place,
             known=fact.kind,
-            untold=fact.untold,
+            untold=tuple(one.text for one in fact.untold),
         )
 
 

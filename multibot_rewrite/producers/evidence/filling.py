@@ -49,6 +49,7 @@ def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeF
         endpoints=tuple(dict.fromkeys(made)),
         sends=tuple(sent_with(with_frames, values)),
         origin=Origin(place=given.place),
+        untold=tuple(it for it in node.untold if it.parameter not in values),
     )
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.knowledge.records import UNKNOWN, NodeFacts
+from multibot_rewrite.knowledge.records import UNKNOWN, NodeFacts, Untold
 from multibot_rewrite.producers.launch.known_node import known_node
 from multibot_rewrite.producers.launch.of_robot import passes
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
@@ -42,5 +42,5 @@ def _read(it: LaunchedNode, folders: Mapping[str, str], release: str) -> NodeFac
         found = node_of_program(folder, it.package, it.executable, folders, release)
     except UsageError as error:
         run = {"component": it.executable} if it.container else {"programs": (it.executable,)}
-        return UNKNOWN._replace(name=name, package=it.package, untold=(f"{error}",), **run)
+        return UNKNOWN._replace(name=name, package=it.package, untold=(Untold(f"{error}"),), **run)
     return found.facts._replace(known=name) if found else None

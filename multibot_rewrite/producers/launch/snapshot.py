@@ -185,7 +185,7 @@ def _addresses(it: Run, known: Knowledge, models: Models) -> Iterator[Address]:
 def _nodes(running: Iterable[Run], parts: Iterable[_Part]) -> Iterator[Node]:
     """The nodes, each with those that its code makes beside it (``Endpoint.by``)."""
     for it, part in zip(running, parts, strict=True):
-        known, untold = it.fact.kind, it.fact.untold
+        known, untold = it.fact.kind, tuple(one.text for one in it.fact.untold)
         yield Node(part.name, it.process, place=it.place, known=known, untold=untold)
         own = dict.fromkeys(end.node for end in part.endpoints if end.node != part.name)
         yield from (Node(name, it.process, place=it.place, known=known) for name in own)
@@ -216,7 +216,9 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Cave
         listed = shorten(unknown, SEVERAL)
         hint = "describe them in a file of nodes (--nodes, docs/stacks.md)"
         text = f"{plural(len(unknown), 'node')} not known, with all topics and frames: {listed}"
-        why = "; ".join(unique(one for it in nodes if not it.is_known for one in it.fact.untold))
+        why = "; ".join(
+            unique(one.text for it in nodes if not it.is_known for one in it.fact.untold)
+        )
         yield Caveat(NOT_KNOWN, True, f"{text}; {why or hint}")
     yield from _partly(it for it in nodes if it.is_known and it.fact.untold)
     treeless = [it.full_name for it in nodes if publishes_a_tree(it) and tree_of(it) is None]
@@ -227,7 +229,7 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Cave
 
 def _partly(nodes: Iterable[Run]) -> Iterator[Caveat]:
     """What the source of nodes does not tell."""
-    texts = [f"{it.full_name} ({it.fact.untold[0]})" for it in nodes]
+    texts = [f"{it.full_name} ({it.fact.untold[0].text})" for it in nodes]
     if texts:
         text = f"{plural(len(texts), 'node')} known in part, by their source: {shorten(texts)}"
         yield Caveat(NOT_KNOWN, True, text)

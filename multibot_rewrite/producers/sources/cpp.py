@@ -277,12 +277,15 @@ def _each(node: Node, place: Place) -> Iterator[Value]:
 
 
 def _default(node: Node, place: Place) -> Iterator[Value]:
-    """The default of a function's parameter, or of a member."""
-    name, value = (node.child_by_field_name(it) for it in ("declarator", "default_value"))
-    if value is None:
-        return
+    """The default of a function's parameter, or of each member of a declaration."""
     owner, inside = _around(node)
-    yield Value(owner, inside, last(text_of(name)), evaluated(value), place)
+    name = ""
+    for at, it in enumerate(node.children):
+        field = node.field_name_for_child(at)
+        if field == "declarator":
+            name = last(text_of(it))
+        elif field == "default_value":
+            yield Value(owner, inside, name, evaluated(it), place)
 
 
 def _alias(node: Node, place: Place) -> Iterator[Alias]:

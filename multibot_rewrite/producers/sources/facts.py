@@ -18,11 +18,20 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     Param,
     SentTransform,
+    Untold,
 )
 from multibot_rewrite.producers.sources.files import Packages, Read, read_program
 from multibot_rewrite.producers.sources.programs import Start, start_of
 from multibot_rewrite.producers.sources.records import OTHERWISE, Place
-from multibot_rewrite.producers.sources.resolve import NOBODY, Names, Spot, default_of, names_of
+from multibot_rewrite.producers.sources.resolve import (
+    EACH,
+    LIST,
+    NOBODY,
+    Names,
+    Spot,
+    default_of,
+    names_of,
+)
 from multibot_rewrite.producers.sources.walk import (
     Declared,
     Event,
@@ -166,7 +175,9 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
         yield bare._replace(name=name)
         return
     images = it.api.function in _CAMERAS and type_ == "sensor_msgs/msg/Image"
-    for name, parameter, more in _spelled(names, it.spot, it.name):
+    for name, parameter, more in (
+        one for word in _each(it.name) for one in _spelled(names, it.spot, word)
+    ):
         end = bare._replace(
             name=name, parameter=parameter, when=_both(when, more), transport=images
         )
@@ -175,6 +186,17 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
             info = f"{name.rpartition('/')[0]}/camera_info".lstrip("/" if name[:1] != "/" else "")
             own = end._replace(name=info, type="sensor_msgs/msg/CameraInfo", transport=False)
             yield own._replace(parameter="", beside=name, fixed="made of the image's name")
+
+
+def _each(text: str) -> Iterator[str]:
+    """A name in each round of its loop."""
+    _, mark, rest = text.partition(f"<{EACH}{LIST}")
+    words, _, _ = rest.partition(">")
+    if not mark:
+        yield text
+        return
+    for it in words.split("|"):
+        yield from _each(text.replace(f"<{EACH}{LIST}{words}>", it))
 
 
 def _both(when: str, more: str) -> str:
@@ -310,19 +332,22 @@ def _untold(
     plain: Mapping[str, None],
     events: Iterable[Event],
     ends: Iterable[Endpoint],
-) -> Iterator[str]:
-    """What is not known before it runs, each with its place."""
+) -> Iterator[Untold]:
+    """What is not known before it runs."""
     if len(plain) > 1:
-        yield f"it makes several nodes: {', '.join(plain)}"
+        yield Untold(f"it makes several nodes: {', '.join(plain)}")
     if not plain:
-        yield "the name of its node is not known"
+        yield Untold("the name of its node is not known")
     for place, why in read.source.faults:
-        yield f"{_at(place)}: {why}"
+        yield Untold(f"{_at(place)}: {why}")
     for it in named:
         if it.space:
-            yield f"{_at(it.place)}: its code sets its namespace"
+            yield Untold(f"{_at(it.place)}: its code sets its namespace")
     for one in dict.fromkeys(it for it in events if isinstance(it, Unread)):
-        yield f"{_at(one.place)}: what {one.what} does with the node is not read"
+        yield Untold(f"{_at(one.place)}: what {one.what} does with the node is not read")
     for end in ends:
-        if "<" in end.name and not end.parameter and not end.when.endswith(" set"):
-            yield f"{end.source[0]}: {end.role} {end.type or 'something'} under a name made at run time"
+        what = f"{end.source[0]}: {end.role} {end.type or 'something'} under a name"
+        if end.name == f"<{end.parameter}>":
+            yield Untold(f"{what} that only its parameter {end.parameter} has", end.parameter)
+        elif "<" in end.name and not end.when.endswith(" set"):
+            yield Untold(f"{what} made at run time")

@@ -39,6 +39,8 @@ _PARAMETERS = ("get_parameter", "declare_parameter", "get_parameter_or")
 # They give back what they are asked of, if that is a parameter.
 _SAME = ("get_parameter_value", "as_string", "as_bool")
 _VALUES = ("value", "string_value", "bool_value")
+ENUMERATED = "<new enumerate>"
+MOST_ROUNDS = 32
 _PLACE = re.compile(r"\{\}|%s")
 
 # The fields of a statement that run only sometimes.
@@ -110,7 +112,8 @@ def _read(node: ast.stmt, types: dict[str, str], place: Place) -> Source:
     takers: list[Constructor] = []
     calls: list[Call] = []
     values: list[Value] = []
-    for part in _walk(_Part(node, "")):
+    free = node.name if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) else ""
+    for part in _walk(_Part(node, free)):
         found, function = part.node, part.function
         if isinstance(found, (ast.FunctionDef, ast.AsyncFunctionDef)):
             takers.append(_taker(found, owner, function, place))
@@ -145,12 +148,35 @@ def _bound(node: ast.AST) -> Iterator[tuple[str, str]]:
             yield from _pairs(it, node.value)
     elif isinstance(node, (ast.AnnAssign, ast.NamedExpr)):
         yield from _pairs(node.target, node.value) if node.value else ()
-    elif isinstance(node, (ast.AugAssign, ast.For, ast.AsyncFor, ast.comprehension)):
+    elif isinstance(node, (ast.For, ast.comprehension)):
+        yield from _of_loop(node)
+    elif isinstance(node, (ast.AugAssign, ast.AsyncFor)):
         yield from _pairs(node.target, None)
     elif isinstance(node, ast.withitem) and node.optional_vars:
         yield from _pairs(node.optional_vars, node.context_expr)
     elif isinstance(node, ast.ExceptHandler) and node.name:
         yield node.name, ANY
+
+
+def _of_loop(node: ast.For | ast.comprehension) -> Iterator[tuple[str, str]]:
+    """The variable of a loop over a list; behind a number where it is enumerated."""
+    target, over = node.target, _over(node.iter)
+    pair = isinstance(target, ast.Tuple) and len(target.elts) == 2
+    if isinstance(target, ast.Tuple) and pair and _text(node.iter) == ENUMERATED:
+        yield from _pairs(target.elts[0], None)
+        target = target.elts[1]
+    if isinstance(target, ast.Name) and not (isinstance(node, ast.comprehension) and node.ifs):
+        yield target.id, over
+    else:
+        yield from _pairs(target, None)
+
+
+def _over(node: ast.expr) -> str:
+    """``<each list:a|b>``, or ``<each SIDES>``, of what a loop is over."""
+    if _text(node) == ENUMERATED and isinstance(node, ast.Call) and node.args:
+        return _over(node.args[0])
+    text = _text(node)
+    return f"<each {text[1:-1]}>" if text[:1] == "<" and text.count("<") == 1 else ANY
 
 
 def _pairs(target: ast.expr, value: ast.expr | None) -> Iterator[tuple[str, str]]:
@@ -175,6 +201,8 @@ def _walk(part: _Part) -> Iterator[_Part]:
         below = part
         if isinstance(node, (ast.If, ast.IfExp)) and name != "test":
             below = _under(part, node.test, name == "orelse")
+        elif isinstance(node, ast.For) and name == "body" and not _may_leave_loop(node):
+            below = part._replace(asked=_and(part.asked, _over(node.iter)))
         elif name in _SOMETIMES.get(type(node), ()):
             below = part._replace(asked=_and(part.asked, OTHERWISE))
         yield from _each(value if isinstance(value, list) else [value], below)
@@ -204,6 +232,10 @@ def _each(nodes: list[Any], part: _Part) -> Iterator[_Part]:
         yield from _walk(part._replace(node=it, function=inside))
         if isinstance(it, ast.If) and _may_leave(it):
             part = part._replace(asked=_and(part.asked, OTHERWISE))
+
+
+def _may_leave_loop(node: ast.For) -> bool:
+    return any(_may_leave(it) for it in node.body)
 
 
 def _may_leave(node: ast.AST) -> bool:
@@ -338,17 +370,41 @@ def _called(node: ast.Call) -> str:
         named = (it.value for it in node.keywords if it.arg == "name")
         key = node.args[0] if node.args else next(named, None)
         return f"<@{braced(_text(key))}>" if key is not None else ANY
-    if not isinstance(node.func, ast.Attribute):
-        made = _text(node.func).strip("<>")
-        return _text(node.args[0]) if made == "str" and node.args else f"<new {made}>"
-    on = _text(node.func.value)
+    return _method(name, node) if isinstance(node.func, ast.Attribute) else _plain_call(node)
+
+
+def _plain_call(node: ast.Call) -> str:
+    made = _text(node.func).strip("<>")
+    if made == "range":
+        return _range(node)
+    return _text(node.args[0]) if made == "str" and node.args else f"<new {made}>"
+
+
+def _method(name: str, node: ast.Call) -> str:
+    on = _text(node.func.value) if isinstance(node.func, ast.Attribute) else ANY
     if name == "create_node" and node.args:
         return f"<Node:{braced(_text(node.args[0]))}>"
-    if name in _SAME:
-        return on
     if name == "format" and not node.keywords:
         return _put_in(on, node.args)
-    return f"<new {name}>" if name[:1].isupper() else ANY
+    made = f"<new {name}>" if name[:1].isupper() else ANY
+    return on if name in _SAME else made
+
+
+def _range(node: ast.Call) -> str:
+    """A range of a few numbers as their list."""
+    ends = [it.value for it in node.args if isinstance(it, ast.Constant)]
+    whole = [it for it in ends if isinstance(it, int)]
+    if not 0 < len(whole) == len(node.args) < 3:
+        return ANY
+    numbers = range(*whole)
+    return f"<list:{'|'.join(map(str, numbers))}>" if 0 < len(numbers) <= MOST_ROUNDS else ANY
+
+
+def _list(node: ast.List | ast.Tuple) -> str:
+    """A list of texts or numbers."""
+    words = [str(it.value) for it in node.elts if isinstance(it, ast.Constant)]
+    plain = 0 < len(words) == len(node.elts) <= MOST_ROUNDS and not {*"<>|{}"} & {*"".join(words)}
+    return f"<list:{'|'.join(words)}>" if plain else ANY
 
 
 TEXTS: dict[type, Callable[[Any], str]] = {
@@ -359,4 +415,6 @@ TEXTS: dict[type, Callable[[Any], str]] = {
     ast.Attribute: _attribute,
     ast.Name: lambda node: "<this>" if node.id == "self" else f"<{node.id}>",
     ast.Call: _called,
+    ast.List: _list,
+    ast.Tuple: _list,
 }

@@ -28,10 +28,12 @@ _PART = re.compile(r"<([^<>]*)>")
 _BRACED = re.compile(r"\{([^{}]*)\}")
 _ROS_TYPE = re.compile(r"(\w+)(?:::|/|\.)(msg|srv|action)(?:::|/|\.)(?:_\w+\.)?(\w+)")
 FRAMES = ("header.frame_id", "child_frame_id")
+# A list of words, and a loop over one.
+LIST, EACH = "list:", "each "
 FLAGS = ("<True>", "<False>", "<true>", "<false>")
 # What a variable has before it is set.
 _NOTHING = ("", "<None>", "<nullptr>")
-_AS_IT_IS = ("@", "new ", "Node:", "this")
+_AS_IT_IS = ("new ", "Node:", "this", LIST)
 Item = TypeVar("Item")
 Key = TypeVar("Key", bound=Hashable)
 NO_WORDS: Mapping[str, str] = {}
@@ -121,6 +123,10 @@ def _value(names: Names, spot: Spot, name: str, without: str, depth: int) -> str
         return name
     if name.startswith("@"):
         return f"<{_BRACED.sub(lambda it: _inside(names, spot, it[1], depth), name)}>"
+    if name.startswith(EACH):
+        over = name.removeprefix(EACH)
+        text = text_in(names, spot, f"<{over}>", without, depth)
+        return f"<{EACH}{text[1:-1]}>" if text.startswith(f"<{LIST}") else f"<{over}>"
     if name.startswith(_AS_IT_IS):
         return f"<{name}>"
     rows = [*_candidates(names, spot, name, depth)]
@@ -130,7 +136,8 @@ def _value(names: Names, spot: Spot, name: str, without: str, depth: int) -> str
     }
     found = {it for it in found if it not in _NOTHING} or found
     of_parameters = {it for it in found if it.startswith("<@") and it.count("<") == 1}
-    if len(of_parameters) == 1 and all("<" not in it for it in found - of_parameters):
+    rest = found - of_parameters
+    if len(of_parameters) == 1 and all("<" not in it or it in FLAGS for it in rest):
         # A variable has the default until it is told the parameter.
         return of_parameters.pop()
     only = found.pop() if len(found) == 1 else ANY

@@ -20,6 +20,8 @@ from multibot_rewrite.producers.sources.records import (
     Place,
 )
 from multibot_rewrite.producers.sources.resolve import (
+    EACH,
+    LIST,
     NOBODY,
     Made,
     Names,
@@ -203,7 +205,8 @@ def _asked(names: Names, spot: Spot, call: Call) -> str:
     for it in filter(None, call.asked.split("&")):
         text = text_in(names, spot, it)
         is_parameter = text.lstrip("!").startswith("<@") and text.count("<") == 1
-        own.append(text if is_parameter else OTHERWISE)
+        if not text.startswith(f"<{EACH}{LIST}"):
+            own.append(text if is_parameter else OTHERWISE)
     return "&".join(dict.fromkeys((*filter(None, spot.asked.split("&")), *own)))
 
 
@@ -220,7 +223,7 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
         yield from _base(walk, here, call, name)
     elif (found := _class(names, name, call.place)) and _is_made(call, name, on):
         yield from _object(walk, spot.made, found, call.given, types, here, call.named)
-    elif name in apis():
+    elif name in apis() and not _is_method_here(names, on, name):
         yield from _declared(names, here, call, name, types, on)
     elif followed := _followed(walk, here, call, name, on):
         for it in followed:
@@ -232,6 +235,11 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
 def _is_made(call: Call, name: str, on: str) -> bool:
     """Is an object of the class made, and no method of that name called?"""
     return not call.on or call.on.endswith(f"{name}>") or call.name != name or "." not in on
+
+
+def _is_method_here(names: Names, on: str, name: str) -> bool:
+    """Has the object that is asked a method of its own of that name?"""
+    return on.startswith("<new ") and (on[5:-1], name) in names.takers
 
 
 def _handed(names: Names, spot: Spot, call: Call, name: str) -> Iterator[Unread]:
