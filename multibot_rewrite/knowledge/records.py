@@ -64,7 +64,8 @@ class Endpoint(NamedTuple):
 class FrameParameter(NamedTuple):
     """A parameter that holds a frame id, and its default; no remap rule reaches frame ids.
 
-    ``given`` is true where a robot's own files set it.
+    ``given`` is true where a robot's own files set it. ``in_code`` is true for a frame that no parameter
+    sets: its code writes it, and no layout changes it.
     ``releases`` and ``source`` as in ``Endpoint``.
     """
 
@@ -73,6 +74,7 @@ class FrameParameter(NamedTuple):
     releases: str = ""
     source: tuple[str, ...] = ()
     given: bool = False
+    in_code: bool = False
 
 
 class Param(NamedTuple):

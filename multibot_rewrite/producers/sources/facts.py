@@ -33,6 +33,7 @@ from multibot_rewrite.producers.sources.resolve import (
     names_of,
 )
 from multibot_rewrite.producers.sources.walk import (
+    IMAGE,
     Declared,
     Event,
     Looked,
@@ -174,7 +175,7 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
         name = "~/set_camera_info" if has_release("jazzy+", release) else "set_camera_info"
         yield bare._replace(name=name)
         return
-    images = it.api.function in _CAMERAS and type_ == "sensor_msgs/msg/Image"
+    images = it.api.function in _CAMERAS and type_ == IMAGE
     for name, parameter, more in (
         one for word in _each(it.name) for one in _spelled(names, it.spot, word)
     ):
@@ -322,8 +323,9 @@ def _frame_word(text: str) -> str:
 
 
 def _frame_of(names: Names, it: Looked, word: str) -> FrameParameter:
-    own = word.strip("'") if word[0] == "'" else default_of(names, it.spot, word) or ""
-    return FrameParameter(word, own, source=(_at(it.place),))
+    in_code = word[0] == "'"
+    own = word.strip("'") if in_code else default_of(names, it.spot, word) or ""
+    return FrameParameter(word, own, "", (_at(it.place),), in_code, in_code)
 
 
 def _untold(

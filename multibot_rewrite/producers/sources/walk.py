@@ -47,7 +47,7 @@ HARMLESS = {
     *("add_on_set_parameters_callback", "partial", "super", "isinstance", "ref", "cref", "move"),
     *("get_logger", "print", "str", "hasattr", "getattr", "setattr", "id", "type", "destroy_node"),
     *("CvBridge", "Duration", "Time", "Synchronizer", "Executor", "SingleThreadedExecutor"),
-    *("MultiThreadedExecutor", "spin_node_once", "RCLCPP_INFO", "RCLCPP_WARN", "RCLCPP_ERROR"),
+    *("MultiThreadedExecutor", "spin_node_once"),
     *(
         "RCLCPP_DEBUG",
         "RCLCPP_FATAL",
@@ -63,6 +63,18 @@ HARMLESS = {
 
 
 HARMLESS_BASES = {"object", "Thread", "ABC", "Enum", "Exception", "enable_shared_from_this"}
+
+
+# What declares an endpoint in Python; in C++ those of ROS 1 have a type.
+OF_PYTHON = {
+    *("create_publisher", "create_subscription", "create_service", "create_client"),
+    *("ActionServer", "ActionClient", "Subscriber", "service_caller", "Buffer", "Updater"),
+    *("TransformBroadcaster", "StaticTransformBroadcaster", "TransformListener"),
+    "InteractiveMarkerServer",
+}
+OF_ROS_1 = {"advertise", "advertiseCamera"}
+_IMAGES = {"create_publisher", "create_subscription"}
+IMAGE = "sensor_msgs/msg/Image"
 
 
 class Declared(NamedTuple):
@@ -228,7 +240,7 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
     elif followed := _followed(walk, here, call, name, on):
         for it in followed:
             yield from _function(walk, it)
-    elif name not in HARMLESS and spot.made.chain:
+    elif name not in HARMLESS:
         yield from _handed(names, spot, call, name)
 
 
@@ -245,8 +257,17 @@ def _is_method_here(names: Names, on: str, name: str) -> bool:
 def _handed(names: Names, spot: Spot, call: Call, name: str) -> Iterator[Unread]:
     """Something that is not here is given the node."""
     texts = {text_in(names, spot, it) for it in call.given}
-    if name and texts & {"<this>", "<shared_from_this>"} and not name.startswith("RCL"):
+    own = {"<this>", "<shared_from_this>"} if spot.made.chain else set()
+    if name and (texts & own or any(_is_new_node(names, it) for it in texts)):
         yield Unread(name, call.place)
+
+
+def _is_new_node(names: Names, text: str) -> bool:
+    """Is it a node that the program has made?"""
+    if text.startswith("<Node:") or text in ("<new Node>", "<new LifecycleNode>"):
+        return True
+    rows = names.classes.get(text[5:-1], ()) if text.startswith("<new ") else ()
+    return any(last(it) in NODES for one in rows for it in _chain(names, one)[1])
 
 
 def _looked(names: Names, spot: Spot, call: Call) -> Iterator[Looked]:
@@ -440,9 +461,15 @@ def _declared(
     given = [(it, text_in(names, spot, it)) for it in (*call.given, *(it for _, it in call.named))]
     nodes = [text for raw, text in given if is_node(raw) or is_node(text)]
     others = [text for raw, text in given if not (is_node(raw) or is_node(text))]
+    own = call.place.path.endswith(".py")
+    if (own and name not in OF_PYTHON) or (name in OF_ROS_1 and types):
+        return
     for api in apis()[name]:
         if (api.node == OWN and not nodes) or (ARGUMENT in api.name and not others):
             continue
+        if not own and not types and nodes and name in _IMAGES:
+            # That of image_transport; those of rclcpp have a type.
+            api = api._replace(function="advertise", type=IMAGE)  # noqa: PLW2901
         text = api.name.replace(ARGUMENT, others[0] if others else "")
         helper = api.node == HELPER and not nodes
         type_ = _type(names, spot, api, types) or _type_of_member(names, spot, call.on)
