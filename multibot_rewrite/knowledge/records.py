@@ -64,8 +64,9 @@ class Endpoint(NamedTuple):
 class FrameParameter(NamedTuple):
     """A parameter that holds a frame id, and its default; no remap rule reaches frame ids.
 
-    ``given`` is true where a robot's own files set it. ``in_code`` is true for a frame that no parameter
-    sets: its code writes it, and no layout changes it.
+    ``given`` is true where a robot's own files set it. ``in_code`` is true for a frame that no layout
+    changes: its code writes it, or nobody sees that its parameter holds a frame; ``is_kept`` is true
+    for a default that none changes where no file sets it.
     ``releases`` and ``source`` as in ``Endpoint``.
     """
 
@@ -75,6 +76,7 @@ class FrameParameter(NamedTuple):
     source: tuple[str, ...] = ()
     given: bool = False
     in_code: bool = False
+    is_kept: bool = False
 
 
 class Param(NamedTuple):

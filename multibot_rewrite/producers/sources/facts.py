@@ -7,11 +7,13 @@ Only what is sure is said without a condition. What is not known before it runs 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import combinations
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.base.rosnames import check_node_name, check_topic_name, propose_token
 from multibot_rewrite.knowledge.conditions import AND, OPEN_KIND, OR, SOURCE, joined
+from multibot_rewrite.knowledge.parameters import KnownNodes, built_in_nodes, guess
 from multibot_rewrite.knowledge.records import (
     Endpoint,
     FrameParameter,
@@ -22,7 +24,7 @@ from multibot_rewrite.knowledge.records import (
 )
 from multibot_rewrite.producers.sources.files import Packages, Read, read_program
 from multibot_rewrite.producers.sources.programs import Start, start_of
-from multibot_rewrite.producers.sources.records import OTHERWISE, Place
+from multibot_rewrite.producers.sources.records import OTHERWISE, Place, Value
 from multibot_rewrite.producers.sources.resolve import (
     EACH,
     LIST,
@@ -55,6 +57,9 @@ from multibot_rewrite.system.records import (
 )
 from multibot_rewrite.system.records import Place as At
 
+SET = " set"
+# Of more parameters in a name than these only the defaults are followed.
+MOST_PARAMETERS = 3
 PERHAPS = f"{OPEN_KIND}: {SOURCE}"
 _KINDS = {PUBLISHES: TOPIC, SUBSCRIBES: TOPIC, SERVES: SERVICE, CALLS: SERVICE}
 _ACTIONS = {
@@ -118,9 +123,10 @@ def _node(
     word = program.rpartition("::")[2].removesuffix(".py")
     made = [it for it in events if isinstance(it, Declared)]
     ends = tuple(dict.fromkeys(end for it in made for end in _endpoints(names, it, release)))
-    params = tuple(_params(names, events))
+    params = tuple(_params(names, events, read.source.values))
     sends, of_sends = _sends(names, events)
-    frames = tuple({it.parameter: it for it in (*_frames(names, events), *of_sends)}.values())
+    both = {it.parameter: it for it in (*_frames(names, events), *of_sends)}
+    frames = tuple(_as_rewritten(it, built_in_nodes(release)) for it in both.values())
     where = At(
         start.path, named[0].place.line if named and named[0].place.path == start.path else 0
     )
@@ -130,6 +136,7 @@ def _node(
         _surest(ends),
         frames=frames,
         sends=sends,
+        ids=tuple((it, it) for it in dict.fromkeys(_ids(ends))),
         origin=Origin(place=where),
         source=tuple(dict.fromkeys(_at(it.place) for it in named)) or (start.path,),
         programs=() if start.class_ else (program,),
@@ -186,7 +193,11 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
         if images and it.api.function != "advertise" and "<" not in name:
             info = f"{name.rpartition('/')[0]}/camera_info".lstrip("/" if name[:1] != "/" else "")
             own = end._replace(name=info, type="sensor_msgs/msg/CameraInfo", transport=False)
-            yield own._replace(parameter="", beside=name, fixed="made of the image's name")
+            yield own._replace(
+                parameter="",
+                beside=name,
+                fixed=f"it is derived from the name that {name} is remapped to",
+            )
 
 
 def _each(text: str) -> Iterator[str]:
@@ -221,11 +232,24 @@ def _spelled(names: Names, spot: Spot, text: str) -> Iterator[tuple[str, str, st
         yield (known if fine else "<?>"), "", ""
     elif text == f"<@{asked[0]}>":
         yield (known if fine else f"<{asked[0]}>"), asked[0], ""
-    elif fine:
+    elif fine and len(asked) <= MOST_PARAMETERS:
         yield known, "", AND.join(f"{it} unset" for it in asked)
-        yield _unknown(text), "", OR.join(f"{it} set" for it in asked)
+        yield from _as_set(text, asked, defaults)
     else:
         yield _unknown(text), "", ""
+
+
+def _as_set(
+    text: str, asked: Sequence[str], defaults: Mapping[str, str | None]
+) -> Iterator[tuple[str, str, str]]:
+    """The name where each of some of its parameters is set, and the others are not."""
+    for size in range(1, len(asked) + 1):
+        for given in combinations(asked, size):
+            name = text
+            for it in asked:
+                name = name.replace(f"<@{it}>", f"<{it}>" if it in given else defaults[it] or "")
+            said = (f"{it}{SET if it in given else ' unset'}" for it in reversed(asked))
+            yield name, "", AND.join(sorted(said, key=lambda it: it.endswith(SET)))
 
 
 def _unknown(text: str) -> str:
@@ -258,16 +282,26 @@ def _flag(names: Names, spot: Spot, text: str) -> str:
     return f"{parameter} unset{OR}{given}" if default != wrong else given
 
 
-def _params(names: Names, events: Iterable[Event]) -> Iterator[Param]:
-    topics: dict[str, str] = {}
+def _params(names: Names, events: Sequence[Event], values: Iterable[Value]) -> Iterator[Param]:
+    """The parameters that are declared where the program comes along."""
+    kinds: dict[str, str] = {}
     for it in events:
         if isinstance(it, Declared) and it.name.startswith("<@") and it.name.count("<") == 1:
-            topics[it.name[2:-1]] = TOPIC
+            kinds[it.name[2:-1]] = TOPIC
         elif isinstance(it, Looked) and it.text.startswith("<@") and it.text.count("<") == 1:
-            topics[it.text[2:-1]] = "frame"
-    for it in {one.name: one for one in events if isinstance(one, Parameter)}.values():
-        default = default_of(names, it.spot, it.name) or ""
-        yield Param(it.name, topics.get(it.name, ""), default.strip("<>"), source=(_at(it.place),))
+            kinds[it.text[2:-1]] = "frame"
+    spots = {
+        (it.spot.owner, it.spot.function): it.spot for it in events if isinstance(it, Parameter)
+    }
+    named = [(it.name, it.place, it.spot) for it in events if isinstance(it, Parameter)]
+    named += [
+        (it.variable[1:], it.place, spots[it.owner, it.function])
+        for it in values
+        if it.variable.startswith("@") and (it.owner, it.function) in spots
+    ]
+    for name, place, spot in {it[0]: it for it in named if it[0] and "{" not in it[0]}.values():
+        default = default_of(names, spot, name) or ""
+        yield Param(name, kinds.get(name, ""), default.strip("<>"), source=(_at(place),))
 
 
 def _frames(names: Names, events: Iterable[Event]) -> Iterator[FrameParameter]:
@@ -312,6 +346,18 @@ def _sends(
 _ENDS = ("header.frame_id", "child_frame_id")
 
 
+def _as_rewritten(it: FrameParameter, known: KnownNodes) -> FrameParameter:
+    """A frame as build leaves it: in a file it changes what is called as a frame, and adds nothing."""
+    seen = not it.in_code and guess(known, it.parameter) == "frame"
+    return it._replace(in_code=not seen, is_kept=seen)
+
+
+def _ids(ends: Iterable[Endpoint]) -> Iterator[str]:
+    """The parameters that names are made of."""
+    for end in (it for it in ends if it.when.endswith(SET) and "<" in it.name):
+        yield from (it.partition(">")[0] for it in end.name.split("<")[1:])
+
+
 def _where(spot: Spot) -> object:
     return spot.owner, spot.function, spot.path
 
@@ -351,5 +397,5 @@ def _untold(
         what = f"{end.source[0]}: {end.role} {end.type or 'something'} under a name"
         if end.name == f"<{end.parameter}>":
             yield Untold(f"{what} that only its parameter {end.parameter} has", end.parameter)
-        elif "<" in end.name and not end.when.endswith(" set"):
+        elif "<" in end.name and not end.when.endswith(SET):
             yield Untold(f"{what} made at run time")
