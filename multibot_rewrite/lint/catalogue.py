@@ -59,6 +59,7 @@ HOMES: tuple[Home, ...] = (
             "fleet.launch.launched_prefix",
             "fleet.file.filled_arguments",
             "fleet.robots.simulators",
+            "fleet.checks.nothing_moves",
             "fleet.checks.lacking",
             "fleet.checks.other_manager",
             "fleet.checks.of_robots",

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.system.json import from_yaml
 
 NODE = """
 import rclpy
@@ -158,3 +159,54 @@ def test_a_frame_in_a_file_is_each_robots_own(folder: Path) -> None:
     assert (
         "{child: base_link, parent: wheel_odom/robot1, publishers: [/acme_driver_robot1]}" in plan
     )
+
+
+DEAF = """
+import rclpy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+
+
+class Pilot(Node):
+    def __init__(self):
+        super().__init__("pilot")
+        self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(Odometry, "odom", print, 10)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Pilot())
+"""
+
+
+def gaps(folder: Path, node: str) -> dict[str, str]:
+    """The level and words of each code that the plan of a built fleet has as a gap."""
+    (folder / "acme/acme/driver.py").write_text(node)
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "built")]) == 0
+    plan = from_yaml((folder / "built/plan.yaml").read_bytes(), "plan.yaml")
+    return {it.code: f"{it.level} {it.message}" for it in plan.gaps}
+
+
+def test_a_fleet_that_nothing_moves_is_not_as_planned(folder: Path) -> None:
+    found = gaps(folder, DEAF)
+    what = "nothing reads cmd_vel of acme_driver and nothing sends odom of acme_driver"
+    who = "robot 'robot1': all that it runs is known, and"
+    assert found["MF865"] == f"warning {who} {what}".replace("acme_driver", "pilot_robot1")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        pytest.param("print, 10)", "print, 10)\n        Part(self)", id="known-in-part"),
+        pytest.param('"odom"', "open('x').read()", id="a-name-of-a-run"),
+        pytest.param('Twist, "cmd_vel"', 'Twist, "plan"', id="no-command"),
+    ],
+)
+def test_what_is_known_in_part_may_be_moved(folder: Path, old: str, new: str) -> None:
+    node = DEAF.replace(old, new).replace(
+        "import rclpy\n", "import rclpy\nfrom other import Part\n"
+    )
+    found = gaps(folder, node)
+    assert "nothing reads" not in found.get("MF865", "")

@@ -20,7 +20,7 @@ def with_sources(
     orders: Iterable[LaunchOrder],
     release: str,
 ) -> dict[str, NodeFacts]:
-    """The known nodes and, by ``package/program``, those of launched ``nodes`` that are not among them
+    """The known nodes and, by ``package program``, those of launched ``nodes`` that are not among them
     and whose source is found: below the roots of the ``orders``, or beside their launch files. Raises
     nothing."""
     wanted = {(it.package, it.executable): it for it in nodes if not passes(it)}
@@ -30,14 +30,14 @@ def with_sources(
     folders: dict[str, str] = {}
     for order in orders:
         folders = {**packages_for(order.file, order.roots), **folders}
-    found = {f"{it.package}/{it.executable}": _read(it, folders, release) for it in unknown}
+    found = {f"{it.package} {it.executable}": _read(it, folders, release) for it in unknown}
     return {**known, **{name: it for name, it in found.items() if it is not None}}
 
 
 def _read(it: LaunchedNode, folders: Mapping[str, str], release: str) -> NodeFacts | None:
     if it.package not in folders:
         return None
-    folder, name = folders[it.package], f"{it.package}/{it.executable}"
+    folder, name = folders[it.package], f"{it.package} {it.executable}"
     try:
         found = node_of_program(folder, it.package, it.executable, folders, release)
     except UsageError as error:

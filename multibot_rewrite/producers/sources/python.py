@@ -16,6 +16,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.sources.records import (
     ANY,
     OTHERWISE,
+    Alias,
     Call,
     Class,
     Constructor,
@@ -76,7 +77,9 @@ def read_python(text: str, place: Place) -> Source:
         parts = [_read(node, names, place) for node in tree.body]
     except RecursionError:
         return Source(faults=((place, "is nested too deeply"),))
-    return joined([*parts, Source(imports=tuple(dict.fromkeys(_modules(tree))))])
+    aliases = tuple(Alias("", name, full.replace(".", "::")) for name, full in names.items())
+    modules = tuple(dict.fromkeys(_modules(tree)))
+    return joined([*parts, Source(aliases=aliases, imports=modules)])
 
 
 def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:

@@ -228,10 +228,17 @@ def default_of(names: Names, spot: Spot, parameter: str) -> str | None:
 
 def type_in(names: Names, spot: Spot, type_: str) -> str:
     """A type as ROS writes it, by the names that it has where it is used; empty for another one."""
+    if type_.isidentifier():
+        # A type may be given, as a name may.
+        type_ = text_in(names, spot, f"<{type_}>").strip("<>") or type_
     for _ in range(DEEPEST):
         ros = _ROS_TYPE.search(type_)
         if ros:
             return "/".join(ros.groups())
+        head, point, rest = type_.partition(".")
+        if point:
+            type_ = f"{_alias(names, spot, head)}::{rest}"
+            continue
         name = last(type_.removeprefix("typename "))
         known = spot.made.types.get(name, "")
         near = known if known and known != type_ else _alias(names, spot, name)
