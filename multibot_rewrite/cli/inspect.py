@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.codes import near_name
 from multibot_rewrite.base.model import SiteRow, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.cli import explain, xacro_arguments
+from multibot_rewrite.cli import explain, node_source, xacro_arguments
 from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
@@ -42,6 +42,8 @@ def run(options: argparse.Namespace) -> int:
     if options.suggest is not None:
         return draft(options)
     words = plain_words(options)
+    if len(words) == 1 and node_source.is_program(words[0]):
+        return node_source.run(options, words[0])
     paths = any(map(_is_path, words))
     if not paths and explain.are_codes(words):
         return explain.run(options, words)

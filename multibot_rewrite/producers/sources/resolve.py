@@ -222,8 +222,14 @@ def default_of(names: Names, spot: Spot, parameter: str) -> str | None:
         found = {text_in(names, _where(spot, it), it.text, parameter) for it in rows}
         if found:
             only = found.pop()
-            return only if not found and ("<" not in only or only in FLAGS) else None
+            return only if not found and ("<" not in only or _is_value(only)) else None
     return None
+
+
+def _is_value(text: str) -> bool:
+    """Is it true, false or a number?"""
+    number = text[1:-1].replace(".", "", 1).lstrip("-")
+    return text in FLAGS or (number.isdigit() and text[:1] == "<")
 
 
 def type_in(names: Names, spot: Spot, type_: str) -> str:
