@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot inspect PACKAGE_FOLDER/PROGRAM``: what a node does by its source, each with file and line."""
+"""``multibot inspect PACKAGE_FOLDER/PROGRAM``: what a node does by its source, each with its place."""
 
 from __future__ import annotations
 

@@ -14,8 +14,11 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES
 
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
+from multibot_rewrite.producers.sources import files, syntax
 from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
 from multibot_rewrite.spelling.of_runs import ends_of, with_names
 from multibot_rewrite.spelling.records import Given, Run
@@ -351,19 +354,27 @@ def test_nothing_is_imported_or_run(acme: Path, tmp_path: Path) -> None:
     assert "antigravity" not in sys.modules
 
 
-@pytest.mark.parametrize("package", ["tree_sitter", "tree_sitter_cpp"])
-def test_cpp_without_its_extra_says_what_to_install(
-    acme: Path, monkeypatch: pytest.MonkeyPatch, package: str
-) -> None:
-    from multibot_rewrite.base.model import UsageError
-    from multibot_rewrite.producers.sources import files, syntax
-
-    monkeypatch.setitem(sys.modules, package, None)
+@pytest.fixture
+def without_reader(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("tree_sitter", "tree_sitter_cpp"):
+        monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.setattr(syntax, "find_spec", lambda name: None)
     syntax._tools.cache_clear()
     files._parsed.cache_clear()
+
+
+@pytest.mark.usefixtures("without_reader")
+def test_cpp_without_its_extra_says_what_to_install(acme: Path) -> None:
     with pytest.raises(UsageError, match=r"multibot_rewrite\[sources\]"):
         read("driver_node", acme)
 
 
-def test_an_endpoint_is_a_record_of_the_library() -> None:
-    assert all(isinstance(it, Endpoint) for it in read("plain").facts.endpoints)
+@pytest.mark.usefixtures("without_reader")
+def test_a_launched_node_in_cpp_without_the_extra(
+    acme: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    launch = acme / "one.launch.xml"
+    launch.write_text('<launch><node pkg="acme" exec="driver_node"/></launch>')
+    main(["check-launch", str(launch)])
+    said = capsys.readouterr().err
+    assert "1 node not known" in said and "multibot_rewrite[sources]" in said

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.knowledge.records import UNKNOWN, NodeFacts, Untold
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.known_node import known_node
 from multibot_rewrite.producers.launch.of_robot import passes
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
@@ -35,12 +36,12 @@ def with_sources(
 
 
 def _read(it: LaunchedNode, folders: Mapping[str, str], release: str) -> NodeFacts | None:
-    if it.package not in folders:
-        return None
-    folder, name = folders[it.package], f"{it.package} {it.executable}"
-    try:
-        found = node_of_program(folder, it.package, it.executable, folders, release)
-    except UsageError as error:
-        run = {"component": it.executable} if it.container else {"programs": (it.executable,)}
-        return UNKNOWN._replace(name=name, package=it.package, untold=(Untold(f"{error}"),), **run)
-    return found.facts._replace(known=name) if found else None
+    found = None
+    if it.package in folders:
+        with suppress(
+            UsageError
+        ):  # C++ without its reader: who says that a node is not known, says so
+            found = node_of_program(
+                folders[it.package], it.package, it.executable, folders, release
+            )
+    return found.facts._replace(known=f"{it.package} {it.executable}") if found else None

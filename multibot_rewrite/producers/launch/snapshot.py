@@ -52,6 +52,7 @@ from multibot_rewrite.producers.launch.running import (
 )
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_on
+from multibot_rewrite.producers.sources.syntax import or_read
 from multibot_rewrite.spelling.of_runs import each_once, ends_of, lookups_of, with_names
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import parameter_text
@@ -214,12 +215,9 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Cave
     ]
     if unknown:
         listed = shorten(unknown, SEVERAL)
-        hint = "describe them in a file of nodes (--nodes, docs/stacks.md)"
+        hint = f"describe them in a file of nodes (--nodes, docs/stacks.md){or_read()}"
         text = f"{plural(len(unknown), 'node')} not known, with all topics and frames: {listed}"
-        why = "; ".join(
-            unique(one.text for it in nodes if not it.is_known for one in it.fact.untold)
-        )
-        yield Caveat(NOT_KNOWN, True, f"{text}; {why or hint}")
+        yield Caveat(NOT_KNOWN, True, f"{text}; {hint}")
     yield from _partly(it for it in nodes if it.is_known and it.fact.untold)
     treeless = [it.full_name for it in nodes if publishes_a_tree(it) and tree_of(it) is None]
     if treeless:
