@@ -22,6 +22,7 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import SiteRow, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.wording import clip, shorten
+from multibot_rewrite.cli import node_source
 from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
@@ -65,6 +66,8 @@ def run(options: argparse.Namespace) -> int:
         from multibot_rewrite.cli import launched  # only a fleet needs it
 
         return launched.run(options, words[0])
+    if len(words) == 1 and node_source.is_program(words[0]):
+        return node_source.run(options, words[0])
     paths = any(map(_is_path, words))
     if not paths and are_codes(words):
         return explain(options, words)

@@ -19,6 +19,7 @@ from multibot_rewrite.fleet.checks.shared_names import shared_by_nothing
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart
 from multibot_rewrite.fleet.launch.launched_robot import (
     given_with,
+    known_here,
     launched_robot,
     nodes_with,
     under_plugins,
@@ -113,7 +114,8 @@ def make_fleet(
     ``trust`` lets a xacro file do anything; ``launch`` are the launch files that start each robot's
     nodes. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    known = known_nodes(nodes, release, nodl).library.nodes
+    library = known_nodes(nodes, release, nodl).library
+    known = known_here(library.nodes, launch, robots[0], release)
     facts = facts_of(stacks, nodes, release, nodl)
     usual = load_known_nodes(nodes or "", release)
     launched = launched_robot(facts, launch, known, robots[:1], usual, release)

@@ -31,7 +31,7 @@ from multibot_rewrite.base.releases import has_release
 
 Values = Callable[[str], object]
 RELEASE, VERSION, PROGRAM, HEARD, UNSENT = "release", "version", "program", "heard", "unsent"
-OPEN_KIND, CHOSEN, NODL = "open", "chosen", "nodl"
+OPEN_KIND, CHOSEN, NODL, SOURCE = "open", "chosen", "nodl", "source"
 # Subject -> what its words are, and who decides.
 KINDS = {
     "given": "a parameter that whoever starts it passes: its parameters",
@@ -54,6 +54,7 @@ OPEN = {
     "code": "only as its code was built",
     "file": "only if a file says so",
     NODL: "its NoDL file does not have it",
+    SOURCE: "only if its code comes to it",
 }
 AND, OR, ALSO = " and ", " or ", "|"
 # A kind, or what is asked of a parameter -> how people read it.

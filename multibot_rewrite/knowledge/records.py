@@ -64,7 +64,9 @@ class Endpoint(NamedTuple):
 class FrameParameter(NamedTuple):
     """A parameter that holds a frame id, and its default; no remap rule reaches frame ids.
 
-    ``given`` is true where a robot's own files set it.
+    ``given`` is true where a robot's own files set it. ``in_code`` is true for a frame that no layout
+    changes: its code writes it, or nobody sees that its parameter holds a frame; ``is_kept`` is true
+    for a default that none changes where no file sets it.
     ``releases`` and ``source`` as in ``Endpoint``.
     """
 
@@ -73,6 +75,8 @@ class FrameParameter(NamedTuple):
     releases: str = ""
     source: tuple[str, ...] = ()
     given: bool = False
+    in_code: bool = False
+    is_kept: bool = False
 
 
 class Param(NamedTuple):
@@ -154,6 +158,14 @@ class Claim(NamedTuple):
     releases: str = ""
 
 
+class Untold(NamedTuple):
+    """What the source of a node does not tell before it runs, with its place; a value of its
+    ``parameter`` tells it."""
+
+    text: str
+    parameter: str = ""
+
+
 class NodeFacts(NamedTuple):
     """A known node: its default name, its package, and its endpoints.
 
@@ -175,6 +187,7 @@ class NodeFacts(NamedTuple):
     ``usual`` are the parameters of the stack's own file, for a robot none of whose files has any.
     ``prefix_switch`` is a parameter: unless it is false, the node puts its namespace before its frames.
     ``is_known`` is false for a node that nobody knows: its ends are those that its remap rules name.
+    ``untold`` is what its source does not tell.
     """
 
     name: str
@@ -205,6 +218,7 @@ class NodeFacts(NamedTuple):
     usual: tuple[tuple[str, str | float], ...] = ()
     by_sensor: tuple[tuple[str, tuple[tuple[str, str | float], ...]], ...] = ()
     is_known: bool = True
+    untold: tuple[Untold, ...] = ()
 
     @property
     def kind(self) -> str:

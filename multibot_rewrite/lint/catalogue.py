@@ -31,6 +31,7 @@ HOMES = (
     "fleet.launch.launched_prefix",
     "fleet.file.filled_arguments",
     "fleet.robots.simulators",
+    "fleet.checks.nothing_moves",
     "fleet.checks.lacking",
     "fleet.checks.other_manager",
     "fleet.robots.joined_robots",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.conventions import BY_HAND, SENT_BY_EVERY_NODE, USUAL_FRAMES
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
+from multibot_rewrite.knowledge.records import UNKNOWN, NodeFacts
 from multibot_rewrite.spelling.of_runs import each_once, ends_of
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.ways import HOST, PLUGIN, PROCESS, deliveries
@@ -132,22 +133,23 @@ def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
     for it in nodes:
         way, taker = ways.get(it.name, ("", ""))
         stack, place = origins.get(it.name, NO_ORIGIN)
-        plugin = plugins.get(it.name, NOWHERE)
+        plugin, fact = plugins.get(it.name, NOWHERE), known.get(it.name, UNKNOWN)
         yield it._replace(
             way=way,
             taker=taker,
             plugin=plugin,
             stack=stack,
             place=place,
-            known=known.get(it.name, ""),
+            known=fact.kind,
+            untold=tuple(one.text for one in fact.untold),
         )
 
 
-def _known(table: Table) -> Iterator[tuple[str, str]]:
+def _known(table: Table) -> Iterator[tuple[str, NodeFacts]]:
     """What each known node is, also of those that it makes for itself."""
     for run in (it for it in table.runs if it.fact.is_known):
-        yield run.full_name, run.fact.kind
-        yield from ((f"{run.full_name}{it.by}", run.fact.kind) for it, _ in run.names if it.by)
+        yield run.full_name, run.fact
+        yield from ((f"{run.full_name}{it.by}", run.fact) for it, _ in run.names if it.by)
 
 
 def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:

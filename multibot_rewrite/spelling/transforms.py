@@ -51,7 +51,7 @@ def edges_of(
         named = _once(by_naming) if _is_static(node) else by_naming
         frames = [
             frame._replace(default=plain.get(("link", frame.default)) or named(frame.default))
-            if frame.default
+            if frame.default and not (frame.in_code or frame.is_kept)
             else frame
             for frame in node.frames
         ]

@@ -26,13 +26,15 @@ LAUNCHED, SEEN = "launched", "seen"
 class Covered(NamedTuple):
     """The nodes of a robot (or those for all robots, with an empty name): how many there are, of how
     many it is ``known`` what they do, how many are in the graph (``seen``), and how many of these
-    were ``silent``: asked for their state, and no answer came."""
+    were ``silent``: asked for their state, and no answer came. Of ``partly``
+    many of the known ones their source does not tell all."""
 
     robot: str
     nodes: int
     known: int
     seen: int
     silent: int
+    partly: int = 0
 
     @property
     def unknown(self) -> int:
@@ -66,7 +68,8 @@ class Coverage(NamedTuple):
     def is_whole(self) -> bool:
         """Is all read and all nodes known, did all answer that were asked, and was any seen?"""
         total, lost = self.total, self.compared and not self.total.seen
-        return not (total.unknown or total.silent or lost or self.unread or self.processes)
+        left = total.unknown or total.partly or self.unread or self.processes
+        return not (left or total.silent or lost)
 
 
 def coverage(system: System, graph: System | None = None) -> Coverage:
@@ -86,7 +89,8 @@ def coverage(system: System, graph: System | None = None) -> Coverage:
         known = sum(not told or _is_known(it) or it.name in ends for it in own)
         seen = there.intersection(it.name for it in own)
         silent = len(seen.difference(answers)) if answers else 0
-        rows.append(Covered(robot, len(own), known, len(seen), silent))
+        partly = sum(bool(it.untold) for it in own)
+        rows.append(Covered(robot, len(own), known, len(seen), silent, partly))
     unread = sum(it.code == NOT_READ for it in system.gaps)
     processes = sum(it.code == NOT_KNOWN_PROCESS for it in system.gaps)
     more = len(doubts(graph or system)), unread, processes
@@ -120,14 +124,15 @@ def in_words(held: Coverage) -> str:
 def _details(held: Coverage) -> Iterator[str]:
     total = held.total
     if held.told and not total.unknown:
-        yield "all known"
+        yield f"all known{_in_part(total)}"
     elif held.told:
         alike = len({it[1:3] for it in held.robots}) == 1
         shown = held.robots[0] if alike else total
         whose = (f"{it.robot or 'for all'} {it.unknown}" for it in held.robots if it.unknown)
         where = "" if alike else f" ({shorten(whose, SEVERAL)})"
         verb = "it is" if shown.unknown == 1 else "they are"
-        yield f"{shown.known} known, {shown.unknown} started as {verb}{where}"
+        known = f"{shown.known} known{_in_part(shown)}"
+        yield f"{known}, {shown.unknown} started as {verb}{where}"
     if held.compared:
         count = "all" if total.seen == total.nodes else f"{total.seen} of {total.nodes}"
         yield f"{count} {held.compared}"
@@ -138,6 +143,10 @@ def _details(held: Coverage) -> Iterator[str]:
         yield f"{plural(held.processes, 'other process')} started as {verb}"
     if held.unread:
         yield f"{plural(held.unread, 'part')} of launch files not read"
+
+
+def _in_part(shown: Covered) -> str:
+    return f" ({shown.partly} in part)" if shown.partly else ""
 
 
 def as_value(held: Coverage) -> Mapping[str, object]:
@@ -153,6 +162,7 @@ def _row(held: Coverage, row: Covered) -> Mapping[str, object]:
     return {
         "nodes": row.nodes,
         "known": row.known if told else None,
+        "in_part": row.partly if told else None,
         "as_they_are": row.unknown if told else None,
         "seen": row.seen if compared else None,
         "silent": row.silent if asked else None,

@@ -160,7 +160,8 @@ class Node(NamedTuple):
     ``host`` is any word: nodes of one host run on one machine, those of two on two. ``way`` is how it
     gets its remap rules if not by --ros-args of its own (``remap.ways``), ``taker`` the node that takes
     them for it. ``plugin`` is where a description has the plugin that starts it, ``place`` what else
-    names it, ``stack`` the stack that it is from. ``known`` is what its stack or file calls it.
+    names it, ``stack`` the stack that it is from. ``known`` is what its stack or file
+    calls it, ``untold`` what its source does not tell before it runs, each with its place.
     """
 
     name: FullName
@@ -176,6 +177,7 @@ class Node(NamedTuple):
     place: Place = NOWHERE
     plugin: Place = NOWHERE
     known: str = ""
+    untold: tuple[str, ...] = ()
 
 
 class End(NamedTuple):

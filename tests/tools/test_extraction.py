@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.producers.sources.records import Class, Place
 from tools.interfaces.__main__ import main
 from tools.interfaces.checkouts import read_folder
 from tools.interfaces.nodes import facts_of
-from tools.interfaces.records import Class, Place
 from tools.interfaces.scope import indexed
 from tools.interfaces.table import COLUMNS, from_table, to_table
 

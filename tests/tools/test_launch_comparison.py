@@ -12,6 +12,7 @@ import pytest
 from paths import FIXTURES, ROOT
 
 from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.producers.sources.records import Place
 from tools.interfaces.launch_comparison import (
     NOT_OURS,
     NOT_STARTED,
@@ -25,7 +26,6 @@ from tools.interfaces.launch_comparison import (
 )
 from tools.interfaces.launch_files import LaunchedNode
 from tools.interfaces.parameter_tables import LaunchFact, launch_lines, read_launches
-from tools.interfaces.records import Place
 
 TABLES = FIXTURES / "interfaces"
 STACKS = (ROOT / "multibot_rewrite" / "knowledge" / "stacks.yaml").read_text()

@@ -16,6 +16,7 @@ from paths import FIXTURES
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.declared import DECLARED, YAML
 from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.producers.sources.records import Place
 from tools.interfaces.declared_table import plugin_owners
 from tools.interfaces.parameter_comparison import (
     DEFAULT,
@@ -28,7 +29,6 @@ from tools.interfaces.parameter_comparison import (
     same,
 )
 from tools.interfaces.parameter_facts import ParameterFact, parameter_lines, read_parameters
-from tools.interfaces.records import Place
 
 TABLES = FIXTURES / "interfaces"
 LEAST_FACTS = 1400

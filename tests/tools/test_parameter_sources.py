@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import pytest
 
+from multibot_rewrite.producers.sources.cpp import read_cpp
+from multibot_rewrite.producers.sources.records import Place
 from multibot_rewrite.rules.files.parameter_files import file_parameters
-from tools.interfaces.cpp import read_cpp
 from tools.interfaces.declared_parameters import cpp_parameters, python_parameters, shared_constants
-from tools.interfaces.records import Place
 
 PLACE = Place("acme/nav", "1.0.0", "nav/src/nav.cpp")
 

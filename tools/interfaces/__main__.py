@@ -19,12 +19,12 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.producers.sources.records import joined
 from tools.interfaces import plugin_files, sdf_elements
 from tools.interfaces.checkouts import read_folder
 from tools.interfaces.compare import difference_of, differences
 from tools.interfaces.known_nodes import extracted, unlisted
 from tools.interfaces.nodl_files import nodl_of
-from tools.interfaces.records import joined
 from tools.interfaces.scope import indexed
 from tools.interfaces.table import to_table
 

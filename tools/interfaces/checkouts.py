@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from multibot_rewrite.base.model import UsageError
-from tools.interfaces.cpp import read_cpp
-from tools.interfaces.python import read_python
-from tools.interfaces.records import Place, Source, joined
+from multibot_rewrite.producers.sources.cpp import read_cpp
+from multibot_rewrite.producers.sources.python import read_python
+from multibot_rewrite.producers.sources.records import Place, Source, joined
 
 READERS = {".cpp": read_cpp, ".cc": read_cpp, ".hpp": read_cpp, ".h": read_cpp, ".py": read_python}
 # Not what a robot runs.

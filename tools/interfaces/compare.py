@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.records import Endpoint
-from tools.interfaces.records import Class, Fact
+from multibot_rewrite.producers.sources.records import Class, Fact
 
 # Parts of ours that come from rclcpp and rclcpp_lifecycle, which are not read.
 NOT_READ = ("every_node", "lifecycle")

@@ -15,10 +15,10 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.declared import DECLARED, READ
+from multibot_rewrite.producers.sources.expressions import is_node
+from multibot_rewrite.producers.sources.records import Call, Place, Source, Value
 from multibot_rewrite.rules.files.parameter_files import NO_DEFAULT, text_of
-from tools.interfaces.expressions import is_node
 from tools.interfaces.parameter_facts import ParameterFact
-from tools.interfaces.records import Call, Place, Source, Value
 
 ID = "<id>"
 _UNKNOWN = re.compile(r"<([^<>]*)>")

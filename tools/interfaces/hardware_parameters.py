@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from tools.interfaces.expressions import last, text_of
+from multibot_rewrite.producers.sources.expressions import last, text_of
+from multibot_rewrite.producers.sources.syntax import nodes_of
 from tools.interfaces.plugin_demands import is_conditional
 from tools.interfaces.plugin_parameters import ANY, Parameter
-from tools.interfaces.syntax import nodes_of
 
 if TYPE_CHECKING:
-    from tools.interfaces.syntax import Node
+    from multibot_rewrite.producers.sources.syntax import Node
 
 _BASES = ("SystemInterface", "ActuatorInterface", "SensorInterface")
 _KEY = re.compile(

@@ -9,8 +9,8 @@ from functools import cache
 from importlib.resources import files
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.sources.records import Class, Fact, Place
 from tools.interfaces.nodes import facts_of
-from tools.interfaces.records import Class, Fact, Place
 from tools.interfaces.scope import Index
 
 # What a name that is made at run time depends on.

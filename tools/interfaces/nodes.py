@@ -8,9 +8,9 @@ from collections import deque
 from collections.abc import Iterator
 
 from multibot_rewrite.base.record import NamedTuple
-from tools.interfaces.apis import ARGUMENT, HELPER, OWN, Api, apis
-from tools.interfaces.expressions import is_node, last, template_arguments
-from tools.interfaces.records import Call, Class, Fact
+from multibot_rewrite.producers.sources.apis import ARGUMENT, HELPER, OWN, Api, apis
+from multibot_rewrite.producers.sources.expressions import is_node, last, template_arguments
+from multibot_rewrite.producers.sources.records import Call, Class, Fact
 from tools.interfaces.scope import (
     Index,
     Resolved,

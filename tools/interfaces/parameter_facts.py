@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.record import NamedTuple
-from tools.interfaces.records import Place
+from multibot_rewrite.producers.sources.records import Place
 
 # Of a place: repository, version, path, line.
 PLACE_COLUMNS = 4

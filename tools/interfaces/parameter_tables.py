@@ -17,8 +17,9 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.declared import READ, YAML
+from multibot_rewrite.producers.sources.cpp import read_cpp
+from multibot_rewrite.producers.sources.records import Place
 from multibot_rewrite.rules.files.parameter_files import file_parameters
-from tools.interfaces.cpp import read_cpp
 from tools.interfaces.declared_parameters import (
     cpp_parameters,
     python_parameters,
@@ -26,7 +27,6 @@ from tools.interfaces.declared_parameters import (
 )
 from tools.interfaces.launch_files import LaunchedNode, launched_nodes
 from tools.interfaces.parameter_facts import PLACE_COLUMNS, ParameterFact, parameter_lines
-from tools.interfaces.records import Place
 
 _CPP = (".cpp", ".cc", ".hpp", ".h")
 _LAUNCH = (".py", ".xml", ".yaml", ".yml", ".launch")

@@ -7,11 +7,11 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from tools.interfaces.expressions import text_of
-from tools.interfaces.syntax import nodes_of
+from multibot_rewrite.producers.sources.expressions import text_of
+from multibot_rewrite.producers.sources.syntax import nodes_of
 
 if TYPE_CHECKING:
-    from tools.interfaces.syntax import Node
+    from multibot_rewrite.producers.sources.syntax import Node
 
 # What is inside of these may be left out.
 CONDITIONAL = (

@@ -15,12 +15,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.record import NamedTuple
-from tools.interfaces.expressions import text_of
+from multibot_rewrite.producers.sources.expressions import text_of
+from multibot_rewrite.producers.sources.syntax import nodes_of
 from tools.interfaces.plugin_demands import required_in, words_in
-from tools.interfaces.syntax import nodes_of
 
 if TYPE_CHECKING:
-    from tools.interfaces.syntax import Node
+    from multibot_rewrite.producers.sources.syntax import Node
 
 READS = (
     *("Get", "HasElement", "GetElement", "FindElement", "GetElementImpl", "GetNextElement"),

@@ -8,8 +8,8 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from typing import TypeVar
 
 from multibot_rewrite.base.record import NamedTuple
-from tools.interfaces.expressions import last, template_arguments
-from tools.interfaces.records import (
+from multibot_rewrite.producers.sources.expressions import last, template_arguments
+from multibot_rewrite.producers.sources.records import (
     Alias,
     Call,
     Class,

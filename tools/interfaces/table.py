@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tools.interfaces.records import Fact, Place
+from multibot_rewrite.producers.sources.records import Fact, Place
 
 COLUMNS = (*Place._fields[:-1], *Fact._fields[:-1])
 

@@ -11,6 +11,7 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.fleet.checks.across_domains import not_across
 from multibot_rewrite.fleet.checks.judged import contradicted, left_open
+from multibot_rewrite.fleet.checks.nothing_moves import unmoved
 from multibot_rewrite.fleet.checks.robot_system import (
     as_written,
     beside,
@@ -130,6 +131,7 @@ def _gaps(
         found = (
             *left_open(robot, before, after, whose, texts),
             *unread_drives(robot, loads),
+            *unmoved(robot, evidence.nodes, after),
         )
         alike = tuple(it.spec.name for it in group.robots)
         several = alike if len(alike) > 1 else ()

@@ -96,6 +96,7 @@ def launched_by(
     they are for; ``nodes`` and ``nodl`` are files of the user's own nodes. Raises InputError for a
     file that cannot be read."""
     from multibot_rewrite.producers.launch.child import launch_graph
+    from multibot_rewrite.producers.launch.from_source import with_sources
     from multibot_rewrite.producers.launch.records import joined
     from multibot_rewrite.producers.launch.running import Knowledge
     from multibot_rewrite.producers.launch.snapshot import launched
@@ -104,7 +105,8 @@ def launched_by(
     said = release_of_launch(told, graph.packages, graph.texts, orders[0].file)
     library = known_nodes(nodes, said.release, nodl).library
     parameters = load_known_nodes(nodes or "", said.release)
-    made = launched(graph, Knowledge(library.nodes, parameters, said.release))
+    known = with_sources(library.nodes, graph.nodes, orders, said.release)
+    made = launched(graph, Knowledge(known, parameters, said.release))
     seen = made.system.environment
     why = said.why or "the newest long-term release, as nothing says which; see --distro"
     which = Caveat(RELEASE, False, f"read for ROS 2 {said.release}: {why}")

@@ -15,6 +15,7 @@ from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.nodes import RobotNodes, nodes_of
 from multibot_rewrite.producers.evidence.remapped import under_plugin
 from multibot_rewrite.producers.launch.child import launch_graph
+from multibot_rewrite.producers.launch.from_source import with_sources
 from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, joined
 from multibot_rewrite.spelling.records import Run
@@ -40,6 +41,17 @@ def launched_robot(
     mine = _own(orders, words[0])
     graph = launch_of(orders, words[0])
     return with_launched(stack, graph, known, {*words, *_values(mine)}, parameters, release)
+
+
+def known_here(
+    known: Mapping[str, NodeFacts],
+    orders: Sequence[LaunchOrder],
+    robot: str,
+    release: str,
+) -> dict[str, NodeFacts]:
+    """The known nodes, and what these launch files start, by its source; raises as
+    ``launched_robot``."""
+    return with_sources(known, launch_of(orders, robot).nodes if orders else (), orders, release)
 
 
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:

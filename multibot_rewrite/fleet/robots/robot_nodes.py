@@ -24,6 +24,7 @@ from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.fleet import facts_of, known_nodes
 from multibot_rewrite.fleet.launch.launched_robot import (
     given_with,
+    known_here,
     launched_robot,
     nodes_with,
     under_plugins,
@@ -125,6 +126,7 @@ def robot_nodes(
     stack = tuple(it for it in stack_nodes(spec, file) if _is_needed(it, spec, member))
     if spec.simulator != REAL:
         stack = (*stack, *_manager_in_plugin(stack, own, member, file.distro))
+    known = known_here(known, spec.launch, spec.words[0], file.distro)
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}

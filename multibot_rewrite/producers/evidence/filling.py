@@ -49,6 +49,7 @@ def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeF
         endpoints=tuple(dict.fromkeys(made)),
         sends=tuple(sent_with(with_frames, values)),
         origin=Origin(place=given.place),
+        untold=tuple(it for it in node.untold if it.parameter not in values),
     )
 
 
@@ -70,7 +71,7 @@ def _frame(frame: FrameParameter, values: Mapping[str, Given]) -> FrameParameter
         # <pose_name> stands for the value of another parameter.
         other = values.get(frame.default.strip("<>")) if "<" in frame.default else None
         return frame if other is None else frame._replace(default=str(other.value), given=True)
-    return frame._replace(default=str(given.value), given=True)
+    return frame._replace(default=str(given.value), given=True, is_kept=False)
 
 
 def _endpoint(

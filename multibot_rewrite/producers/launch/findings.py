@@ -12,6 +12,7 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
+from multibot_rewrite.producers.sources.syntax import or_read
 from multibot_rewrite.system.records import NOT_KNOWN_PROCESS, NOT_READ, Place
 
 NOT_LAUNCHED = declare("MF821", "node-not-launched", NOTE, formats=("fleet",))
@@ -48,7 +49,8 @@ def launch_findings(
         yield NOT_WHOLE.finding(note.message, hint, **_place(note.place))
     for name, it in unknown.items():
         message = f"node {name} ({it.package} {it.executable}) is not known"
-        hint = "describe it in a file of nodes (docs/stacks.md); the plan has its name alone"
+        hint = f"describe it in a file of nodes (docs/stacks.md){or_read()}"
+        hint = f"{hint}; the plan has its name alone"
         if handed[name].names:
             hint = f"{hint}, build hands on {shorten(handed[name].names)}"
         yield NOT_KNOWN.finding(message, hint, **_place(it.place))

@@ -267,7 +267,7 @@ def _started(
         # A name of its own each time (tf2_ros static_transform_broadcaster_node.cpp).
         name = f"{name}_{process}"
     home = container.remappings if container else () if it.container else it.remappings
-    inside = () if facts is None else [n for n in known.nodes.values() if n.host == facts.name]
+    inside = () if facts is None else [n for n in known.nodes.values() if n.host == facts.kind]
     hosted = {expand(n.name, it.namespace, ""): n for n in inside if facts and not n.is_controller}
     documents = [document_of(text.file, text.text) for text in it.parameters if has_sections(text)]
     handed_on = it.container and has_release(COSTMAP_HAS_RULES_OF_ITS_PARENT, known.release)

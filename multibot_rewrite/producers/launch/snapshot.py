@@ -52,6 +52,7 @@ from multibot_rewrite.producers.launch.running import (
 )
 from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_on
+from multibot_rewrite.producers.sources.syntax import or_read
 from multibot_rewrite.spelling.of_runs import each_once, ends_of, lookups_of, with_names
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import parameter_text
@@ -185,8 +186,8 @@ def _addresses(it: Run, known: Knowledge, models: Models) -> Iterator[Address]:
 def _nodes(running: Iterable[Run], parts: Iterable[_Part]) -> Iterator[Node]:
     """The nodes, each with those that its code makes beside it (``Endpoint.by``)."""
     for it, part in zip(running, parts, strict=True):
-        known = it.fact.kind
-        yield Node(part.name, it.process, place=it.place, known=known)
+        known, untold = it.fact.kind, tuple(one.text for one in it.fact.untold)
+        yield Node(part.name, it.process, place=it.place, known=known, untold=untold)
         own = dict.fromkeys(end.node for end in part.endpoints if end.node != part.name)
         yield from (Node(name, it.process, place=it.place, known=known) for name in own)
 
@@ -214,13 +215,22 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Cave
     ]
     if unknown:
         listed = shorten(unknown, SEVERAL)
-        hint = "describe them in a file of nodes (--nodes, docs/stacks.md)"
+        hint = f"describe them in a file of nodes (--nodes, docs/stacks.md){or_read()}"
         text = f"{plural(len(unknown), 'node')} not known, with all topics and frames: {listed}"
         yield Caveat(NOT_KNOWN, True, f"{text}; {hint}")
+    yield from _partly(it for it in nodes if it.is_known and it.fact.untold)
     treeless = [it.full_name for it in nodes if publishes_a_tree(it) and tree_of(it) is None]
     if treeless:
         text = f"the description is not known, so neither are its frames: {shorten(treeless)}"
         yield Caveat(NO_TREE, True, text)
+
+
+def _partly(nodes: Iterable[Run]) -> Iterator[Caveat]:
+    """What the source of nodes does not tell."""
+    texts = [f"{it.full_name} ({it.fact.untold[0].text})" for it in nodes]
+    if texts:
+        text = f"{plural(len(texts), 'node')} known in part, by their source: {shorten(texts)}"
+        yield Caveat(NOT_KNOWN, True, text)
 
 
 def _of_bridges(nodes: Sequence[Run], inside: Sent) -> Iterator[Caveat]:

@@ -6,24 +6,28 @@ What is looked for is data: ``HANDLERS`` has a function for each kind of syntax.
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from tools.interfaces.expressions import (
+from multibot_rewrite.producers.sources.expressions import (
     MAKERS,
     MESSAGE,
     NAMES_PARAMETER,
     arguments_of,
     braced,
     callee,
+    dotted,
     evaluated,
     is_node,
     last,
     template_arguments,
     text_of,
 )
-from tools.interfaces.records import (
+from multibot_rewrite.producers.sources.records import (
+    ANY,
+    OTHERWISE,
     Alias,
     Call,
     Class,
@@ -33,14 +37,22 @@ from tools.interfaces.records import (
     Source,
     Value,
 )
-from tools.interfaces.syntax import nodes_of
+from multibot_rewrite.producers.sources.syntax import nodes_of
 
 if TYPE_CHECKING:
-    from tools.interfaces.syntax import Node
+    from multibot_rewrite.producers.sources.syntax import Node
 
 LONGEST_CONDITION = 60
 _EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*,?\s*\)")
 _COMPONENT = re.compile(r"^\s*RCLCPP_COMPONENTS_REGISTER_NODE\(\s*([\w:]+)\s*\)", re.MULTILINE)
+_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([^>\"\n]+)[>\"]", re.MULTILINE)
+# Below these a thing happens only sometimes, or later.
+_SOMETIMES = {
+    *("for_statement", "for_range_loop", "while_statement", "do_statement", "case_statement"),
+    *("catch_clause", "lambda_expression", "conditional_expression", "preproc_if", "preproc_ifdef"),
+    *("preproc_else", "preproc_elif"),
+}
+_LEAVES = {"return_statement", "break_statement", "continue_statement", "goto_statement"}
 _MACRO = re.compile(r"\b[A-Z][A-Z0-9_]*_(?:PUBLIC|EXPORT|LOCAL)\b")
 
 
@@ -53,7 +65,8 @@ def read_cpp(text: str, place: Place) -> Source:
             found[type(item)].append(item)
     found[Plugin] = [Plugin(last(one), last(base)) for one, base in _EXPORT.findall(text)]
     found[Call] += [_component(it, place) for it in _COMPONENT.findall(text)]
-    return Source(*(tuple(found[kind]) for kind in _COLUMNS))
+    read = Source(*(tuple(found[kind]) for kind in _COLUMNS))
+    return read._replace(imports=tuple(dict.fromkeys(_INCLUDE.findall(text))))
 
 
 def _component(name: str, place: Place) -> Call:
@@ -105,6 +118,48 @@ def _condition(node: Node) -> str:
     return ""
 
 
+def _asked(node: Node) -> str:
+    """All conditions before it in its function: what is around it, and what may end the function."""
+    found, above = [], node
+    while above.parent is not None and above.parent.type != "function_definition":
+        below, above = above, above.parent
+        if above.type == "if_statement" and below != above.child_by_field_name("condition"):
+            text = _test(above.child_by_field_name("condition"))
+            found.append(_not(text) if below.type == "else_clause" else text)
+        elif above.type in _SOMETIMES or _is_left_before(above, below):
+            found.append(OTHERWISE)
+    return "&".join(dict.fromkeys(it for it in reversed(found) if it))
+
+
+def _test(node: Node | None) -> str:
+    """A condition as a text: ``<debug_>``, ``!<debug_>``, or that it is another one."""
+    while node is not None and node.type in ("condition_clause", "parenthesized_expression"):
+        node = node.child_by_field_name("value") or next(iter(node.named_children), None)
+    if node is not None and node.type == "unary_expression" and text_of(node)[:1] == "!":
+        return _not(_test(node.child_by_field_name("argument")))
+    plain = ("identifier", "field_expression", "call_expression")
+    text = evaluated(node) if node is not None and node.type in plain else ""
+    return text if text[:1] == "<" and "(" not in text and text != ANY else OTHERWISE
+
+
+def _not(text: str) -> str:
+    return OTHERWISE if text == OTHERWISE else text[1:] if text[:1] == "!" else f"!{text}"
+
+
+def _is_left_before(block: Node, statement: Node) -> bool:
+    """May the function end in a statement before this one?"""
+    if block.type != "compound_statement":
+        return False
+    before = itertools.takewhile(lambda it: it != statement, block.named_children)
+    return any(_may_leave(it) for it in before if it.type in ("if_statement", "preproc_ifdef"))
+
+
+def _may_leave(node: Node) -> bool:
+    if node.type in _LEAVES:
+        return True
+    return any(_may_leave(it) for it in node.named_children if it.type != "lambda_expression")
+
+
 def _class(node: Node, place: Place) -> Iterator[Class]:
     body, name = node.child_by_field_name("body"), node.child_by_field_name("name")
     if body is None or name is None:
@@ -116,12 +171,11 @@ def _class(node: Node, place: Place) -> Iterator[Class]:
     heads = above.child_by_field_name("parameters") if above is not None else None
     parameters = tuple(_head(it) for it in heads.named_children) if heads else ()
     members = {
-        last(text_of(field.child_by_field_name("declarator"))): text_of(
-            field.child_by_field_name("type")
-        )
+        last(text_of(name)): text_of(field.child_by_field_name("type"))
         for field in body.named_children
         if field.type == "field_declaration"
-        and not text_of(field.child_by_field_name("declarator")).startswith(("&", "*"))
+        for name in field.children_by_field_name("declarator")
+        if not text_of(name).startswith(("&", "*"))
     }
     yield Class(last(text_of(name)), bases, parameters, members, _at(node, place))
 
@@ -143,11 +197,14 @@ def _call(node: Node, place: Place) -> Iterator[Call | Value]:
         return
     name, types, on = callee(function)
     given = arguments_of(arguments)
-    if name in MAKERS and types:
-        yield _made(node, types[0], given, place)
+    scope = text_of(function).rpartition("::")[0]
+    if name in MAKERS and (types or scope):
+        yield _made(node, types[0] if types else scope, given, place)
         return
     owner, inside = _around(node)
-    call = Call(owner, inside, name, types, given, on, _condition(node), _at(node, place))
+    call = Call(
+        *(owner, inside, name, types, given, on, _condition(node), _at(node, place)), _asked(node)
+    )
     yield call
     if NAMES_PARAMETER.fullmatch(name):
         yield from _parameter(call)
@@ -157,18 +214,21 @@ def _made(node: Node, type_: str, given: tuple[str, ...], place: Place) -> Call:
     owner, inside = _around(node)
     name = "" if MESSAGE.search(type_.partition("<")[0]) else last(type_)
     own = (name, template_arguments(type_), given, "", _condition(node), _at(node, place))
-    return Call(owner, inside, *own)
+    return Call(owner, inside, *own, _asked(node))
 
 
 def _parameter(call: Call) -> Iterator[Value]:
     """``get_parameter("p", variable)``, ``declare_parameter(node, "p", default)``."""
     texts = [it for it in call.given if not is_node(it)]
     parameter = braced(texts[0]) if texts else ""
+    at = (call.owner, call.function)
     for other in texts[1:]:
         if other.startswith("<") and call.name.startswith("get") and "(" not in other:
-            yield Value(call.owner, call.function, other.strip("<>"), f"<@{parameter}>", call.place)
+            yield Value(*at, other.strip("<>"), f"<@{parameter}>", call.place)
         elif not other.startswith("<"):
-            yield Value("", call.function, f"@{parameter}", other, call.place)
+            yield Value(*at, f"@{parameter}", other, call.place)
+    if len(texts) > 1 and not call.name.startswith("get") and texts[1].startswith("<"):
+        yield Value(*at, f"@{parameter}", texts[1], call.place)
 
 
 def _made_new(node: Node, place: Place) -> Iterator[Call]:
@@ -204,22 +264,41 @@ def _declared(node: Node, place: Place) -> Iterator[Call | Value]:
 
 def _assigned(node: Node, place: Place) -> Iterator[Value]:
     left, right = (node.child_by_field_name(it) for it in ("left", "right"))
-    yield Value(*_around(node), evaluated(left).strip("<>"), evaluated(right), place)
+    plain = text_of(node.child_by_field_name("operator")) == "="
+    text = evaluated(right) if plain else ANY
+    variable = ".".join(dotted(left)) or evaluated(left).strip("<>")
+    yield Value(*_around(node), variable, text, _at(node, place))
+
+
+def _each(node: Node, place: Place) -> Iterator[Value]:
+    """The variable of a loop over a range."""
+    name = text_of(node.child_by_field_name("declarator")).strip("& ")
+    yield Value(*_around(node), name, ANY, place)
 
 
 def _default(node: Node, place: Place) -> Iterator[Value]:
-    """The default of a function's parameter, or of a member."""
-    name, value = (node.child_by_field_name(it) for it in ("declarator", "default_value"))
-    if value is None:
-        return
+    """The default of a function's parameter, or of each member of a declaration."""
     owner, inside = _around(node)
-    yield Value(owner, inside, last(text_of(name)), evaluated(value), place)
+    name = ""
+    for at, it in enumerate(node.children):
+        field = node.field_name_for_child(at)
+        if field == "declarator":
+            name = last(text_of(it))
+        elif field == "default_value":
+            yield Value(owner, inside, name, evaluated(it), place)
 
 
 def _alias(node: Node, place: Place) -> Iterator[Alias]:
     name = text_of(node.child_by_field_name("name") or node.child_by_field_name("declarator"))
     type_ = text_of(node.child_by_field_name("type"))
     yield Alias(_around(node)[0], name, type_)
+
+
+def _macro(node: Node, place: Place) -> Iterator[Value]:
+    """``#define TOPIC "scan"``."""
+    name, text = (text_of(node.child_by_field_name(it)) for it in ("name", "value"))
+    if text[:1] == text[-1:] == '"' and text.count('"') == 2:
+        yield Value("", "", name, text[1:-1], place)
 
 
 def _used(node: Node, place: Place) -> Iterator[Alias]:
@@ -241,7 +320,13 @@ def _taking(node: Node, place: Place) -> Iterator[Constructor]:
         for it in parameters.named_children
         if it.type in ("parameter_declaration", "optional_parameter_declaration")
     )
-    yield Constructor(owner or last(full.rpartition("::")[0]), last(full), names)
+    defaults = tuple(
+        (re.split(r"[\s&*]", text_of(it.child_by_field_name("declarator")))[-1], evaluated(value))
+        for it in parameters.named_children
+        if (value := it.child_by_field_name("default_value")) is not None
+    )
+    own = owner or last(full.rpartition("::")[0])
+    yield Constructor(own, last(full), names, defaults, place.path)
 
 
 HANDLERS: dict[str, Callable[[Any, Place], Iterator[Any]]] = {
@@ -252,10 +337,12 @@ HANDLERS: dict[str, Callable[[Any, Place], Iterator[Any]]] = {
     "field_initializer": _initialised,
     "init_declarator": _declared,
     "assignment_expression": _assigned,
+    "for_range_loop": _each,
     "optional_parameter_declaration": _default,
     "field_declaration": _default,
     "alias_declaration": _alias,
     "type_definition": _alias,
+    "preproc_def": _macro,
     "using_declaration": _used,
     "function_declarator": _taking,
 }

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from functools import cache
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.model import UsageError
@@ -12,7 +13,14 @@ if TYPE_CHECKING:
     from tree_sitter import Node, Parser, QueryCursor
 
 
-__all__ = ["Node", "nodes_of"]
+__all__ = ["Node", "nodes_of", "or_read"]
+INSTALL = "pip install 'multibot_rewrite[sources]'"
+
+
+def or_read() -> str:
+    """What reads more nodes, as the rest of a hint; empty where nodes in C++ are read already."""
+    here = find_spec("tree_sitter") and find_spec("tree_sitter_cpp")
+    return "" if here else f", or read those in C++ from their source: {INSTALL}"
 
 
 def nodes_of(text: str, kinds: tuple[str, ...]) -> list[Node]:
@@ -31,9 +39,7 @@ def _tools(kinds: tuple[str, ...]) -> tuple[Parser, QueryCursor]:
         import tree_sitter
         import tree_sitter_cpp
     except ImportError:
-        raise UsageError(
-            "reading C++ needs tree-sitter; pip install tree-sitter tree-sitter-cpp"
-        ) from None
+        raise UsageError(f"reading C++ needs tree-sitter; {INSTALL}") from None
     language = tree_sitter.Language(tree_sitter_cpp.language())
     query = tree_sitter.Query(language, "\n".join(f"({kind}) @found" for kind in kinds))
     return tree_sitter.Parser(language), tree_sitter.QueryCursor(query)

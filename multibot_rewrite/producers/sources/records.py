@@ -12,6 +12,9 @@ from collections.abc import Mapping
 
 from multibot_rewrite.base.record import NamedTuple
 
+# A text of which nothing is known, and a condition that is not.
+ANY, OTHERWISE = "<?>", "?"
+
 
 class Place(NamedTuple):
     """Where something was read: a repository, its tag or commit, a path in it, a line, a package."""
@@ -28,7 +31,9 @@ class Call(NamedTuple):
 
     ``owner`` is the class that does it, empty in a free function; ``on`` the object that is asked,
     empty for none or ``this``. ``types`` are its template arguments, ``given`` its arguments.
-    ``condition`` is the text of the ``if`` around it.
+    ``condition`` is the text of the ``if`` around it. ``asked`` are all conditions before it, joined
+    by ``&``, as texts: ``<@debug>``, ``!<@debug>``, ``?`` for another one. ``named`` are arguments with
+    a name.
     """
 
     owner: str
@@ -39,6 +44,8 @@ class Call(NamedTuple):
     on: str
     condition: str
     place: Place
+    asked: str = ""
+    named: tuple[tuple[str, str], ...] = ()
 
 
 class Class(NamedTuple):
@@ -70,11 +77,13 @@ class Alias(NamedTuple):
 
 
 class Constructor(NamedTuple):
-    """The names of what a constructor or method is given."""
+    """The names of what a constructor, method or function is given, and their defaults."""
 
     owner: str
     function: str
     names: tuple[str, ...]
+    defaults: tuple[tuple[str, str], ...] = ()
+    path: str = ""
 
 
 class Plugin(NamedTuple):
@@ -93,6 +102,8 @@ class Source(NamedTuple):
     aliases: tuple[Alias, ...] = ()
     constructors: tuple[Constructor, ...] = ()
     plugins: tuple[Plugin, ...] = ()
+    imports: tuple[str, ...] = ()
+    faults: tuple[tuple[Place, str], ...] = ()
 
 
 class Fact(NamedTuple):

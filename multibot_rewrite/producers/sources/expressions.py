@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tools.interfaces.syntax import Node
+    from multibot_rewrite.producers.sources.syntax import Node
 
 MAKERS = ("make_shared", "make_unique", "allocate_shared")
 # Their first argument is the text that they give back.
@@ -80,6 +80,18 @@ def arguments_of(node: Node | None) -> tuple[str, ...]:
     return tuple(evaluated(it) for it in node.named_children if it.type != "comment")
 
 
+def dotted(node: Node | None) -> list[str]:
+    """``t.header.frame_id`` -> its words; none for what is no chain of them."""
+    if node is None or node.type not in ("field_expression", "identifier", "pointer_expression"):
+        return []
+    if node.type == "identifier":
+        return [text_of(node)]
+    if node.type == "pointer_expression":
+        return dotted(node.child_by_field_name("argument"))
+    above = dotted(node.child_by_field_name("argument"))
+    return [*above, text_of(node.child_by_field_name("field"))] if above else []
+
+
 def callee(function: Node) -> tuple[str, tuple[str, ...], str]:
     """Its last name, its template arguments, and the object that is asked."""
     full, on = text_of(function), ""
@@ -104,8 +116,8 @@ def _sum(node: Node) -> str:
     return _all(node) if any(it.type == "+" for it in node.children) else "<?>"
 
 
-def _last_field(node: Node) -> str:
-    return f"<{text_of(node.child_by_field_name('field'))}>"
+def _field_of(node: Node) -> str:
+    return f"<{'.'.join(dotted(node)) or text_of(node.child_by_field_name('field'))}>"
 
 
 def _called(node: Node) -> str:
@@ -120,6 +132,8 @@ def _called(node: Node) -> str:
     if NAMES_PARAMETER.fullmatch(name):
         texts = [it for it in given if not is_node(it)]
         return f"<@{braced(texts[0])}>" if texts else "<?>"
+    if name in MAKERS and types:
+        return f"<new {made}>"
     return _passed_on(name, given, on) or f"<{name}>"
 
 
@@ -141,7 +155,8 @@ TEXTS: dict[str, Callable[[Any], str]] = {
     "binary_expression": _sum,
     "parenthesized_expression": _all,
     "pointer_expression": _field("argument"),
+    "new_expression": lambda node: f"<new {last(text_of(node.child_by_field_name('type')))}>",
     "conditional_expression": lambda node: "<either>",
-    "field_expression": _last_field,
+    "field_expression": _field_of,
     "call_expression": _called,
 }

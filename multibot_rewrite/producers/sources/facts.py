@@ -1,0 +1,401 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a program does by its source -> the facts of its node, as the library has those of known nodes.
+
+Only what is sure is said without a condition. What is not known before it runs is listed in ``untold``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import combinations
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.base.rosnames import check_node_name, check_topic_name, propose_token
+from multibot_rewrite.knowledge.conditions import AND, OPEN_KIND, OR, SOURCE, joined
+from multibot_rewrite.knowledge.parameters import KnownNodes, built_in_nodes, guess
+from multibot_rewrite.knowledge.records import (
+    Endpoint,
+    FrameParameter,
+    NodeFacts,
+    Param,
+    SentTransform,
+    Untold,
+)
+from multibot_rewrite.producers.sources.files import Packages, Read, read_program
+from multibot_rewrite.producers.sources.programs import Start, start_of
+from multibot_rewrite.producers.sources.records import OTHERWISE, Place, Value
+from multibot_rewrite.producers.sources.resolve import (
+    EACH,
+    LIST,
+    NOBODY,
+    Names,
+    Spot,
+    default_of,
+    names_of,
+)
+from multibot_rewrite.producers.sources.walk import (
+    IMAGE,
+    Declared,
+    Event,
+    Looked,
+    Named,
+    Parameter,
+    Sent,
+    Unread,
+    events_of,
+)
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Origin,
+    Place as At,
+)
+
+SET = " set"
+# Of more parameters in a name than these only the defaults are followed.
+MOST_PARAMETERS = 3
+PERHAPS = f"{OPEN_KIND}: {SOURCE}"
+_KINDS = {PUBLISHES: TOPIC, SUBSCRIBES: TOPIC, SERVES: SERVICE, CALLS: SERVICE}
+_ACTIONS = {
+    *("ActionServer", "ActionClient", "SimpleActionServer"),
+    *("create_action_server", "create_action_client"),
+}
+_FLAGS = {"True": True, "true": True, "False": False, "false": False}
+_INFO, _SET_INFO = "<camera_info>", "<~>set_camera_info"
+_CAMERAS = ("advertise", "advertiseCamera", "create_camera_publisher")
+LOOKED_UP = "looked up"
+
+
+class NodeSource(NamedTuple):
+    """A node by its source: its facts, the parameters that it declares, frames that its code names, and
+    the files that were read."""
+
+    facts: NodeFacts
+    params: tuple[Param, ...]
+    frames: tuple[tuple[str, str, At], ...]
+    files: tuple[str, ...]
+
+
+def node_of_program(
+    folder: str, package: str, program: str, packages: Packages, release: str
+) -> NodeSource | None:
+    """What a program of a package, or a component by its class, does by its source below ``folder``;
+    None where there is none. ``packages`` are those whose files may be followed. Raises UsageError
+    where C++ cannot be read here."""
+    start = start_of(folder, program)
+    if start is None:
+        return None
+    read = read_program(start.files, packages)
+    names = names_of(read.source)
+    events = [*_events(names, start)]
+    return _node(package, program, start, read, names, events, release)
+
+
+def _events(names: Names, start: Start) -> Iterator[Event]:
+    if start.class_:
+        found = names.classes.get(start.class_, ())
+        own = [it for it in found if it.place.path == start.path] or [*found]
+        lost = Unread(start.class_, Place("", "", start.path, 1))
+        yield from events_of(names, own[:1]) if own else [lost]
+        return
+    begin = Spot(NOBODY, "", "", {}, "", start.path)
+    functions = dict.fromkeys(("", start.function.rpartition(".")[2]))
+    yield from events_of(names, [begin._replace(function=it) for it in functions])
+
+
+def _node(
+    package: str,
+    program: str,
+    start: Start,
+    read: Read,
+    names: Names,
+    events: Sequence[Event],
+    release: str,
+) -> NodeSource:
+    named = [it for it in events if isinstance(it, Named)]
+    plain = dict.fromkeys(it.name for it in named if not check_node_name(it.name))
+    word = program.rpartition("::")[2].removesuffix(".py")
+    made = [it for it in events if isinstance(it, Declared)]
+    ends = tuple(dict.fromkeys(end for it in made for end in _endpoints(names, it, release)))
+    params = tuple(_params(names, events, read.source.values))
+    sends, of_sends = _sends(names, events)
+    both = {it.parameter: it for it in (*_frames(names, events), *of_sends)}
+    frames = tuple(_as_rewritten(it, built_in_nodes(release)) for it in both.values())
+    where = At(
+        start.path, named[0].place.line if named and named[0].place.path == start.path else 0
+    )
+    facts = NodeFacts(
+        next(iter(plain), propose_token(word)),
+        package,
+        _surest(ends),
+        frames=frames,
+        sends=sends,
+        ids=tuple((it, it) for it in dict.fromkeys(_ids(ends))),
+        origin=Origin(place=where),
+        source=tuple(dict.fromkeys(_at(it.place) for it in named)) or (start.path,),
+        programs=() if start.class_ else (program,),
+        component=program if start.class_ else "",
+        untold=tuple(_untold(read, named, plain, events, ends)),
+    )
+    return NodeSource(facts, params, tuple(_names_of_frames(events)), read.files)
+
+
+def _at(place: Place) -> str:
+    return f"{place.path}:{place.line}"
+
+
+def _surest(ends: Iterable[Endpoint]) -> tuple[Endpoint, ...]:
+    """Each end once, and without a condition where it is there without one, too."""
+    found: dict[tuple[str, ...], Endpoint] = {}
+    for it in ends:
+        key = (it.kind, it.role, it.name, it.type, it.parameter)
+        known = found.get(key)
+        if known is None or (known.when and not it.when):
+            found[key] = it
+        elif known.when and known.when != it.when:
+            found[key] = known._replace(when=PERHAPS)
+    return tuple(found.values())
+
+
+def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
+    when = _condition(names, it.spot, it.asked)
+    type_ = it.type
+    action = "/action/" in type_ or (not type_ and it.api.function in _ACTIONS)
+    bare = Endpoint(
+        ACTION if action else _KINDS[it.api.role],
+        it.api.role,
+        "",
+        type_,
+        when=when,
+        helper=it.helper,
+        source=(_at(it.place),),
+    )
+    if it.name == _INFO:
+        return
+    if it.name == _SET_INFO:
+        name = "~/set_camera_info" if has_release("jazzy+", release) else "set_camera_info"
+        yield bare._replace(name=name)
+        return
+    images = it.api.function in _CAMERAS and type_ == IMAGE
+    for name, parameter, more in (
+        one for word in _each(it.name) for one in _spelled(names, it.spot, word)
+    ):
+        end = bare._replace(
+            name=name, parameter=parameter, when=_both(when, more), transport=images
+        )
+        yield end
+        if images and it.api.function != "advertise" and "<" not in name:
+            info = f"{name.rpartition('/')[0]}/camera_info".lstrip("/" if name[:1] != "/" else "")
+            own = end._replace(name=info, type="sensor_msgs/msg/CameraInfo", transport=False)
+            yield own._replace(
+                parameter="",
+                beside=name,
+                fixed=f"it is derived from the name that {name} is remapped to",
+            )
+
+
+def _each(text: str) -> Iterator[str]:
+    """A name in each round of its loop."""
+    _, mark, rest = text.partition(f"<{EACH}{LIST}")
+    words, _, _ = rest.partition(">")
+    if not mark:
+        yield text
+        return
+    for it in words.split("|"):
+        yield from _each(text.replace(f"<{EACH}{LIST}{words}>", it))
+
+
+def _both(when: str, more: str) -> str:
+    return joined(when, more) if when and more else when or more
+
+
+def _spelled(names: Names, spot: Spot, text: str) -> Iterator[tuple[str, str, str]]:
+    """A name, the parameter that sets it, and a condition: by the default, and as it is set."""
+    parts = text.split("<")
+    params = [it.partition(">")[0] for it in parts[1:]]
+    asked = list(dict.fromkeys(it[1:] for it in params if it.startswith("@") and "{" not in it))
+    if len(asked) != len(set(params)):
+        yield _unknown(text), "", ""
+        return
+    defaults = {it: default_of(names, spot, it) for it in asked}
+    known = text
+    for it, default in defaults.items():
+        known = known.replace(f"<@{it}>", f"<{it}>" if default is None else default)
+    fine = "<" not in known and known and not check_topic_name(known)
+    if not asked:
+        yield (known if fine else "<?>"), "", ""
+    elif text == f"<@{asked[0]}>":
+        yield (known if fine else f"<{asked[0]}>"), asked[0], ""
+    elif fine and len(asked) <= MOST_PARAMETERS:
+        yield known, "", AND.join(f"{it} unset" for it in asked)
+        yield from _as_set(text, asked, defaults)
+    else:
+        yield _unknown(text), "", ""
+
+
+def _as_set(
+    text: str, asked: Sequence[str], defaults: Mapping[str, str | None]
+) -> Iterator[tuple[str, str, str]]:
+    """The name where each of some of its parameters is set, and the others are not."""
+    for size in range(1, len(asked) + 1):
+        for given in combinations(asked, size):
+            name = text
+            for it in asked:
+                name = name.replace(f"<@{it}>", f"<{it}>" if it in given else defaults[it] or "")
+            said = (f"{it}{SET if it in given else ' unset'}" for it in reversed(asked))
+            yield name, "", AND.join(sorted(said, key=lambda it: it.endswith(SET)))
+
+
+def _unknown(text: str) -> str:
+    return text.replace("<@", "<").replace("{", "").replace("}", "")
+
+
+def _condition(names: Names, spot: Spot, asked: str) -> str:
+    """The condition that an entry would have; what nothing can tell is open."""
+    found = [_flag(names, spot, it) for it in filter(None, asked.split("&"))]
+    either = [it for it in found if OR in it]
+    if PERHAPS in found or len(either) > 1:
+        return PERHAPS
+    text = "".join(either)
+    for it in found:
+        text = joined(text, it) if it not in either else text
+    return text
+
+
+def _flag(names: Names, spot: Spot, text: str) -> str:
+    """``<@debug>`` or ``!<@debug>`` as a condition."""
+    wrong, bare = text[:1] == "!", text.lstrip("!")
+    if bare == OTHERWISE or not bare.startswith("<@"):
+        return PERHAPS
+    parameter = bare[2:-1]
+    default = _FLAGS.get((default_of(names, spot, parameter) or "").strip("<>"))
+    if default is None or "{" in parameter:
+        return PERHAPS
+    value = "false" if wrong else "true"
+    given = f"{parameter} = {value}"
+    return f"{parameter} unset{OR}{given}" if default != wrong else given
+
+
+def _params(names: Names, events: Sequence[Event], values: Iterable[Value]) -> Iterator[Param]:
+    """The parameters that are declared where the program comes along."""
+    kinds: dict[str, str] = {}
+    for it in events:
+        if isinstance(it, Declared) and it.name.startswith("<@") and it.name.count("<") == 1:
+            kinds[it.name[2:-1]] = TOPIC
+        elif isinstance(it, Looked) and it.text.startswith("<@") and it.text.count("<") == 1:
+            kinds[it.text[2:-1]] = "frame"
+    spots = {
+        (it.spot.owner, it.spot.function): it.spot for it in events if isinstance(it, Parameter)
+    }
+    named = [(it.name, it.place, it.spot) for it in events if isinstance(it, Parameter)]
+    named += [
+        (it.variable[1:], it.place, spots[it.owner, it.function])
+        for it in values
+        if it.variable.startswith("@") and (it.owner, it.function) in spots
+    ]
+    for name, place, spot in {it[0]: it for it in named if it[0] and "{" not in it[0]}.values():
+        default = default_of(names, spot, name) or ""
+        yield Param(name, kinds.get(name, ""), default.strip("<>"), source=(_at(place),))
+
+
+def _frames(names: Names, events: Iterable[Event]) -> Iterator[FrameParameter]:
+    """Parameters that hold frames."""
+    for it in events:
+        if isinstance(it, Looked) and it.text.startswith("<@") and it.text.count("<") == 1:
+            parameter = it.text[2:-1]
+            if "{" not in parameter:
+                default = default_of(names, it.spot, parameter) or ""
+                yield FrameParameter(parameter, default, source=(_at(it.place),))
+
+
+def _names_of_frames(events: Iterable[Event]) -> Iterator[tuple[str, str, At]]:
+    """Frames that the code itself names: what for, the frame, and where."""
+    for it in events:
+        if isinstance(it, Looked) and it.text and "<" not in it.text:
+            yield it.role, it.text, At(it.place.path, it.place.line)
+
+
+def _sends(
+    names: Names, events: Sequence[Event]
+) -> tuple[tuple[SentTransform, ...], tuple[FrameParameter, ...]]:
+    """The transforms that it sends: of a message that it sends, the two frames that are written into
+    it. A frame of the code has no parameter: it stands for itself, in quotes."""
+    written: dict[tuple[object, str], list[Looked]] = {}
+    for it in events:
+        if isinstance(it, Looked) and it.role != LOOKED_UP:
+            message = it.variable.removesuffix(it.role).rstrip(".")
+            written.setdefault((_where(it.spot), f"{message} {it.role}"), []).append(it)
+    sends, frames = [], []
+    for sent in (it for it in events if isinstance(it, Sent)):
+        pair = [written.get((_where(sent.spot), f"{sent.variable} {it}"), []) for it in _ENDS]
+        if not all(len({it.text for it in rows}) == 1 for rows in pair):
+            continue
+        words = [_frame_word(rows[0].text) for rows in pair]
+        if all(words) and words[0] != words[1]:
+            sends.append(SentTransform(words[0], words[1]))
+            frames += [_frame_of(names, rows[0], it) for rows, it in zip(pair, words, strict=True)]
+    return tuple(dict.fromkeys(sends)), tuple(frames)
+
+
+_ENDS = ("header.frame_id", "child_frame_id")
+
+
+def _as_rewritten(it: FrameParameter, known: KnownNodes) -> FrameParameter:
+    """A frame as build leaves it: in a file it changes what is called as a frame, and adds nothing."""
+    seen = not it.in_code and guess(known, it.parameter) == "frame"
+    return it._replace(in_code=not seen, is_kept=seen)
+
+
+def _ids(ends: Iterable[Endpoint]) -> Iterator[str]:
+    """The parameters that names are made of."""
+    for end in (it for it in ends if it.when.endswith(SET) and "<" in it.name):
+        yield from (it.partition(">")[0] for it in end.name.split("<")[1:])
+
+
+def _where(spot: Spot) -> object:
+    return spot.owner, spot.function, spot.path
+
+
+def _frame_word(text: str) -> str:
+    if text.startswith("<@") and text.count("<") == 1 and "{" not in text:
+        return text[2:-1]
+    return f"'{text}'" if text and "<" not in text else ""
+
+
+def _frame_of(names: Names, it: Looked, word: str) -> FrameParameter:
+    in_code = word[0] == "'"
+    own = word.strip("'") if in_code else default_of(names, it.spot, word) or ""
+    return FrameParameter(word, own, "", (_at(it.place),), in_code, in_code)
+
+
+def _untold(
+    read: Read,
+    named: Sequence[Named],
+    plain: Mapping[str, None],
+    events: Iterable[Event],
+    ends: Iterable[Endpoint],
+) -> Iterator[Untold]:
+    """What is not known before it runs."""
+    if len(plain) > 1:
+        yield Untold(f"it makes several nodes: {', '.join(plain)}")
+    if not plain:
+        yield Untold("the name of its node is not known")
+    for place, why in read.source.faults:
+        yield Untold(f"{_at(place)}: {why}")
+    for it in named:
+        if it.space:
+            yield Untold(f"{_at(it.place)}: its code sets its namespace")
+    for one in dict.fromkeys(it for it in events if isinstance(it, Unread)):
+        yield Untold(f"{_at(one.place)}: what {one.what} does with the node is not read")
+    for end in ends:
+        what = f"{end.source[0]}: {end.role} {end.type or 'something'} under a name"
+        if end.name == f"<{end.parameter}>":
+            yield Untold(f"{what} that only its parameter {end.parameter} has", end.parameter)
+        elif "<" in end.name and not end.when.endswith(SET):
+            yield Untold(f"{what} made at run time")

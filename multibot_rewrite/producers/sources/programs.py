@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A program or component of a package -> where it starts in its source: by its setup.py, setup.cfg or
+CMakeLists.txt, or as a file that is installed."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.sources.cmake import CmakeCall, cmake_calls
+from multibot_rewrite.producers.sources.files import (
+    NOT_RUN,
+    READERS,
+    module_files,
+    sources_in,
+    start_of_file,
+)
+
+_ENTRY = re.compile(r"\s*([\w.+-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
+_REGISTERED = re.compile(r"^\s*RCLCPP_COMPONENTS_REGISTER_NODE\(\s*([\w:]+)\s*\)", re.MULTILINE)
+_SCRIPT = re.compile(r"\A#!.*python")
+_MAIN = re.compile(r"\bmain\s*\(")
+
+
+class Start(NamedTuple):
+    """Where a program starts: its files, the function or the class, and the file that has it."""
+
+    files: tuple[str, ...]
+    path: str
+    function: str = ""
+    class_: str = ""
+
+
+def start_of(folder: str, program: str) -> Start | None:
+    """The start of an executable, or of a component by its class, of the package in a folder; None
+    where its source is not found."""
+    if "::" in program:
+        return _component(folder, program)
+    return _of_python(folder, program) or _of_cmake(folder, program) or _script(folder, program)
+
+
+def _begin(files: tuple[str, ...], function: str = "", class_: str = "") -> Start:
+    real = tuple(map(os.path.realpath, files))
+    return Start(real, real[0], function, class_)
+
+
+def _of_python(folder: str, program: str) -> Start | None:
+    for name, module, function in _entries(folder):
+        if name == program:
+            for root in (folder, os.path.join(folder, "src")):
+                for it in module_files(root, module.split(".")):
+                    return _begin((it,), function)
+    return None
+
+
+@lru_cache(maxsize=64)
+def _entries(folder: str) -> tuple[tuple[str, str, str], ...]:
+    """Name, module and function of each entry point."""
+    lines = start_of_file(folder, "setup.cfg").splitlines()
+    words = [*_strings(start_of_file(folder, "setup.py")), *lines]
+    found = (_ENTRY.fullmatch(it) for it in words)
+    return tuple((it[1], it[2], it[3]) for it in found if it)
+
+
+def _strings(text: str) -> Iterator[str]:
+    """The texts of a setup.py, with its constants put in."""
+    try:
+        tree = ast.parse(text)
+        sets = [it for it in ast.walk(tree) if isinstance(it, ast.Assign)]
+        names = [(it.targets[0], it.value) for it in sets]
+        known = {it.id: _said(value, {}) for it, value in names if isinstance(it, ast.Name)}
+        yield from [_said(it, known) for it in ast.walk(tree)]
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return
+
+
+def _said(node: ast.AST, known: dict[str, str]) -> str:
+    if isinstance(node, ast.Constant):
+        return node.value if isinstance(node.value, str) else ""
+    if isinstance(node, ast.JoinedStr):
+        return "".join(_said(it, known) for it in node.values)
+    if isinstance(node, ast.FormattedValue):
+        return _said(node.value, known)
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        return _said(node.left, known) + _said(node.right, known)
+    return known.get(node.id, "") if isinstance(node, ast.Name) else ""
+
+
+def _of_cmake(folder: str, program: str) -> Start | None:
+    found = (_by_call(folder, it, program) for it in cmake_calls(folder))
+    return next((it for it in found if it), None)
+
+
+def _by_call(folder: str, call: CmakeCall, program: str) -> Start | None:
+    """What a call says of where this program starts."""
+    if call.name.endswith("add_executable") and call.words[:1] == (program,):
+        files = [*_existing(call.folder, call.words[1:])]
+        files.sort(key=lambda it: _MAIN.search(start_of_file(it)) is None)
+        return _begin(tuple(files), "main") if files else None
+    if call.name == "rclcpp_components_register_node" and call.after("EXECUTABLE") == program:
+        return _component(folder, call.after("PLUGIN"))
+    if call.name == "install" and call.words[:1] == ("PROGRAMS",):
+        for it in _existing(call.folder, call.words[1:], any_end=True):
+            if program == (call.after("RENAME") or os.path.basename(it)):
+                return _begin((it,))
+    return None
+
+
+def _existing(folder: str, words: tuple[str, ...], any_end: bool = False) -> Iterator[str]:
+    for it in words:
+        path = os.path.join(folder, it)
+        if (any_end or it.endswith(tuple(READERS))) and os.path.isfile(path):
+            yield path
+
+
+def _component(folder: str, class_: str) -> Start | None:
+    """The class of a component, and the file that registers it."""
+    last = class_.rpartition("::")[2]
+    for path in sources_in(folder):
+        names = () if path.endswith(".py") else _REGISTERED.findall(start_of_file(path))
+        if class_ in names or any(it.rpartition("::")[2] == last for it in names):
+            return _begin((path,), class_=last)
+    return None
+
+
+def _script(folder: str, program: str) -> Start | None:
+    """The one file of that name that can be started: a rule for its folder installs it."""
+    names = {os.path.basename(it): it for it in _scripts(folder)}
+    times = [os.path.basename(it) for it in _scripts(folder)].count(program)
+    return _begin((names[program],)) if times == 1 else None
+
+
+@lru_cache(maxsize=64)
+def _scripts(folder: str) -> tuple[str, ...]:
+    found: list[str] = []
+    for above, folders, names in os.walk(folder):
+        folders[:] = sorted(it for it in folders if it[0] != "." and it not in NOT_RUN)
+        paths = (os.path.join(above, it) for it in sorted(names))
+        found += (it for it in paths if it.endswith(".py") or _is_python(it))
+    return tuple(found)
+
+
+def _is_python(path: str) -> bool:
+    plain = "." not in os.path.basename(path)
+    return plain and _SCRIPT.match(start_of_file(path)[:80]) is not None

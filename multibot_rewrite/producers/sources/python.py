@@ -1,0 +1,423 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Python -> what its classes and functions call, by ``ast``.
+
+A member of an object is written with it: ``self.topic``; what a class has itself, too.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.sources.records import (
+    ANY,
+    OTHERWISE,
+    Alias,
+    Call,
+    Class,
+    Constructor,
+    Place,
+    Source,
+    Value,
+    joined,
+)
+
+# What is given a type and a name, by the names of their parameters.
+_TYPES = ("msg_type", "srv_type", "action_type", "srv_class")
+_TOPICS = ("topic", "srv_name", "action_name", "name")
+# Where the type is.
+TYPE_AT = {
+    **dict.fromkeys(("create_publisher", "create_subscription"), 0),
+    **dict.fromkeys(("create_service", "create_client"), 0),
+    **dict.fromkeys(("ActionServer", "ActionClient", "Subscriber"), 1),
+    "service_caller": 2,
+}
+_PARAMETERS = ("get_parameter", "declare_parameter", "get_parameter_or")
+# They give back what they are asked of, if that is a parameter.
+_SAME = ("get_parameter_value", "as_string", "as_bool")
+_VALUES = ("value", "string_value", "bool_value")
+ENUMERATED = "<new enumerate>"
+MOST_ROUNDS = 32
+_PLACE = re.compile(r"\{\}|%s")
+
+# The fields of a statement that run only sometimes.
+_LOOP = ("body", "orelse")
+_SOMETIMES: dict[type, tuple[str, ...]] = {
+    **dict.fromkeys((ast.While, ast.For, ast.AsyncFor, ast.ExceptHandler), _LOOP),
+    ast.BoolOp: ("values",),
+    ast.Match: ("cases",),
+}
+
+
+class _Part(NamedTuple):
+    """A piece of the tree: the function that it is in, the text of the nearest condition around it, and
+    all conditions."""
+
+    node: ast.AST
+    function: str
+    condition: str = ""
+    asked: str = ""
+
+
+def read_python(text: str, place: Place) -> Source:
+    """What a Python file declares and calls; of one that does not parse only the fault."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        line = getattr(error, "lineno", None) or 1
+        return Source(faults=((place._replace(line=line), "does not parse"),))
+    names = dict(_imported(tree))
+    try:
+        parts = [_read(node, names, place) for node in tree.body]
+    except RecursionError:
+        return Source(faults=((place, "is nested too deeply"),))
+    aliases = tuple(Alias("", name, full.replace(".", "::")) for name, full in names.items())
+    modules = tuple(dict.fromkeys(_modules(tree)))
+    return joined([*parts, Source(aliases=aliases, imports=modules)])
+
+
+def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
+    """Names of ROS types: ``from nav_msgs.msg import Odometry``."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                yield alias.asname or alias.name, f"{node.module or ''}.{alias.name}"
+        elif isinstance(node, ast.Import):
+            yield from ((it.asname, it.name) for it in node.names if it.asname)
+
+
+def _modules(tree: ast.AST) -> Iterator[str]:
+    """What is imported; of a module also its parts, which may be modules. What is beside the file
+    starts with a point."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (it.name for it in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = "." * node.level + (node.module or "")
+            yield above
+            joint = "" if above.endswith(".") else "."
+            yield from (f"{above}{joint}{it.name}" for it in node.names)
+
+
+def _read(node: ast.stmt, types: dict[str, str], place: Place) -> Source:
+    owner = node.name if isinstance(node, ast.ClassDef) else ""
+    classes = (
+        (Class(owner, tuple(map(_text, node.bases)), (), {}, place._replace(line=node.lineno)),)
+        if isinstance(node, ast.ClassDef)
+        else ()
+    )
+    takers: list[Constructor] = []
+    calls: list[Call] = []
+    values: list[Value] = []
+    free = node.name if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) else ""
+    for part in _walk(_Part(node, free)):
+        found, function = part.node, part.function
+        if isinstance(found, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            takers.append(_taker(found, owner, function, place))
+        elif isinstance(found, ast.Call):
+            calls.append(_call(found, owner, part, types, place))
+            values += _parameters(found, owner, function, place)
+        else:
+            at = place._replace(line=getattr(found, "lineno", 0))
+            values += (
+                Value(owner, function, name if function or not owner else f"self.{name}", text, at)
+                for name, text in _bound(found)
+            )
+    return Source(classes, tuple(calls), tuple(values), (), tuple(takers))
+
+
+def _taker(node: Any, owner: str, function: str, place: Place) -> Constructor:
+    plain = any(_text(it) == "<staticmethod>" for it in node.decorator_list)
+    every = [*node.args.posonlyargs, *node.args.args]
+    names = every[1:] if owner and "." not in function and not plain else every
+    defaults = zip(reversed(every), reversed(node.args.defaults), strict=False)
+    alone = zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True)
+    given = [(it.arg, _text(default)) for it, default in (*defaults, *alone) if default]
+    own = owner if function == "__init__" else function
+    words = (*(it.arg for it in names), *(it.arg for it in node.args.kwonlyargs))
+    return Constructor(owner, own, words, tuple(given), place.path)
+
+
+def _bound(node: ast.AST) -> Iterator[tuple[str, str]]:
+    """Names that a piece of code gives a value, and the value."""
+    if isinstance(node, ast.Assign):
+        for it in node.targets:
+            yield from _pairs(it, node.value)
+    elif isinstance(node, (ast.AnnAssign, ast.NamedExpr)):
+        yield from _pairs(node.target, node.value) if node.value else ()
+    elif isinstance(node, (ast.For, ast.comprehension)):
+        yield from _of_loop(node)
+    elif isinstance(node, (ast.AugAssign, ast.AsyncFor)):
+        yield from _pairs(node.target, None)
+    elif isinstance(node, ast.withitem) and node.optional_vars:
+        yield from _pairs(node.optional_vars, node.context_expr)
+    elif isinstance(node, ast.ExceptHandler) and node.name:
+        yield node.name, ANY
+
+
+def _of_loop(node: ast.For | ast.comprehension) -> Iterator[tuple[str, str]]:
+    """The variable of a loop over a list; behind a number where it is enumerated."""
+    target, over = node.target, _over(node.iter)
+    pair = isinstance(target, ast.Tuple) and len(target.elts) == 2
+    if isinstance(target, ast.Tuple) and pair and _text(node.iter) == ENUMERATED:
+        yield from _pairs(target.elts[0], None)
+        target = target.elts[1]
+    if isinstance(target, ast.Name) and not (isinstance(node, ast.comprehension) and node.ifs):
+        yield target.id, over
+    else:
+        yield from _pairs(target, None)
+
+
+def _over(node: ast.expr) -> str:
+    """``<each list:a|b>``, or ``<each SIDES>``, of what a loop is over."""
+    if _text(node) == ENUMERATED and isinstance(node, ast.Call) and node.args:
+        return _over(node.args[0])
+    text = _text(node)
+    return f"<each {text[1:-1]}>" if text[:1] == "<" and text.count("<") == 1 else ANY
+
+
+def _pairs(target: ast.expr, value: ast.expr | None) -> Iterator[tuple[str, str]]:
+    if isinstance(target, (ast.Tuple, ast.List)):
+        same = isinstance(value, (ast.Tuple, ast.List)) and len(value.elts) == len(target.elts)
+        each = value.elts if same else [None] * len(target.elts)  # type: ignore[union-attr]
+        for one, it in zip(target.elts, each, strict=True):
+            yield from _pairs(one, it)
+    elif isinstance(target, (ast.Name, ast.Attribute)):
+        yield _text(target)[1:-1], _text(value) if value is not None else ANY
+
+
+def _walk(part: _Part) -> Iterator[_Part]:
+    yield part
+    node = part.node
+    if isinstance(node, ast.Lambda):
+        part = part._replace(asked=_and(part.asked, OTHERWISE))
+    if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+        # What calls it decides when it runs.
+        part = _Part(node, part.function)
+    for name, value in ast.iter_fields(node):
+        below = part
+        if isinstance(node, (ast.If, ast.IfExp)) and name != "test":
+            below = _under(part, node.test, name == "orelse")
+        elif isinstance(node, ast.For) and name == "body" and not _may_leave_loop(node):
+            below = part._replace(asked=_and(part.asked, _over(node.iter)))
+        elif name in _SOMETIMES.get(type(node), ()):
+            below = part._replace(asked=_and(part.asked, OTHERWISE))
+        yield from _each(value if isinstance(value, list) else [value], below)
+
+
+def _under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
+    text = ast.unparse(test)
+    asked = _asked(test)
+    if text.replace('"', "'") == "__name__ == '__main__'":
+        return part
+    return part._replace(
+        condition=f"not ({text})" if wrong else text,
+        asked=_and(part.asked, _not(asked) if wrong else asked),
+    )
+
+
+def _each(nodes: list[Any], part: _Part) -> Iterator[_Part]:
+    """What is in a list of statements; behind one that may return, it may not be reached."""
+    for it in nodes:
+        if not isinstance(it, ast.AST):
+            continue
+        inside = part.function
+        if isinstance(it, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            inside = f"{part.function}.{it.name}".strip(".")
+        elif isinstance(it, ast.ClassDef):
+            inside = f"{part.function}.{it.name}.".lstrip(".")
+        yield from _walk(part._replace(node=it, function=inside))
+        if isinstance(it, ast.If) and _may_leave(it):
+            part = part._replace(asked=_and(part.asked, OTHERWISE))
+
+
+def _may_leave_loop(node: ast.For) -> bool:
+    return any(_may_leave(it) for it in node.body)
+
+
+def _may_leave(node: ast.AST) -> bool:
+    """May a function end in this statement, without an error?"""
+    inner = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
+    if isinstance(node, (ast.Return, ast.Continue, ast.Break)):
+        return True
+    return any(_may_leave(it) for it in ast.iter_child_nodes(node) if not isinstance(it, inner))
+
+
+def _asked(node: ast.expr) -> str:
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+        return _not(_asked(node.operand))
+    is_plain = isinstance(node, (ast.Name, ast.Attribute, ast.Call))
+    return _text(node) if is_plain and _text(node) != ANY else OTHERWISE
+
+
+def _not(text: str) -> str:
+    return OTHERWISE if text == OTHERWISE else text[1:] if text[:1] == "!" else f"!{text}"
+
+
+def _and(one: str, other: str) -> str:
+    return "&".join(dict.fromkeys(filter(None, (*one.split("&"), *other.split("&")))))
+
+
+def _call(node: ast.Call, owner: str, part: _Part, types: dict[str, str], place: Place) -> Call:
+    name = _called_name(node) or _text(node.func).strip("<>")
+    given = [_text(it) for it in node.args]
+    named = {it.arg or "**": it.value for it in node.keywords}
+    typed: tuple[str, ...] = ()
+    if name in TYPE_AT:
+        of_type = next((named.pop(it) for it in _TYPES if it in named), None)
+        at = TYPE_AT[name]
+        if of_type is None and len(node.args) > at:
+            of_type = node.args[at]
+            del given[at]
+        typed = (_written(of_type, types),) if of_type is not None else ()
+        topic = next((named.pop(it) for it in _TOPICS if it in named), None)
+        given += [_text(topic)] if topic is not None else []
+    on = _text(node.func.value) if isinstance(node.func, ast.Attribute) else ""
+    own = "" if on == "<this>" else on
+    return Call(
+        owner,
+        part.function,
+        name,
+        typed,
+        tuple(given),
+        own,
+        part.condition,
+        place._replace(line=node.lineno),
+        part.asked,
+        tuple((key, _text(it)) for key, it in named.items()),
+    )
+
+
+def _written(node: ast.expr, types: dict[str, str]) -> str:
+    """A type with the module that it is from."""
+    head, dot, rest = ast.unparse(node).partition(".")
+    return f"{types.get(head, head)}{dot}{rest}"
+
+
+def _parameters(node: ast.Call, owner: str, function: str, place: Place) -> Iterator[Value]:
+    """``declare_parameter('p', default)``, and those of a list of ``declare_parameters``."""
+    name, at = _called_name(node), place._replace(line=node.lineno)
+    named = {it.arg: it.value for it in node.keywords}
+    if name == "declare_parameter":
+        key = node.args[0] if node.args else named.get("name")
+        default = node.args[1] if len(node.args) > 1 else named.get("value")
+        if key is not None and default is not None:
+            yield Value(owner, function, f"@{braced(_text(key))}", _text(default), at)
+    rows = [it for it in (*node.args, *named.values()) if isinstance(it, (ast.List, ast.Tuple))]
+    for it in rows[:1] if name == "declare_parameters" else ():
+        for row in (row for row in it.elts if isinstance(row, ast.Tuple) and len(row.elts) > 1):
+            key, default = row.elts[:2]
+            at = place._replace(line=row.lineno)
+            yield Value(owner, function, f"@{braced(_text(key))}", _text(default), at)
+
+
+def braced(text: str) -> str:
+    """The text inside another name in <>."""
+    return text.replace("<", "{").replace(">", "}")
+
+
+def _called_name(node: ast.Call) -> str:
+    return node.func.attr if isinstance(node.func, ast.Attribute) else ""
+
+
+def _text(node: ast.AST) -> str:
+    """An expression as a text; what is not known is in <>."""
+    return TEXTS.get(type(node), lambda _: ANY)(node)
+
+
+def _constant(node: ast.Constant) -> str:
+    if isinstance(node.value, str):
+        return ANY if {"<", ">"} & {*node.value} else node.value
+    return f"<{node.value!r}>"
+
+
+def _attribute(node: ast.Attribute) -> str:
+    text = _text(node.value)
+    if node.attr in _VALUES and text != "<this>":
+        return text
+    inner = "self" if text == "<this>" else text[1:-1]
+    is_name = text[:1] == "<" and text[-1:] == ">" and inner.replace(".", "").isidentifier()
+    return f"<{inner}.{node.attr}>" if is_name else f"<?.{node.attr}>"
+
+
+def _sum(node: ast.BinOp) -> str:
+    if isinstance(node.op, ast.Mod):
+        words = node.right.elts if isinstance(node.right, ast.Tuple) else [node.right]
+        return _put_in(_text(node.left), words)
+    return _text(node.left) + _text(node.right) if isinstance(node.op, ast.Add) else ANY
+
+
+def _put_in(text: str, words: list[ast.expr]) -> str:
+    """A text with these words in its places; each place has one."""
+    parts = _PLACE.split(text)
+    if len(parts) != len(words) + 1 or "%" in "".join(parts):
+        return ANY
+    return parts[0] + "".join(
+        _text(word) + part for word, part in zip(words, parts[1:], strict=True)
+    )
+
+
+def _formatted(node: ast.FormattedValue) -> str:
+    return ANY if node.format_spec else _text(node.value)
+
+
+def _called(node: ast.Call) -> str:
+    name = _called_name(node)
+    if name in _PARAMETERS:
+        named = (it.value for it in node.keywords if it.arg == "name")
+        key = node.args[0] if node.args else next(named, None)
+        return f"<@{braced(_text(key))}>" if key is not None else ANY
+    return _method(name, node) if isinstance(node.func, ast.Attribute) else _plain_call(node)
+
+
+def _plain_call(node: ast.Call) -> str:
+    made = _text(node.func).strip("<>")
+    if made == "range":
+        return _range(node)
+    return _text(node.args[0]) if made == "str" and node.args else f"<new {made}>"
+
+
+def _method(name: str, node: ast.Call) -> str:
+    on = _text(node.func.value) if isinstance(node.func, ast.Attribute) else ANY
+    if name == "create_node" and node.args:
+        return f"<Node:{braced(_text(node.args[0]))}>"
+    if name == "format" and not node.keywords:
+        return _put_in(on, node.args)
+    made = f"<new {name}>" if name[:1].isupper() else ANY
+    return on if name in _SAME else made
+
+
+def _range(node: ast.Call) -> str:
+    """A range of a few numbers as their list."""
+    ends = [it.value for it in node.args if isinstance(it, ast.Constant)]
+    whole = [it for it in ends if isinstance(it, int)]
+    if not 0 < len(whole) == len(node.args) < 3:
+        return ANY
+    numbers = range(*whole)
+    return f"<list:{'|'.join(map(str, numbers))}>" if 0 < len(numbers) <= MOST_ROUNDS else ANY
+
+
+def _list(node: ast.List | ast.Tuple) -> str:
+    """A list of texts or numbers."""
+    words = [str(it.value) for it in node.elts if isinstance(it, ast.Constant)]
+    plain = 0 < len(words) == len(node.elts) <= MOST_ROUNDS and not {*"<>|{}"} & {*"".join(words)}
+    return f"<list:{'|'.join(words)}>" if plain else ANY
+
+
+TEXTS: dict[type, Callable[[Any], str]] = {
+    ast.Constant: _constant,
+    ast.BinOp: _sum,
+    ast.JoinedStr: lambda node: "".join(map(_text, node.values)),
+    ast.FormattedValue: _formatted,
+    ast.Attribute: _attribute,
+    ast.Name: lambda node: "<this>" if node.id == "self" else f"<{node.id}>",
+    ast.Call: _called,
+    ast.List: _list,
+    ast.Tuple: _list,
+}

@@ -1,0 +1,538 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A program, from its start on: what each function declares, with what it is given, and when.
+
+What is called is followed as far as its text is here. What nothing calls by name (a callback) may run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.producers.sources.apis import ARGUMENT, HELPER, OWN, Api, apis
+from multibot_rewrite.producers.sources.expressions import is_node, last, template_arguments
+from multibot_rewrite.producers.sources.records import (
+    ANY,
+    OTHERWISE,
+    Call,
+    Class,
+    Constructor,
+    Place,
+)
+from multibot_rewrite.producers.sources.resolve import (
+    EACH,
+    LIST,
+    NOBODY,
+    Made,
+    Names,
+    Spot,
+    frame_in,
+    text_in,
+    type_in,
+)
+
+DEEPEST = 24
+MOST_STEPS = 20_000
+# Classes of ROS whose constructor makes a node, and what a life cycle calls of one.
+NODES = {"Node", "LifecycleNode"}
+_OF_CYCLE = {f"on_{it}" for it in ("configure", "activate", "init")}
+_LOOKS_UP = (
+    *("lookup_transform", "lookupTransform", "can_transform", "canTransform"),
+    *("lookup_transform_async", "wait_for_transform_async"),
+)
+# They are given a node and use nothing of it that others see.
+HARMLESS = {
+    *("spin", "spin_once", "spin_some", "spin_until_future_complete", "add_node", "remove_node"),
+    *("bind", "placeholders", "Rate", "create_wall_timer", "create_timer", "ImageTransport"),
+    *("add_on_set_parameters_callback", "partial", "super", "isinstance", "ref", "cref", "move"),
+    *("get_logger", "print", "str", "hasattr", "getattr", "setattr", "id", "type", "destroy_node"),
+    *("CvBridge", "Duration", "Time", "Synchronizer", "Executor", "SingleThreadedExecutor"),
+    *("MultiThreadedExecutor", "spin_node_once"),
+    *(
+        "RCLCPP_DEBUG",
+        "RCLCPP_FATAL",
+        "make_shared",
+        "make_unique",
+        "shared_from_this",
+        "push_back",
+    ),
+    *("CreateTimerROS", "mem_fn", "enable_shared_from_this", "CreateTimer", "append", "hash"),
+    *("get_node_base_interface", "get_node_timers_interface", "get_node_logging_interface"),
+    *("__init__", "next", "weak_from_this", "ParameterEventHandler", "dynamic_cast", "static_cast"),
+}
+
+
+HARMLESS_BASES = {"object", "Thread", "ABC", "Enum", "Exception", "enable_shared_from_this"}
+
+
+# What declares an endpoint in Python; in C++ those of ROS 1 have a type.
+OF_PYTHON = {
+    *("create_publisher", "create_subscription", "create_service", "create_client"),
+    *("ActionServer", "ActionClient", "Subscriber", "service_caller", "Buffer", "Updater"),
+    *("TransformBroadcaster", "StaticTransformBroadcaster", "TransformListener"),
+    "InteractiveMarkerServer",
+}
+OF_ROS_1 = {"advertise", "advertiseCamera"}
+_IMAGES = {"create_publisher", "create_subscription"}
+IMAGE = "sensor_msgs/msg/Image"
+
+
+class Declared(NamedTuple):
+    """An endpoint as a program declares it; ``name`` may have <> in it. ``on`` is the node that another
+    program's part makes for it."""
+
+    api: Api
+    name: str
+    type: str
+    helper: bool
+    asked: str
+    place: Place
+    spot: Spot
+
+
+class Parameter(NamedTuple):
+    """A parameter that is declared."""
+
+    name: str
+    place: Place
+    spot: Spot
+
+
+class Looked(NamedTuple):
+    """A frame that a program asks tf for, or writes: ``role`` is "looked up" or the end of the
+    ``variable``."""
+
+    role: str
+    text: str
+    variable: str
+    asked: str
+    place: Place
+    spot: Spot
+
+
+class Sent(NamedTuple):
+    """A variable that is sent as a transform."""
+
+    variable: str
+    asked: str
+    place: Place
+    spot: Spot
+
+
+class Named(NamedTuple):
+    """A node that is made, with its name and namespace, as texts."""
+
+    name: str
+    space: str
+    asked: str
+    place: Place
+    is_cycled: bool = False
+
+
+class Unread(NamedTuple):
+    """What a node is handed to and is not here."""
+
+    what: str
+    place: Place
+
+
+Event = Declared | Parameter | Looked | Sent | Named | Unread
+
+
+class _Walk(NamedTuple):
+    """What is known on the way: the texts, functions that have run, objects by class, and those that
+    were called on an object."""
+
+    names: Names
+    seen: set[object]
+    objects: dict[str, list[Made]]
+    budget: list[int]
+
+
+def events_of(names: Names, starts: Sequence[Spot | Class]) -> Iterator[Event]:
+    """All that a program does that starts in functions, or by making objects of classes."""
+    walk = _Walk(names, set(), {}, [MOST_STEPS])
+    for it in starts:
+        if isinstance(it, Class):
+            yield from _object(
+                walk, NOBODY, it, (), (), Spot(NOBODY, "", "", {}, "", it.place.path)
+            )
+        else:
+            yield from _function(walk, it)
+    # What no name has called: callbacks, threads.
+    for made in [one for every in [*walk.objects.values()] for one in every]:
+        yield from _rest(walk, made)
+    if walk.budget[0] <= 0:
+        first = starts[0]
+        path = first.place.path if isinstance(first, Class) else first.path
+        yield Unread("more than is followed", Place("", "", path, 1))
+
+
+def _rest(walk: _Walk, made: Made) -> Iterator[Event]:
+    cycled = is_cycled(made)
+    for it in made.chain:
+        for owner, function in [key for key in walk.names.calls if key[0] == it.name]:
+            key = (made.owners[0], owner, function)
+            if key in walk.seen:
+                continue
+            asked = "" if cycled and function in _OF_CYCLE else OTHERWISE
+            yield from _function(walk, Spot(made, owner, function, {}, asked, it.place.path))
+
+
+def is_cycled(made: Made) -> bool:
+    """Has it the states of a life cycle?"""
+    return any(last(it) == "LifecycleNode" for it in made.beyond)
+
+
+def _function(walk: _Walk, spot: Spot) -> Iterator[Event]:
+    """What a function does, with what it is given."""
+    own = (spot.made.owners[0] if spot.made.chain else spot.path, spot.owner, spot.function)
+    key = (*own, tuple(sorted(spot.given.items())), spot.asked, id(spot.made.given))
+    walk.budget[0] -= 1
+    if key in walk.seen or own in spot.trail or len(spot.trail) > DEEPEST or walk.budget[0] < 0:
+        return
+    walk.seen.update((key, own))
+    spot = spot._replace(trail=(*spot.trail, own))
+    for call in _calls(walk.names, spot):
+        yield from _call(walk, spot, call)
+    yield from _frames(walk.names, spot)
+
+
+def _calls(names: Names, spot: Spot) -> Iterator[Call]:
+    rows = names.calls.get((spot.owner, spot.function), ())
+    yield from (it for it in rows if spot.owner or it.place.path == spot.path)
+
+
+def _frames(names: Names, spot: Spot) -> Iterator[Looked]:
+    """Frames that are written into messages."""
+    for it in names.frames.get((spot.owner, spot.function), ()):
+        if spot.owner or it.place.path == spot.path:
+            text = text_in(names, spot, it.text)
+            yield Looked(frame_in(it), text, it.variable, spot.asked, it.place, spot)
+
+
+def _asked(names: Names, spot: Spot, call: Call) -> str:
+    """All conditions of a call, with what their names stand for."""
+    own = []
+    for it in filter(None, call.asked.split("&")):
+        text = text_in(names, spot, it)
+        is_parameter = text.lstrip("!").startswith("<@") and text.count("<") == 1
+        if not text.startswith(f"<{EACH}{LIST}"):
+            own.append(text if is_parameter else OTHERWISE)
+    return "&".join(dict.fromkeys((*filter(None, spot.asked.split("&")), *own)))
+
+
+def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
+    names, asked = walk.names, _asked(walk.names, spot, call)
+    here = spot._replace(asked=asked)
+    name, types = _behind_aliases(names, spot, call)
+    own = next((it for key, it in OF_TF.items() if name in key), None)
+    if own or "declare_parameter" in name:
+        yield from (own or _parameters)(names, here, call)
+        return
+    on = text_in(names, spot, call.on) if call.on else ""
+    if _is_base(spot, call, name) or name in NODES or name == "create_node":
+        yield from _base(walk, here, call, name)
+    elif (found := _class(names, name, call.place)) and _is_made(call, name, on):
+        yield from _object(walk, spot.made, found, call.given, types, here, call.named)
+    elif name in apis() and not _is_method_here(names, on, name):
+        yield from _declared(names, here, call, name, types, on)
+    elif followed := _followed(walk, here, call, name, on):
+        for it in followed:
+            yield from _function(walk, it)
+    elif name not in HARMLESS:
+        yield from _handed(names, spot, call, name)
+
+
+def _is_made(call: Call, name: str, on: str) -> bool:
+    """Is an object of the class made, and no method of that name called?"""
+    return not call.on or call.on.endswith(f"{name}>") or call.name != name or "." not in on
+
+
+def _is_method_here(names: Names, on: str, name: str) -> bool:
+    """Has the object that is asked a method of its own of that name?"""
+    return on.startswith("<new ") and (on[5:-1], name) in names.takers
+
+
+def _handed(names: Names, spot: Spot, call: Call, name: str) -> Iterator[Unread]:
+    """Something that is not here is given the node."""
+    texts = {text_in(names, spot, it) for it in call.given}
+    own = {"<this>", "<shared_from_this>"} if spot.made.chain else set()
+    if name and (texts & own or any(_is_new_node(names, it) for it in texts)):
+        yield Unread(name, call.place)
+
+
+def _is_new_node(names: Names, text: str) -> bool:
+    """Is it a node that the program has made?"""
+    if text.startswith("<Node:") or text in ("<new Node>", "<new LifecycleNode>"):
+        return True
+    rows = names.classes.get(text[5:-1], ()) if text.startswith("<new ") else ()
+    return any(last(it) in NODES for one in rows for it in _chain(names, one)[1])
+
+
+def _looked(names: Names, spot: Spot, call: Call) -> Iterator[Looked]:
+    for it in call.given[:2]:
+        yield Looked("looked up", text_in(names, spot, it), "", spot.asked, call.place, spot)
+
+
+def _sent(names: Names, spot: Spot, call: Call) -> Iterator[Sent]:
+    yield from (Sent(it.strip("<>"), spot.asked, call.place, spot) for it in call.given)
+
+
+OF_TF: dict[tuple[str, ...], Callable[[Names, Spot, Call], Iterator[Event]]] = {
+    _LOOKS_UP: _looked,
+    ("sendTransform", "send_transform"): _sent,
+}
+
+
+def _behind_aliases(names: Names, spot: Spot, call: Call) -> tuple[str, tuple[str, ...]]:
+    """What is called or made, and its template arguments, behind other names of types."""
+    for it in names.aliases.get(call.name, ()):
+        if it.owner in (*spot.made.owners, ""):
+            return last(it.type), template_arguments(it.type)
+    for own in spot.made.chain:
+        if not call.types and call.name in own.members and call.name not in apis():
+            return _inner(own.members[call.name])
+    return call.name, call.types
+
+
+def _inner(type_: str) -> tuple[str, tuple[str, ...]]:
+    """The class that a type is of, behind its pointers."""
+    inner = template_arguments(type_)
+    if last(type_) in ("shared_ptr", "unique_ptr", "optional") and inner:
+        return _inner(inner[0])
+    return last(type_), inner
+
+
+def _class(names: Names, name: str, place: Place) -> Class | None:
+    """The class of this name: of the same file, or the only one."""
+    rows = names.classes.get(name, ())
+    own = [it for it in rows if it.place.path == place.path]
+    return own[0] if len(own) == 1 else rows[0] if len(rows) == 1 else None
+
+
+def _object(
+    walk: _Walk,
+    above: Made,
+    found: Class,
+    given: tuple[str, ...],
+    types: tuple[str, ...],
+    spot: Spot,
+    named: tuple[tuple[str, str], ...] = (),
+) -> Iterator[Event]:
+    """What making an object does."""
+    names = walk.names
+    words = tuple(text_in(names, spot, it) for it in given)
+    kept = tuple((key, text_in(names, spot, it)) for key, it in named)
+    chain, beyond = _chain(names, found)
+    heads = [it.partition("=")[0] for it in found.parameters]
+    meant = [type_in(names, spot, it) or it for it in types]
+    own = _taken(names, found.name, found.name, words, kept)
+    made = Made(chain, {found.name: own}, dict(zip(heads, meant, strict=False)), beyond)
+    key = ("object", found.name, tuple(sorted(own.items())), spot.asked)
+    if key in walk.seen:
+        return
+    walk.seen.add(key)
+    walk.objects.setdefault(found.name, []).append(made)
+    yield from _constructed(walk, made, found, own, spot)
+
+
+def _constructed(
+    walk: _Walk, made: Made, found: Class, own: Mapping[str, str], spot: Spot
+) -> Iterator[Event]:
+    path = found.place.path
+    for function in ("__init__", found.name, ""):
+        where = _path_of(walk.names, found, function) or path
+        start = Spot(made, found.name, function, own, spot.asked, where, spot.trail)
+        yield from _function(walk, start)
+    for type_ in found.members.values():
+        name, types = _inner(type_)
+        inside = _class(walk.names, name, found.place)
+        if inside and name == last(type_) and name not in walk.objects and name not in made.owners:
+            yield from _object(walk, made, inside, (), types, spot._replace(made=made))
+    # A constructor that calls none of its base has the one without arguments.
+    for it in made.chain[1:]:
+        if it.name not in made.given:
+            made.given[it.name] = _taken(walk.names, it.name, it.name, (), ())  # type: ignore[index]
+            yield from _constructed(walk, made, it, made.given[it.name], spot)
+
+
+def _path_of(names: Names, found: Class, function: str) -> str:
+    rows = names.calls.get((found.name, function), ())
+    return rows[0].place.path if rows else ""
+
+
+def _chain(names: Names, found: Class) -> tuple[tuple[Class, ...], tuple[str, ...]]:
+    chain, beyond, waiting = [found], [], [*found.bases]
+    while waiting and len(chain) < DEEPEST:
+        base = waiting.pop(0).strip("<>")
+        above = _class(names, last(base.rpartition(".")[2]), found.place)
+        if above is None:
+            beyond.append(base.rpartition(".")[2])
+        elif above not in chain:
+            chain.append(above)
+            waiting += above.bases
+    return tuple(chain), tuple(beyond)
+
+
+def _taken(
+    names: Names,
+    owner: str,
+    function: str,
+    words: tuple[str, ...],
+    named: tuple[tuple[str, str], ...],
+) -> dict[str, str]:
+    """What a function is given, by the names of its parameters, with their defaults."""
+    rows = names.takers.get((owner, function), ())
+    fitting = [it for it in rows if len(it.names) >= len(words)]
+    best: Constructor | None = min(fitting, key=lambda it: len(it.names), default=None)
+    if best is None:
+        return {}
+    given = {**dict(zip(best.names, words, strict=False)), **dict(named)}
+    return {**dict(best.defaults), **given}
+
+
+def _is_base(spot: Spot, call: Call, name: str) -> bool:
+    """Is it the constructor of a base that its class calls?"""
+    if name == "__init__":
+        return True
+    inside = spot.function in ("", spot.owner) and not call.on
+    own = (it for it in spot.made.chain if it.name == spot.owner)
+    return inside and any(name in map(last, it.bases) for it in own)
+
+
+def _base(walk: _Walk, spot: Spot, call: Call, name: str) -> Iterator[Event]:
+    """The constructor of a base, or a node that is made."""
+    names, made = walk.names, spot.made
+    words = tuple(text_in(names, spot, it) for it in call.given)
+    if name == "__init__" and call.on != "<new super>" and words[:1] == ("<this>",):
+        words = words[1:]
+    named = tuple((key, text_in(names, spot, it)) for key, it in call.named)
+    above = _above(spot, call, name)
+    if above:
+        own = _taken(names, above.name, above.name, words, named)
+        made.given[above.name] = own  # type: ignore[index]
+        yield from _constructed(walk, made, above, own, spot)
+        return
+    base = name if name in (*NODES, "create_node") else _beyond(spot, call, name)
+    if last(base) not in (*NODES, "create_node"):
+        if base and base not in HARMLESS_BASES:
+            yield Unread(base, call.place)
+        return
+    texts = [it for it in words if not is_node(it)]
+    keys = dict(named)
+    called = texts[0] if texts else keys.get("node_name", keys.get("name", ANY))
+    space = texts[1] if len(texts) > 1 and "<" not in texts[1] else keys.get("namespace", "")
+    yield Named(called, space, spot.asked, call.place, last(base) == "LifecycleNode")
+
+
+def _above(spot: Spot, call: Call, name: str) -> Class | None:
+    """The base whose constructor is called, if it is here."""
+    chain, owners = spot.made.chain, spot.made.owners
+    if name != "__init__":
+        return next((it for it in chain if it.name == name and name != spot.owner), None)
+    if call.on == "<new super>":
+        at = owners.index(spot.owner) if spot.owner in owners else len(owners)
+        return next(iter(chain[at + 1 :]), None)
+    return next((it for it in chain if f"<{it.name}>" == call.on), None)
+
+
+def _beyond(spot: Spot, call: Call, name: str) -> str:
+    """The base that is not here."""
+    word = name if name != "__init__" else call.on.strip("<>").rpartition(".")[2]
+    if word in spot.made.beyond:
+        return word
+    return next(
+        (it for it in spot.made.beyond if last(it) in NODES), next(iter(spot.made.beyond), "")
+    )
+
+
+def _parameters(names: Names, spot: Spot, call: Call) -> Iterator[Parameter]:
+    texts = [it for it in call.given if not is_node(it)]
+    for it in texts[:1]:
+        text = text_in(names, spot, it)
+        if "<" not in text:
+            yield Parameter(text, call.place, spot)
+
+
+def _declared(
+    names: Names, spot: Spot, call: Call, name: str, types: tuple[str, ...], on: str
+) -> Iterator[Declared]:
+    given = [(it, text_in(names, spot, it)) for it in (*call.given, *(it for _, it in call.named))]
+    nodes = [text for raw, text in given if is_node(raw) or is_node(text)]
+    others = [text for raw, text in given if not (is_node(raw) or is_node(text))]
+    own = call.place.path.endswith(".py")
+    if (own and name not in OF_PYTHON) or (name in OF_ROS_1 and types):
+        return
+    for api in apis()[name]:
+        if (api.node == OWN and not nodes) or (ARGUMENT in api.name and not others):
+            continue
+        if not own and not types and nodes and name in _IMAGES:
+            # That of image_transport; those of rclcpp have a type.
+            api = api._replace(function="advertise", type=IMAGE)  # noqa: PLW2901
+        text = api.name.replace(ARGUMENT, others[0] if others else "")
+        helper = api.node == HELPER and not nodes
+        type_ = _type(names, spot, api, types) or _type_of_member(names, spot, call.on)
+        yield Declared(api, text, type_, helper, spot.asked, call.place, spot)
+
+
+def _type(names: Names, spot: Spot, api: Api, types: tuple[str, ...]) -> str:
+    if not api.type.isdigit():
+        return api.type
+    at = int(api.type)
+    return type_in(names, spot, types[at]) if at < len(types) else ""
+
+
+def _type_of_member(names: Names, spot: Spot, on: str) -> str:
+    """The type of a member that is told later what to subscribe to."""
+    for it in spot.made.chain:
+        name, types = _inner(it.members.get(on.strip("<>"), ""))
+        for api in apis().get(name, ())[:1]:
+            return _type(names, spot, api, types)
+    return ""
+
+
+def _followed(walk: _Walk, spot: Spot, call: Call, name: str, on: str) -> list[Spot]:
+    """The functions that a call runs, if their text is here."""
+    names = walk.names
+    words = tuple(text_in(names, spot, it) for it in call.given)
+    named = tuple((key, text_in(names, spot, it)) for key, it in call.named)
+    if call.on in ("", "<new super>", "<this>"):
+        owners = spot.made.owners
+        if call.on == "<new super>" and spot.owner in owners:
+            owners = owners[owners.index(spot.owner) + 1 :]
+        own = next((it for it in owners if (it, name) in names.takers), "")
+        if own:
+            given = _taken(names, own, name, words, named)
+            path = _path(names, own, name, spot.path)
+            return [spot._replace(owner=own, function=name, given=given, path=path)]
+        inner = f"{spot.function}.{name}".strip(".")
+        for owner, function in ((spot.owner, inner), ("", name)):
+            rows = names.takers.get((owner, function), ())
+            near = [it for it in rows if it.path == spot.path] or (rows if len(rows) == 1 else ())
+            if near and (owner or not name[:1].isupper()):
+                made = spot.made if owner else NOBODY
+                given = _taken(names, owner, function, words, named)
+                return [Spot(made, owner, function, given, spot.asked, near[0].path, spot.trail)]
+        return []
+    return [
+        spot._replace(
+            made=it, owner=own, function=name, given=_taken(names, own, name, words, named),
+            path=_path(names, own, name, spot.path),
+        )
+        for it in _objects(walk, spot, call.on, on)
+        for own in [one for one in it.owners if (one, name) in names.takers][:1]
+    ]  # fmt: skip
+
+
+def _path(names: Names, owner: str, function: str, path: str) -> str:
+    rows = names.calls.get((owner, function), ())
+    return rows[0].place.path if rows else path
+
+
+def _objects(walk: _Walk, spot: Spot, raw: str, on: str) -> list[Made]:
+    """The objects that a call is made on."""
+    made = on[5:-1] if on.startswith("<new ") else ""
+    for it in spot.made.chain:
+        made = made or _inner(it.members.get(raw.strip("<>"), ""))[0]
+    return walk.objects.get(made, []) if made else []

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A fleet of nodes that nobody has described: their source, beside the launch file, is read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.system.json import from_yaml
+
+NODE = """
+import rclpy
+from geometry_msgs.msg import TransformStamped, Twist
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from sensor_msgs.msg import LaserScan
+from tf2_ros import TransformBroadcaster
+
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("acme_driver")
+        self.declare_parameter("side", "left")
+        self.declare_parameter("odom_frame", "odom")
+        side = self.get_parameter("side").value
+        self.create_subscription(Twist, "/cmd_vel", self.on_command, 10)
+        self.create_subscription(LaserScan, "scan", print, 10)
+        self.create_publisher(Odometry, f"{side}/odom", 10)
+        self.create_publisher(LaserScan, open("/etc/hostname").read(), 10)
+        self.broadcaster = TransformBroadcaster(self)
+
+    def on_command(self, message):
+        sent = TransformStamped()
+        sent.header.frame_id = self.get_parameter("odom_frame").value
+        sent.child_frame_id = "base_link"
+        self.broadcaster.sendTransform(sent)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Driver())
+"""
+SETUP = """
+from setuptools import setup
+setup(name="acme", entry_points={"console_scripts": ["driver = acme.driver:main"]})
+"""
+LAUNCH = """
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([NODES])
+"""
+ONE = "Node(package='acme', executable='driver', parameters=[{}])"
+ROBOT = """<robot name="bare"><link name="base_link"/><link name="laser"/>
+<joint name="l" type="fixed"><parent link="base_link"/><child link="laser"/></joint></robot>"""
+FLEET = """
+robots:
+  - {name: robot1, description: bare.urdf, simulator: none}
+  - {name: robot2, description: bare.urdf, simulator: none}
+launch: acme/launch/acme.launch.py
+"""
+
+
+TWO = "\n".join(
+    ONE.format("").replace("driver'", f"driver', namespace='{it}'") + "," for it in "ab"
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    files = {
+        "acme/package.xml": "<package><name>acme</name></package>",
+        "acme/setup.py": SETUP,
+        "acme/acme/__init__.py": "",
+        "acme/acme/driver.py": NODE,
+        "acme/launch/acme.launch.py": LAUNCH.replace("NODES", ONE.format("")),
+        "bare.urdf": ROBOT,
+        "fleet.yaml": FLEET,
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+def test_an_absolute_name_is_that_of_both_robots(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = folder / "acme/launch/acme.launch.py"
+    file.write_text(LAUNCH.replace("NODES", TWO))
+    assert main(["check-launch", str(file)]) == 1
+    said = capsys.readouterr()
+    assert "MG310" in said.out and "/cmd_vel: /a/acme_driver, /b/acme_driver" in said.out
+    # A relative name is each robot's own.
+    assert "MG320" not in said.out
+    # Two trees with one base on one topic.
+    assert "MG402" in said.out
+    assert "2 nodes known in part, by their source" in said.err
+    assert (
+        "driver.py:19: publishes sensor_msgs/msg/LaserScan under a name made at run time"
+        in said.err
+    )
+    assert "all known (2 in part)" in said.err
+
+
+def test_a_file_of_nodes_is_above_the_source(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, nodes = folder / "acme/launch/acme.launch.py", folder / "nodes.yaml"
+    file.write_text(LAUNCH.replace("NODES", TWO))
+    entry = "{package: acme, programs: [driver], subscribes: {cmd_vel: geometry_msgs/msg/Twist}}"
+    nodes.write_text(f"nodes:\n  acme_driver: {entry}\n")
+    main(["check-launch", str(file), "--nodes", str(nodes)])
+    said = capsys.readouterr()
+    assert "MG310" not in said.out
+    assert "in part" not in said.err
+
+
+def test_each_robot_gets_its_rules(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "built")]) == 0
+    said = capsys.readouterr()
+    assert "MF822" not in said.out + said.err
+    launch = (folder / "built/fleet.launch.py").read_text()
+    for rule in ("('/cmd_vel', f'/cmd_vel/{name}')", "('left/odom', f'left/odom/{name}')"):
+        assert rule in launch
+    assert "('/tf', f'/tf/{name}')" in launch
+
+
+def test_a_parameter_of_the_launch_makes_the_name(folder: Path) -> None:
+    file = folder / "acme/launch/acme.launch.py"
+    file.write_text(LAUNCH.replace("NODES", ONE.format("{'side': 'rear'}")))
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "built")]) == 0
+    launch = (folder / "built/fleet.launch.py").read_text()
+    assert "('rear/odom', f'rear/odom/{name}')" in launch
+    assert "left/odom" not in launch
+
+
+def test_a_frame_of_the_code_is_the_same_for_every_robot(folder: Path) -> None:
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "built")]) == 0
+    plan = (folder / "built/plan.yaml").read_text()
+    for robot in ("robot1", "robot2"):
+        sent = f"{{child: base_link, parent: odom, publishers: [/acme_driver_{robot}]}}"
+        assert sent in plan
+    assert "under a name made at run time" in plan
+
+
+def test_a_frame_in_a_file_is_each_robots_own(folder: Path) -> None:
+    file = folder / "acme/launch/acme.launch.py"
+    file.write_text(LAUNCH.replace("NODES", ONE.format("'PARAMS'")))
+    params = folder / "acme/config.yaml"
+    params.write_text("/**:\n  ros__parameters: {odom_frame: wheel_odom}\n")
+    file.write_text(file.read_text().replace("PARAMS", str(params)))
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "built")]) == 0
+    plan = (folder / "built/plan.yaml").read_text()
+    assert (
+        "{child: base_link, parent: wheel_odom/robot1, publishers: [/acme_driver_robot1]}" in plan
+    )
+
+
+DEAF = """
+import rclpy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+
+
+class Pilot(Node):
+    def __init__(self):
+        super().__init__("pilot")
+        self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(Odometry, "odom", print, 10)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Pilot())
+"""
+
+
+def gaps(folder: Path, node: str) -> dict[str, str]:
+    """The level and words of each code that the plan of a built fleet has as a gap."""
+    (folder / "acme/acme/driver.py").write_text(node)
+    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "built")]) == 0
+    plan = from_yaml((folder / "built/plan.yaml").read_bytes(), "plan.yaml")
+    return {it.code: f"{it.level} {it.message}" for it in plan.gaps}
+
+
+def test_a_fleet_that_nothing_moves_is_not_as_planned(folder: Path) -> None:
+    found = gaps(folder, DEAF)
+    what = "nothing reads cmd_vel of acme_driver and nothing sends odom of acme_driver"
+    who = "robot 'robot1': all that it runs is known, and"
+    assert found["MF865"] == f"warning {who} {what}".replace("acme_driver", "pilot_robot1")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        pytest.param("print, 10)", "print, 10)\n        Part(self)", id="known-in-part"),
+        pytest.param('"odom"', "open('x').read()", id="a-name-of-a-run"),
+        pytest.param('Twist, "cmd_vel"', 'Twist, "plan"', id="no-command"),
+    ],
+)
+def test_what_is_known_in_part_may_be_moved(folder: Path, old: str, new: str) -> None:
+    node = DEAF.replace(old, new).replace(
+        "import rclpy\n", "import rclpy\nfrom other import Part\n"
+    )
+    found = gaps(folder, node)
+    assert "nothing reads" not in found.get("MF865", "")
