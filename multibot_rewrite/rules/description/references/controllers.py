@@ -153,7 +153,6 @@ def _interfaces(subject: Subject, path: str, is_sure: bool) -> tuple[Interface, 
     from multibot_rewrite.knowledge.stacks import load_nodes
     from multibot_rewrite.producers.evidence.hardware import control_system, exported
     from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-    from multibot_rewrite.producers.interfaces import control_system
     from multibot_rewrite.rules.system.states import claims_any
 
     release, document = subject.settings.distro, subject.document
