@@ -17,7 +17,6 @@ from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, launched_by
 from multibot_rewrite.fleet.proposal.fitting import Fitting, check_winner, fitting, not_started
-from multibot_rewrite.fleet.proposal.launches import files_given, read_any
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import (
     LEAST,
@@ -172,24 +171,22 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
     """The parameter files that can be read; those with fewest names that the robot has not come first,
     then the nearest. Raises Undecided where none is more likely than another for one node."""
     known = load_known_nodes("", release)
-    given = files_given(read_any(found.launch), found.params)
     loaded = {*_loaded(robot)}
     asked = {*filter(lambda it: it in found.meant or os.path.abspath(it) in loaded, found.params)}
     read = []
-    for path in _nearest(robot, found.params, found.launch, given):
+    for path in _nearest(robot, found.params, found.launch):
         try:
             nodes = given_nodes([read_yaml(read_file(path), path)], known)
         except InputError as error:
             left[path] = str(error)
             continue
         apart = path not in asked and package_of(path) != package_of(robot.path)
-        if apart and (why := not_started(path, nodes, known, found.launch, given.get(path, set()))):
+        if apart and (why := not_started(path, nodes, known)):
             left[path] = why
             continue
-        one = fitting(robot, path, nodes, known, found.bridge)
-        read.append(one._replace(given=path in given))
+        read.append(fitting(robot, path, nodes, known, found.bridge))
     meant = {it.path for it in read if it.path in asked}
-    order = sorted(read, key=lambda it: (it.path not in meant, it.rank))
+    order = sorted(read, key=lambda it: (it.path not in meant, len(it.strange)))
     settled = {node for it in order if it.path in meant for node in it.nodes}
     check_winner([it for it in order if not it.nodes & settled], robot, found)
     yield from order
@@ -247,20 +244,19 @@ def _nearest(
     robot: Looked,
     paths: Sequence[str],
     launch: Sequence[str] = (),
-    given: Container[str] = (),
 ) -> list[str]:
-    """What the description itself loads first, what launch files give to nodes (``given``), what is in
-    its own package, what a launch file names, and by how like its own the paths are."""
+    """What the description itself loads first, what is in its own package, what a launch file names,
+    and by how like its own the paths are."""
     words, home = set(_WORD.findall(robot.path.lower())), package_of(robot.path)
     loaded = set(_loaded(robot))
 
-    def distance(path: str) -> tuple[bool, bool, bool, bool, int, int, str]:
+    def distance(path: str) -> tuple[bool, bool, bool, int, int, str]:
         base = os.path.basename(path)
         named = any(base in text_of(it) for it in launch)
         like = len(words & set(_WORD.findall(path.lower())))
-        first = os.path.abspath(path) not in loaded, path not in given
+        first = os.path.abspath(path) not in loaded
         more = len(set(_WORD.findall(path.lower())) - words)
-        return *first, package_of(path) != home, not named, -like, more, path
+        return first, package_of(path) != home, not named, -like, more, path
 
     return sorted(paths, key=distance)
 

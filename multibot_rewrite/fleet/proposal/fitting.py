@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence
 
 from lxml import etree
 
@@ -24,18 +23,11 @@ _MORE = 2
 
 
 class Fitting(NamedTuple):
-    """A parameter file: the nodes that it is for, its names that the robot has not, and whether a
-    launch file gives it to a node."""
+    """A parameter file: the nodes that it is for, and its names that the robot has not."""
 
     path: str
     nodes: frozenset[str]
     strange: frozenset[str]
-    given: bool = False
-
-    @property
-    def rank(self) -> tuple[bool, bool, int]:
-        """The first of these go best with the robot; raises nothing."""
-        return bool(self.strange), not self.given, len(self.strange)
 
 
 def fitting(
@@ -55,28 +47,16 @@ def fitting(
     return Fitting(path, names, frozenset(found))
 
 
-def not_started(
-    path: str,
-    nodes: Sequence[Run],
-    known: KnownNodes,
-    launched: Sequence[str],
-    given: Set[str],
-) -> str:
-    """Why a file of another package than the description's is not the robot's, empty where it may be:
-    it is an example beside the code of a node, or its nodes are known to nobody and not started.
-    ``given`` are the packages of the nodes that get it from launch files."""
-    base, own = os.path.basename(path), package_of(path)
-    naming = {package_of(it) for it in launched if base in text_of(it)}
+def not_started(path: str, nodes: Sequence[Run], known: KnownNodes) -> str:
+    """Why a file of another package than the description's is not the robot's, where no launch file
+    starts that; empty where it may be: it is an example beside the code of a node, or nobody knows its
+    nodes."""
+    own = package_of(path)
     packages = {known.nodes[it.fact.known].package for it in nodes if it.fact.known in known.nodes}
-    if own and own[0] in packages and naming <= {own}:
-        return f"it is an example of {own[0]}, and no launch file of another package names it"
-    if not nodes and own and given and given <= {own[0], ""}:
-        return f"it is for any node, and launch files give it to nodes of {own[0]} alone"
-    if not launched or packages or given & {"", *(it.package for it in known.nodes.values())}:
-        return ""
-    if not nodes:
-        return "it is for any node, and no launch file gives it to a node that is known"
-    return "" if given or naming else f"no launch file starts {nodes[0].node}"
+    if own and own[0] in packages:
+        return f"it is an example of {own[0]}"
+    who = nodes[0].node if nodes else "any node"
+    return "" if packages else f"it is for {who}, which no launch file of the robot starts"
 
 
 def _named(nodes: Iterable[Run], known: KnownNodes) -> Iterator[tuple[str, str]]:
@@ -111,7 +91,7 @@ def check_winner(its: Sequence[Fitting], robot: Looked, found: Found) -> None:
 
 
 def _is_rival(it: Fitting, best: Fitting) -> bool:
-    return it.given == best.given and len(it.strange) <= _MORE * len(best.strange)
+    return len(it.strange) <= _MORE * len(best.strange)
 
 
 def _shown(names: Iterable[str]) -> str:

@@ -129,22 +129,6 @@ def said_of(it: LaunchedNode) -> str:
     return f"{who}: {given}" if given else who
 
 
-def files_given(read: Iterable[Reading], paths: Iterable[str]) -> dict[str, set[str]]:
-    """Those of some files that nodes or included launch files get as parameters, each with the packages
-    of these nodes, of which an included file tells none."""
-    found: dict[str, set[str]] = {}
-    for path, package in (one for it in read for one in _files(it.graph)):
-        found.setdefault(path, set()).add(package)
-    real = {it: os.path.realpath(it) for it in paths}
-    return {it: found[path] for it, path in real.items() if path in found}
-
-
-def _files(it: LaunchGraph) -> Iterator[tuple[str, str]]:
-    yield from ((value, "") for one in it.includes for _, value in one.arguments if value)
-    for node in it.nodes:
-        yield from ((given.source, node.package) for given in node.parameters if given.source)
-
-
 def is_of_robot(it: LaunchedNode) -> bool:
     """Is it a process of a robot, no simulator, and no program that ends or only looks?"""
     ways = programs()

@@ -6,8 +6,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
+from collections.abc import Mapping, Sequence
 
 from lxml import etree
 
@@ -34,8 +33,9 @@ from multibot_rewrite.fleet.file.simulator_switch import (
     suits_simulator,
     switch_for,
 )
-from multibot_rewrite.fleet.proposal.launches import Bringup
+from multibot_rewrite.fleet.proposal.launches import Bringup, Reading
 from multibot_rewrite.fleet.proposal.searching import text_of
+from multibot_rewrite.producers.launch.records import LaunchArgument
 
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
 # How the file names of plugins for Gazebo Classic begin.
@@ -303,48 +303,35 @@ def is_placed(it: Looked) -> bool:
 
 # What gives each robot its own names.
 _PREFIX, _NAME = ("prefix", "tf_prefix"), ("name", "robot_name", "namespace", "ns")
-# A declaration in Python or XML: its default, or the first of its choices.
-_XML = r"""<arg\b[^<>]*\bname=["']%s["'][^<>]*\bdefault=["']([^"'$]+)["']"""
-# Behind its name, what is said of an argument: so many characters at most, and not of another one.
-_NEAR, _ANOTHER = 400, re.compile(r"Declare|LaunchConfiguration")
-_VALUE = r"""\b%s\s*=\s*(?:\[\s*)?["']([^"']+)["']"""
-_DEFAULT, _CHOICES = re.compile(_VALUE % "default(?:_value)?"), re.compile(_VALUE % "choices")
 _ARGUMENT = re.compile(r"""<xacro:arg\b[^<>]*\bname=["'](\w+)["']""")
 
 
 class NeededValues(NamedTuple):
-    """Values that ``launch`` files give to the arguments of xacros."""
+    """Values for the arguments of xacros, by the launch files that are ``read``."""
 
-    launch: Sequence[str]
+    read: Sequence[Reading]
 
     def of(self, name: str) -> str:
         """The value of an argument: the robot's name where it is called so, else what a launch file
-        declares; empty where none does. Raises nothing."""
+        gives or declares; empty where none does. Raises nothing."""
         if name in _PREFIX:
             return "{robot}_"
         if name in _NAME:
             return "{robot}"
-        found = (self._declared(name, _DEFAULT), self._in_xml(name), self._declared(name, _CHOICES))
-        return next(chain(*found), "")
+        pairs = (pair for it in self.read for one in it.graph.read for pair in one.arguments)
+        given = [value for key, value in pairs if key == name]
+        declared = [it.default for it in self._declared(name)]
+        return next(filter(None, (*given, *declared)), self._choice(name))
 
     def of_mandatory(self, path: str) -> dict[str, str]:
         """The arguments of a xacro that every launch has to choose a value for, with the first of them:
         the xacro's own default may be no value at all. Raises nothing."""
         names = dict.fromkeys(_ARGUMENT.findall(text_of(path)))
-        return {name: value for name in names if (value := self._choice(name))}
+        free = (it for it in names if not any(one.default for one in self._declared(it)))
+        return {name: value for name in free if (value := self._choice(name))}
+
+    def _declared(self, name: str) -> list[LaunchArgument]:
+        return [one for it in self.read for one in it.graph.declared if one.name == name]
 
     def _choice(self, name: str) -> str:
-        with_default = any(self._declared(name, _DEFAULT))
-        return "" if with_default else next(self._declared(name, _CHOICES), "")
-
-    def _in_xml(self, name: str) -> Iterator[str]:
-        pattern = re.compile(_XML % re.escape(name))
-        yield from (found[1] for it in self.launch if (found := pattern.search(text_of(it))))
-
-    def _declared(self, name: str, value: re.Pattern[str]) -> Iterator[str]:
-        """What a keyword is where Python declares an argument."""
-        named = re.compile(rf"""["']{re.escape(name)}["']\s*,""")
-        for text in map(text_of, self.launch):
-            ends = (it.end() for it in named.finditer(text))
-            near = (_ANOTHER.split(text[end : end + _NEAR], maxsplit=1)[0] for end in ends)
-            yield from (found[1] for it in near if (found := value.search(it)))
+        return next((word for it in self._declared(name) for word in it.choices), "")

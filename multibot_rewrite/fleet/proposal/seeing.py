@@ -28,7 +28,7 @@ from multibot_rewrite.fleet.proposal.choosing import (
     partner,
 )
 from multibot_rewrite.fleet.proposal.companions import srdf_of
-from multibot_rewrite.fleet.proposal.launches import Bringup
+from multibot_rewrite.fleet.proposal.launches import Bringup, read_any
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
     Looked,
@@ -98,7 +98,7 @@ def see(wanted: Wanted) -> Seen:
     wanted.tell(f"looking for robots in {', '.join(wanted.paths)}")
     found = search(wanted.paths)
     reach = Reach(trust=wanted.trust)
-    values = NeededValues(found.launch)
+    values = NeededValues(read_any(found.launch))
     every = found.descriptions
     if len(every) > MOST:
         every = tuple(sorted(every, key=lambda it: -launches_of(it, found)))[:MOST]
@@ -209,7 +209,7 @@ def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> li
     )
     own = [with_own_arguments(it, tree, reach) for it in launched]
     made = [in_its_world(it, _is_simulated(it, wanted), reach) for it in own]
-    values = NeededValues(found.launch)
+    values = NeededValues(read_any(found.launch))
     return [
         with_semantic_arguments(it, srdf_of(it, found), reach, values) if found.srdf else it
         for it in made

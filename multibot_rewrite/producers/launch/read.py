@@ -22,6 +22,7 @@ from multibot_rewrite.producers.launch.failures import (
     not_installed,
 )
 from multibot_rewrite.producers.launch.includes import unread_of
+from multibot_rewrite.producers.launch.kept_paths import lasting
 from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.read_files import descriptions_in, files_read, keep_reads
@@ -167,7 +168,7 @@ def _declared(description: Any) -> tuple[LaunchArgument, ...]:
         given = it.default_value
         parts = given if isinstance(given, list | tuple) else [given or ""]
         plain = [one if isinstance(one, str) else getattr(one, "text", None) for one in parts]
-        default = "".join(map(str, plain)) if None not in plain else ""
+        (default,) = lasting(("".join(map(str, plain)) if None not in plain else "",))
         found.setdefault(
             it.name, LaunchArgument(it.name, default, tuple(map(str, it.choices or ())))
         )

@@ -96,44 +96,27 @@ def test_sections_say_the_stacks(nodes: str, stacks: list[str], tmp_path: Path) 
     assert {it: why for it, why in made.stacks.items() if it not in bare} == said
 
 
-_LAUNCH = (
-    "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
-    "def generate_launch_description():\n    {} return LaunchDescription([{}])\n"
-)
-_NODE = "it = Node(package='{}', executable='e', parameters=[{!r}]);"
-
-
 @pytest.mark.parametrize(
-    ("package", "node", "by", "why"),
+    ("package", "node", "why"),
     [
-        # Beside the code of the node: an example, but where the robot's own package starts it.
-        ("nav2_collision_monitor", "collision_monitor", "", "it is an example of"),
-        ("nav2_collision_monitor", "collision_monitor", "own", ""),
-        ("own", "collision_monitor", "", ""),
-        # A node that nobody knows is the robot's where a launch file has it.
-        ("own", "mapper", "", "no launch file starts mapper"),
-        ("own", "mapper", "own", ""),
-        # It may read a file that its text names in another way than by a node.
-        ("own", "mapper", "unused", ""),
-        # A section of every node is for that which gets it.
-        ("own", "/**", "own", "it is for any node"),
-        ("own", "/**", "robot_localization", ""),
+        # Beside the code of the node: an example.
+        ("nav2_collision_monitor", "collision_monitor", "it is an example of"),
+        ("own", "collision_monitor", ""),
+        # Where a launch file starts the robot, that says which files its nodes read.
+        ("own", "mapper", "it is for mapper, which no launch file of the robot starts"),
+        ("own", "/**", "it is for any node, which no launch file of the robot starts"),
         # With the description's own package nothing is asked.
-        (".", "mapper", "", ""),
+        (".", "mapper", ""),
     ],
 )
 def test_files_of_nodes_that_are_not_started(
-    package: str, node: str, by: str, why: str, tmp_path: Path
+    package: str, node: str, why: str, tmp_path: Path
 ) -> None:
-    launch = tmp_path / "bringup/up.launch.py"
-    for at in (tmp_path, tmp_path / "own", tmp_path / "nav2_collision_monitor", launch.parent):
+    for at in (tmp_path, tmp_path / "own", tmp_path / "nav2_collision_monitor"):
         at.mkdir(exist_ok=True)
         (at / "package.xml").write_text(f"<package><name>{at.name}</name></package>")
     file = params(tmp_path / package, "p.yaml", node)
-    starts = _NODE.format(by, file) if by else ""
-    launch.write_text(_LAUNCH.format(starts, "it" if by and by != "unused" else ""))
-    found = Found(params=(file,), launch=(str(launch),))
-    made = companions_of(looked(tmp_path), found, "jazzy")
+    made = companions_of(looked(tmp_path), Found(params=(file,)), "jazzy")
     assert bool(made.files.get("params")) == (not why)
     assert made.left.get(file, "").startswith(why)
 

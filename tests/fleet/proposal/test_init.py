@@ -246,6 +246,15 @@ def test_another_description_is_taken_where_the_first_does_not_build(tmp_path: P
     assert fleet["description"] == "other.urdf"
 
 
+def launched(folder: Path, actions: str) -> None:
+    """Write a launch file of some actions."""
+    names = ("launch", "launch.actions", "launch.substitutions", "launch_ros.actions")
+    lines = [f"from {it} import *" for it in names]
+    made = f"LaunchDescription([{actions}])".replace("FOLDER", str(folder))
+    text = "\n".join((*lines, f"def generate_launch_description(): return {made}"))
+    (folder / "r.launch.py").write_text(text)
+
+
 @pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
@@ -254,14 +263,16 @@ def test_another_description_is_taken_where_the_first_does_not_build(tmp_path: P
         "DeclareLaunchArgument('kind', default_value='small')",
         "DeclareLaunchArgument(\n'other', default_value='x'), DeclareLaunchArgument(\n"
         "    'kind', description='it', choices=['small', 'large'])",
-        "LaunchConfiguration('other', default='x'), LaunchConfiguration('kind', default='small')",
+        "Node(package='robot_state_publisher', executable='robot_state_publisher', parameters=["
+        "{'robot_description': Command(['xacro FOLDER/r.urdf.xacro kind:=',"
+        " LaunchConfiguration('kind', default='small')])}])",
     ],
 )
 def test_what_a_xacro_needs_is_as_its_launch_file_has_it(launch: str, tmp_path: Path) -> None:
     (tmp_path / "r.urdf.xacro").write_text(
         TOOL.replace("/>", '><link name="$(arg kind)"/></robot>')
     )
-    (tmp_path / "r.launch.py").write_text(f"x = [{launch}]\n")
+    launched(tmp_path, launch)
     fleet = made(tmp_path, tmp_path)
     assert fleet["arguments"] == {"kind": "small"}
     assert "# It needs kind; init chose a value" in (tmp_path / "fleet.yaml").read_text()
@@ -274,7 +285,7 @@ def test_a_default_that_is_no_value_is_chosen(tmp_path: Path) -> None:
     robot = TOOL.replace("/>", f'>{body}<link name="a"/></robot>')
     (tmp_path / "r.urdf.xacro").write_text(robot)
     (tmp_path / "small.xacro").write_text(TOOL)
-    (tmp_path / "r.launch.py").write_text("DeclareLaunchArgument('kind', choices=['small'])\n")
+    launched(tmp_path, "DeclareLaunchArgument('kind', choices=['small'])")
     assert made(tmp_path, tmp_path)["arguments"] == {"kind": "small"}
 
 

@@ -10,7 +10,14 @@ from lxml import etree
 
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.fleet.proposal import looking
+from multibot_rewrite.fleet.proposal.launches import Reading
 from multibot_rewrite.fleet.proposal.looking import Looked, NeededValues
+from multibot_rewrite.producers.launch.records import (
+    FileRead,
+    LaunchArgument,
+    LaunchGraph,
+    LaunchOrder,
+)
 
 CONTROL = '<ros2_control name="c" type="system"/>'
 LINKS = '<link name="a"/><link name="b"/><link/>'
@@ -93,14 +100,15 @@ def test_arguments_that_name_robots_are_empty_but_for_needed_and_given_ones() ->
 def test_a_needed_argument_has_the_value_of_launch_files(
     name: str, value: str, tmp_path: Path
 ) -> None:
-    (tmp_path / "a.launch.py").write_text(
-        'DeclareLaunchArgument("model", default_value="ur5")\n'
-        'DeclareLaunchArgument("size", choices=["small", "large"])\n'
-        'DeclareLaunchArgument("both", choices=["a", "b"], default_value="b")\n'
+    declared = (
+        LaunchArgument("model", "ur5", ()),
+        LaunchArgument("size", "", ("small", "large")),
+        LaunchArgument("both", "b", ("a", "b")),
     )
-    (tmp_path / "b.launch.xml").write_text('<arg name="mode" default="sim"/>')
+    given = FileRead("r.xacro", (("mode", "sim"), ("model", "")))
+    graphs = LaunchGraph(declared=declared), LaunchGraph(read=(given,))
     (tmp_path / "r.xacro").write_text(f'<xacro:arg name="both"/><xacro:arg name="{name}"/>')
-    values = NeededValues([str(tmp_path / it) for it in ("a.launch.py", "b.launch.xml")])
+    values = NeededValues([Reading(LaunchOrder("up.launch.py"), it) for it in graphs])
     assert values.of(name) == value
     # The one that every launch has to choose.
     mandatory = {"size": "small"} if name == "size" else {}
