@@ -54,8 +54,8 @@ from multibot_rewrite.system.records import (
     SUBSCRIBES,
     TOPIC,
     Origin,
+    Place as At,
 )
-from multibot_rewrite.system.records import Place as At
 
 # Beginnings of names that are no absolute ones.
 _RELATIVE = ("~", "<")
