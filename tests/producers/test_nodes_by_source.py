@@ -331,6 +331,17 @@ def test_a_namespace_of_the_code_is_not_that_of_the_launch(acme: Path) -> None:
     assert ["namespace" in it.text for it in facts.untold] == [True]
 
 
+def test_a_part_that_no_call_is_seen_to_reach_is_not_known(acme: Path) -> None:
+    (acme / "scripts" / "tool.py").write_text(
+        "import rclpy\nfrom std_msgs.msg import String\n"
+        "def added(node):\n    node.create_publisher(String, 'hidden', 1)\n"
+        "node = rclpy.create_node('tool')\n{'add': added}['add'](node)\n"
+    )
+    facts = read("tool", acme).facts
+    assert facts.endpoints == ()
+    assert any("added" in it.text for it in facts.untold)
+
+
 def test_a_program_whose_source_is_not_here(acme: Path) -> None:
     assert node_of_program(str(acme), "acme", "other", {}, "jazzy") is None
 
