@@ -17,6 +17,7 @@ from multibot_rewrite.knowledge.conditions import (
     NODL,
     OPEN,
     OPEN_KIND,
+    SOURCE,
     parse_condition,
 )
 from multibot_rewrite.knowledge.node_library import NodeLibrary
@@ -87,8 +88,8 @@ def test_no_condition_is_prose() -> None:
     told = [it for it in terms if it.how == ":"]
     assert [it for it in told if it.parameter not in KINDS] == []
     left = {word for it in told if it.parameter == OPEN_KIND for word in it.values}
-    # A NoDL file of a user has the last one.
-    assert left == {*OPEN} - {NODL}
+    # A NoDL file and a source of a user have the last ones.
+    assert left == {*OPEN} - {NODL, SOURCE}
 
 
 def test_a_topic_that_somebody_has_to_hear_is_one_of_the_node() -> None:

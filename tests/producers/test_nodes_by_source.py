@@ -164,7 +164,7 @@ public:
   explicit Driver(const rclcpp::NodeOptions & options);
 private:
   using Scan = sensor_msgs::msg::LaserScan;
-  void setUp();
+  void setUp(); void onExtra();
   void add(const std::string & side);
   void onTimer();
   std::string topic_, frame_{"laser"}, twice_;
@@ -195,7 +195,11 @@ Driver::Driver(const rclcpp::NodeOptions & options) : Base("driver", options)
   debug_ = this->get_parameter("debug").as_bool();
   scan_ = create_publisher<Scan>(topic_, rclcpp::SensorDataQoS());
   setUp();
+  onExtra();
   if (debug_) { create_publisher<std_msgs::msg::String>("debug", 1); }
+#ifdef LIDAR
+  lidar_ = create_publisher<Scan>("lidar", 1);
+#endif
   timer_ = create_wall_timer(1s, [this]() { create_publisher<std_msgs::msg::String>("lambda", 1); });
   if (!rclcpp::ok()) { return; }
   create_publisher<std_msgs::msg::String>("behind", 1);
@@ -228,6 +232,9 @@ void Driver::onTimer()
   buffer_->lookupTransform("map", frame_, tf2::TimePointZero);
 }
 }
+#if WITH_EXTRA
+void Driver::onExtra() { create_publisher<std_msgs::msg::String>("built", 1); }
+#endif
 RCLCPP_COMPONENTS_REGISTER_NODE(acme::Driver)
 """
 MAIN = """
@@ -289,7 +296,9 @@ def test_a_node_in_cpp(acme: Path, program: str) -> None:
     only = {it.name: it.when for it in facts.endpoints if it.when}
     assert only == {
         "debug": "debug = true",
+        "lidar": "open: source",
         "lambda": "open: source",
+        "built": "open: source",
         "behind": "open: source",
         "late": "open: source",
     }
@@ -309,6 +318,28 @@ def test_a_node_in_cpp(acme: Path, program: str) -> None:
 def test_a_program_of_an_install_rule(acme: Path) -> None:
     facts = read("tool", acme).facts
     assert (facts.name, [it.name for it in facts.endpoints]) == ("tool", ["x"])
+
+
+def test_a_namespace_of_the_code_is_not_that_of_the_launch(acme: Path) -> None:
+    (acme / "scripts" / "tool.py").write_text(
+        "import rclpy\nfrom std_msgs.msg import String\n"
+        "node = rclpy.create_node('tool', namespace='inner')\n"
+        "node.create_publisher(String, 'own', 1)\nnode.create_publisher(String, '/all', 1)\n"
+    )
+    facts = read("tool", acme).facts
+    assert {it.name: it.when for it in facts.endpoints} == {"own": "open: source", "/all": ""}
+    assert ["namespace" in it.text for it in facts.untold] == [True]
+
+
+def test_a_part_that_no_call_is_seen_to_reach_is_not_known(acme: Path) -> None:
+    (acme / "scripts" / "tool.py").write_text(
+        "import rclpy\nfrom std_msgs.msg import String\n"
+        "def added(node):\n    node.create_publisher(String, 'hidden', 1)\n"
+        "node = rclpy.create_node('tool')\n{'add': added}['add'](node)\n"
+    )
+    facts = read("tool", acme).facts
+    assert facts.endpoints == ()
+    assert any("added" in it.text for it in facts.untold)
 
 
 def test_a_program_whose_source_is_not_here(acme: Path) -> None:

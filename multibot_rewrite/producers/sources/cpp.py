@@ -128,7 +128,19 @@ def _asked(node: Node) -> str:
             found.append(_not(text) if below.type == "else_clause" else text)
         elif above.type in _SOMETIMES or _is_left_before(above, below):
             found.append(OTHERWISE)
+    if _is_built_sometimes(above):
+        found.append(OTHERWISE)
     return "&".join(dict.fromkeys(it for it in reversed(found) if it))
+
+
+def _is_built_sometimes(node: Node) -> bool:
+    """Is a function only there as its code was built? That of ``#ifndef`` is what guards a header."""
+    above = node.parent
+    while above is not None:
+        if above.type.startswith("preproc_") and not text_of(above)[:60].startswith("#ifndef"):
+            return True
+        above = above.parent
+    return False
 
 
 def _test(node: Node | None) -> str:

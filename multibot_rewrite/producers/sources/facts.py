@@ -57,6 +57,8 @@ from multibot_rewrite.system.records import (
     Place as At,
 )
 
+# Beginnings of names that are no absolute ones.
+_RELATIVE = ("~", "<")
 SET = " set"
 # Of more parameters in a name than these only the defaults are followed.
 MOST_PARAMETERS = 3
@@ -122,7 +124,9 @@ def _node(
     plain = dict.fromkeys(it.name for it in named if not check_node_name(it.name))
     word = program.rpartition("::")[2].removesuffix(".py")
     made = [it for it in events if isinstance(it, Declared)]
-    ends = tuple(dict.fromkeys(end for it in made for end in _endpoints(names, it, release)))
+    every = dict.fromkeys(end for it in made for end in _endpoints(names, it, release))
+    doubted = ("~",) * (len(plain) > 1) if not any(it.space for it in named) else _RELATIVE
+    ends = tuple(it._replace(when=PERHAPS) if _is_in(it, doubted) else it for it in every)
     params = tuple(_params(names, events, read.source.values))
     sends, of_sends = _sends(names, events)
     both = {it.parameter: it for it in (*_frames(names, events), *of_sends)}
@@ -144,6 +148,13 @@ def _node(
         untold=tuple(_untold(read, named, plain, events, ends)),
     )
     return NodeSource(facts, params, tuple(_names_of_frames(events)), read.files)
+
+
+def _is_in(end: Endpoint, doubted: tuple[str, ...]) -> bool:
+    """Is its name resolved in a namespace or below a node that is not known for sure?"""
+    return bool(doubted) and (
+        end.name.startswith(doubted) or (doubted == _RELATIVE and end.name[:1] != "/")
+    )
 
 
 def _at(place: Place) -> str:

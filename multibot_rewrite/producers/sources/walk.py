@@ -72,6 +72,7 @@ OF_PYTHON = {
     *("TransformBroadcaster", "StaticTransformBroadcaster", "TransformListener"),
     "InteractiveMarkerServer",
 }
+OF_ANY = {"create_publisher", "create_subscription", "create_service", "create_client"}
 OF_ROS_1 = {"advertise", "advertiseCamera"}
 _IMAGES = {"create_publisher", "create_subscription"}
 IMAGE = "sensor_msgs/msg/Image"
@@ -162,10 +163,27 @@ def events_of(names: Names, starts: Sequence[Spot | Class]) -> Iterator[Event]:
     # What no name has called: callbacks, threads.
     for made in [one for every in [*walk.objects.values()] for one in every]:
         yield from _rest(walk, made)
+    yield from _never_reached(walk)
     if walk.budget[0] <= 0:
         first = starts[0]
         path = first.place.path if isinstance(first, Class) else first.path
         yield Unread("more than is followed", Place("", "", path, 1))
+
+
+def _never_reached(walk: _Walk) -> Iterator[Unread]:
+    """What would declare an endpoint, in a part that no call was followed to. A node of its own that
+    this program does not make is none of its parts."""
+    names = walk.names
+    for (owner, function), rows in names.calls.items():
+        for it in (it for it in rows if _opens(it) and it.place not in walk.seen):
+            if not _is_new_node(names, f"<new {owner}>"):
+                yield Unread(f"{owner or function}, which nothing is seen to call,", it.place)
+                break
+
+
+def _opens(call: Call) -> bool:
+    """Does it declare an endpoint, whatever it is asked of?"""
+    return call.name in OF_ANY
 
 
 def _rest(walk: _Walk, made: Made) -> Iterator[Event]:
@@ -236,6 +254,7 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
     elif (found := _class(names, name, call.place)) and _is_made(call, name, on):
         yield from _object(walk, spot.made, found, call.given, types, here, call.named)
     elif name in apis() and not _is_method_here(names, on, name):
+        walk.seen.add(call.place)
         yield from _declared(names, here, call, name, types, on)
     elif followed := _followed(walk, here, call, name, on):
         for it in followed:
