@@ -61,6 +61,7 @@ from multibot_rewrite.spelling.start import (
     Parameters,
     Start,
     Text,
+    path_of,
     spawner_of,
     start_of,
 )
@@ -202,7 +203,9 @@ def _started(given: _Given, name: str) -> Start:
     assert program is not None
     made = _with_own(given.plan, given.robot, start_of(it, program, _parameters(given, name)), name)
     own = given.values.get((given.robot.spec.name, name), {})
-    words = with_frames(made.arguments, own) if facts.kind == STATIC else made.arguments
+    words = made.arguments
+    if facts.kind == STATIC:
+        words = with_frames([path_of(it) for it in words], own)
     return made._replace(
         arguments=(*words, *_options(given, facts)),
         components=tuple(_components(given, name)),
@@ -473,8 +476,8 @@ def _shared(
             continue
         paths = first.spec.companions.get("params", ())
         files: list[Parameters] = [File(path_for(first, one)) for one in paths]
-        own = values.get((first.spec.name, name))
-        files += [own] if own else []
+        given = values.get((first.spec.name, name))
+        files += [given] if given else []
         if facts.kind in NAV2:
             started.append(it.node.name)
         if plan.file.cell and name == MOVE_GROUP:
@@ -485,5 +488,5 @@ def _shared(
         yield made._replace(remappings=rules, number=-1)
     if started:
         manager = known_program(LIFECYCLE_MANAGER, plan.file.distro)
-        values = {"autostart": True, "node_names": started}
-        yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (values,))
+        own = {"autostart": True, "node_names": started}
+        yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (own,))

@@ -92,8 +92,8 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
             lacking = _lacking(plan, group, name, it)
             if not (it.values or lacking):
                 continue
-            place = {"file": it.place.file, "line": it.place.line, "column": 1}
-            findings += (one._replace(**place) for one in made.findings)
+            file, line, *_ = it.place
+            findings += (one._replace(file=file, line=line, column=1) for one in made.findings)
             for robot in group.robots:
                 spec = robot.spec
                 own = spec.namespace, spec.tag, numbers[spec.name]

@@ -13,7 +13,10 @@ _LOOKS = "it only looks, or passes on what a person asks for"
 
 
 def once_for_all(node: LaunchedNode) -> str:
-    """Return why a process runs once for all robots; empty if each robot has its own."""
+    """Return why a process runs once for all robots; empty if each robot has its own, as its container
+    has of the components in it."""
+    if node.container:
+        return ""
     program = node.executable.rpartition("/")[2]
     command = f"{node.package}/{program}"
     told = (command, f"{command} {node.arguments[0]}" if node.arguments else command)
