@@ -61,6 +61,8 @@ robots:
         ("/MicroXRCEAgent", ""),
         ("/ros2 topic pub", ""),
         ("nav2_amcl/amcl", ""),
+        ("acme_bringup/rviz_pose_check.py", ""),
+        ("tf2_ros/static_transform_publisher", ""),
         ("joint_state_publisher_gui/joint_state_publisher_gui", ""),
         ("usb_cam/usb_cam_node_exe", ""),
         ("robot_state_publisher/robot_state_publisher", ""),

@@ -22,4 +22,6 @@ def once_for_all(node: LaunchedNode) -> str:
     told = (command, f"{command} {node.arguments[0]}" if node.arguments else command)
     rows = ((why, it) for why, every in programs().once.items() for it in every)
     found = (why for why, it in rows if any(fnmatchcase(one, it) for one in told))
-    return next(found, _LOOKS if only_looks(node.name or program) or only_looks(program) else "")
+    # A program that is called so belongs to a package that is: rviz_check.py of a robot is no window.
+    looks = only_looks(program) and (not node.package or only_looks(node.package))
+    return next(found, _LOOKS if looks else "")
