@@ -513,3 +513,23 @@ def test_spawners_wait_for_each_other_as_in_the_launch_file(tmp_path: Path) -> N
     words = [it.values["arguments"][0] for it in found if _word(it) == "spawner"]
     assert words == ["a", "b"]
     assert told(found)[-4:] == ["OnProcessExit of spawner", "spawner", "end", "spawner"]
+
+
+def test_a_node_of_all_robots_keeps_its_names(tmp_path: Path) -> None:
+    own = "{'base_frame_id': 'base_link', 'odom_frame_id': 'odom'}"
+    more = "simulator: none\nshared_nodes: [eyes]"
+    body = f"here('eyes', name='eyes', parameters=[{own}]),"
+    found = actions(tmp_path, body, more=more, layout="frames-per-robot")
+    assert of(found, "eyes")["parameters"][0] == {
+        **{"base_frame_id": "base_link", "odom_frame_id": "odom"}
+    }
+
+
+def test_a_bridge_under_another_name_is_that_of_the_build(tmp_path: Path) -> None:
+    """Both would bring the clock, and topics that the vendor's robot alone has."""
+    body = """
+        Node(package='ros_gz_bridge', executable='parameter_bridge', name='sensor_bridge',
+            arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock']),
+        Node(package='rviz2', executable='rviz2', name='view'), here('first'),
+    """
+    assert told(actions(tmp_path, body)) == ["first"]

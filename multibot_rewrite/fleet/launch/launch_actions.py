@@ -497,8 +497,10 @@ def _shared(
     first, started = plan.robots[0], []
     for name, it in names.started.items():
         facts = known.get(name)
-        program = program_of(facts, plan.file.distro) if facts and name not in _BY_HAND else None
-        if facts is None or program is None or name == "ros_gz_bridge":
+        if facts is None or not {name, facts.kind}.isdisjoint(_BY_HAND):
+            continue
+        program = program_of(facts, plan.file.distro)
+        if program is None:
             continue
         paths = first.spec.companions.get("params", ())
         files: list[Parameters] = [File(path_for(first, one)) for one in paths]

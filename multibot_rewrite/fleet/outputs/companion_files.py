@@ -87,7 +87,13 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
     findings: list[Finding] = []
     numbers = {it.spec.name: at for at, it in enumerate(plan.robots)}
     for group in group_robots(plan):
-        for name, it in plan.evidence_of(group.robots[0]).handed_on.items():
+        evidence = plan.evidence_of(group.robots[0])
+        once = {it.name for it in evidence.nodes if it.shared}
+        for name, it in evidence.handed_on.items():
+            if name in once:
+                # It is no robot's: its names stay.
+                values |= {(one.spec.name, name): it.values for one in group.robots if it.values}
+                continue
             made = rewrite_values(_values_job(plan, group, name, it))
             lacking = _lacking(plan, group, name, it)
             if not (it.values or lacking):
@@ -115,8 +121,6 @@ def _lacking(plan: FleetPlan, group: RobotGroup, name: str, it: HandedOn) -> str
     first, *_ = (*group.companions.get("params", ()), "")
     has_section = name in group.context.nodes and (not first or os.path.realpath(first) in it.files)
     if it.kind not in known.nodes or has_section or it.kind == STATIC:
-        return ""
-    if any(node.name == name and node.shared for node in evidence.nodes):
         return ""
     given = {key for run in evidence.given if run.node == name for key in run.values}
     lines = missing_defaults(group.context, known.nodes[it.kind], given | it.values.keys())
