@@ -533,3 +533,17 @@ def test_a_bridge_under_another_name_is_that_of_the_build(tmp_path: Path) -> Non
         Node(package='rviz2', executable='rviz2', name='view'), here('first'),
     """
     assert told(actions(tmp_path, body)) == ["first"]
+
+
+def test_a_controller_manager_gets_the_description_that_its_launch_file_gives_it(
+    tmp_path: Path,
+) -> None:
+    """Humble's reads a parameter; nothing leads its own topic to robot_state_publisher's."""
+    own = "[{'robot_description': 'x', 'update_rate': 50}]"
+    body = f"""
+        Node(package='controller_manager', executable='ros2_control_node', parameters={own}),
+    """
+    manager = of(actions(tmp_path, body), "ros2_control_node")["parameters"]
+    assert {"update_rate": 50} in manager
+    (text,) = (it["robot_description"] for it in manager if "robot_description" in it)
+    assert "robot2" in text and text.startswith("<")
