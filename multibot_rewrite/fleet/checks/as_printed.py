@@ -293,7 +293,13 @@ def _of_robot(robot: RobotStarts, printed: Sequence[Start]) -> Iterator[str]:
     for program in _TOLD:
         wanted = [it for it in planned if it[:2] == program]
         given = [it for it in printed if it[:2] == program and not left & {*it.arguments}]
+        # Lines stand in the order of nodes, processes in that of the launch.
+        wanted, given = (sorted(several, key=_words) for several in (wanted, given))
         yield from (f"{robot.name}: {it}" for it in _apart(wanted, given))
+
+
+def _words(it: Start) -> list[str]:
+    return [*map(path_of, it.arguments)]
 
 
 def _apart(planned: Iterable[Start], printed: Iterable[Start]) -> Iterator[str]:

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from multibot_rewrite.base.bounded import load_yaml
-from multibot_rewrite.base.file_kinds import LUA, MOVEIT, PARAMS, TREE
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
@@ -21,7 +20,7 @@ from multibot_rewrite.companions.context import (
     make_template,
 )
 from multibot_rewrite.companions.formats import made_for_any
-from multibot_rewrite.companions.named_file import Companion, NamedFile
+from multibot_rewrite.companions.named_file import LUA, MOVEIT, PARAMS, TREE, Companion, NamedFile
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.params.rewrite import rewrite_params, rewrite_values
 from multibot_rewrite.companions.params.shared_defaults import all_sections, missing_defaults
@@ -88,13 +87,19 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
     findings: list[Finding] = []
     numbers = {it.spec.name: at for at, it in enumerate(plan.robots)}
     for group in group_robots(plan):
-        for name, it in plan.evidence_of(group.robots[0]).handed_on.items():
+        evidence = plan.evidence_of(group.robots[0])
+        once = {it.name for it in evidence.nodes if it.shared}
+        for name, it in evidence.handed_on.items():
+            if name in once:
+                # It is no robot's: its names stay.
+                values |= {(one.spec.name, name): it.values for one in group.robots if it.values}
+                continue
             made = rewrite_values(_values_job(plan, group, name, it))
             lacking = _lacking(plan, group, name, it)
             if not (it.values or lacking):
                 continue
-            place = {"file": it.place.file, "line": it.place.line, "column": 1}
-            findings += (one._replace(**place) for one in made.findings)
+            file, line, *_ = it.place
+            findings += (one._replace(file=file, line=line, column=1) for one in made.findings)
             for robot in group.robots:
                 spec = robot.spec
                 own = spec.namespace, spec.tag, numbers[spec.name]
@@ -116,8 +121,6 @@ def _lacking(plan: FleetPlan, group: RobotGroup, name: str, it: HandedOn) -> str
     first, *_ = (*group.companions.get("params", ()), "")
     has_section = name in group.context.nodes and (not first or os.path.realpath(first) in it.files)
     if it.kind not in known.nodes or has_section or it.kind == STATIC:
-        return ""
-    if any(node.name == name and node.shared for node in evidence.nodes):
         return ""
     given = {key for run in evidence.given if run.node == name for key in run.values}
     lines = missing_defaults(group.context, known.nodes[it.kind], given | it.values.keys())

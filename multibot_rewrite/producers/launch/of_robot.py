@@ -61,6 +61,8 @@ _WORDS_OF_BUILD = (
 )
 # Packages of launch files alone, and how those of their nodes begin.
 _FAMILIES = {"nav2_bringup": "nav2_"}
+# What is built gives these their descriptions anyway.
+_DESCRIBED = ("robot_state_publisher", "move_group", "servo_node")
 NO_NAME = "the launch file gives it no name"
 NOTHING: Mapping[str, HandedOn] = {}
 
@@ -182,7 +184,7 @@ def _handed(it: _Pair, of_all: Collection[tuple[str, str]], is_own: bool) -> Han
     found = handed_on(it.node, it.facts.name, of_all, it.number)
     if it.facts.known == STATIC:
         found = found._replace(values={**found.values, **frames_in(it.node.arguments)})
-    texts = found.texts if is_own else ()
+    texts = () if it.facts.known in _DESCRIBED else found.texts
     unnamed = found.is_unnamed and is_own and not it.is_second
     return found._replace(texts=texts, is_unnamed=unnamed, kind=it.facts.known)
 
