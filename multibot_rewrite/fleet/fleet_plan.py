@@ -138,8 +138,9 @@ def _evidence(
         key: robot_nodes(spec, file, notes[spec.name], first[key].member, first[key].names.in_full)
         for key, spec in specs.items()
     }
-    every = (node.name for it in found.values() for node in (*it.nodes, *it.processes))
-    check_shared(file, dict.fromkeys(every))
+    nodes = [node.name for it in found.values() for node in it.nodes]
+    processes = [one.name for it in found.values() for one in it.processes]
+    check_shared(file, dict.fromkeys((*nodes, *processes)))
     real = [it for it in robots if may_be_real(it, found[node_sources(it.spec)])]
     for it in real[:1]:
         key = node_sources(it.spec)

@@ -28,7 +28,7 @@ from multibot_rewrite.fleet.launch import launch_file
 from multibot_rewrite.fleet.launch.launch_python import to_python
 from multibot_rewrite.fleet.launch.starts import CLASSIC, GZ, FleetStarts, RobotStarts
 from multibot_rewrite.fleet.outputs.relays import BRIDGE
-from multibot_rewrite.spelling.start import File, Start, Text
+from multibot_rewrite.spelling.start import File, Process, Start, Text
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "frame-prefix", "postfix")
 
@@ -88,6 +88,36 @@ ALL = FleetStarts(
     File("world.sdf"),
     {"": 1, "r1": 11, "r2": 12, "arm": 13},
 )
+
+
+def launched(name: str) -> RobotStarts:
+    """A robot with all that a vendor's launch file may start."""
+    later = Process(delay=2.5, event="OnProcessExit", after=0)
+    how = Process("nice", True, 1.5, "/srv", delay=4.0)
+    included = Process(is_include=True)
+    tf = (("/tf", f"/{name}/tf"),)
+    return RobotStarts(
+        name, "rover.urdf", f"namespace /{name}", (),
+        (
+            Start("acme", "first", f"/{name}", "first", process=Process(prefix="nice"), number=0),
+            Start("acme", "then", f"/{name}", process=Process(event="OnProcessStart", after=0),
+                  number=1),
+            Start("", "agent", arguments=("--dev", f"/dev/{name}"), process=later, number=2,
+                  environment={"LEVEL": "4", "PATH": "/own:", "OLD": ":/more"}),
+            Start("", "a | b", process=Process(shell=True, event="OnExecutionComplete", after=1)),
+            Start("acme", "late", f"/{name}", "late", process=how),
+            Start("lidar", "launch/x.launch.py", f"/{name}/front", "", (), tf,
+                  ("port", "/dev/ttyS1", "file", File(f"{name}/p.yaml")), environment={"A": "b"},
+                  process=included),
+            Start("web", "launch/w.launch.xml", process=included),
+        ),
+    )  # fmt: skip
+
+
+LAUNCHED = FleetStarts(
+    "Two robots.", (), (), (launched("r1"), launched("r2")), (), False, (),
+    environment={"RMW": "zenoh", "GZ_PATH": ":/meshes", "BIN": "/own:"},
+)  # fmt: skip
 # Of these nothing depends: what an error says of a robots:= that the fleet has not, and the type of
 # a text that is no substitution (launch_ros parameter_descriptions.py, ParameterValue.evaluate).
 MEANS_NOTHING = (
@@ -113,8 +143,19 @@ def test_what_is_printed_is_what_is_planned(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_whatever_is_changed_is_noticed(tmp_path: Path) -> None:
-    assert unnoticed(ALL, to_python(ALL), tmp_path / "out") == []
+@pytest.mark.parametrize("starts", [ALL, LAUNCHED])
+def test_whatever_is_changed_is_noticed(starts: FleetStarts, tmp_path: Path) -> None:
+    assert unnoticed(starts, to_python(starts), tmp_path / "out") == []
+
+
+def test_a_process_of_a_launch_is_printed_as_planned(tmp_path: Path) -> None:
+    """Moved out of its timer, or behind the event that it waits for, it is another."""
+    text = to_python(LAUNCHED)
+    assert differences(LAUNCHED, text, tmp_path / "out") == []
+    first, *others = LAUNCHED.robots[0].starts
+    rest = (it._replace(process=it.process._replace(delay=0.0, event="")) for it in others)
+    robots = (LAUNCHED.robots[0]._replace(starts=(first, *rest)), LAUNCHED.robots[1])
+    assert differences(LAUNCHED._replace(robots=robots), text, tmp_path / "out")
 
 
 @pytest.mark.slow

@@ -469,3 +469,67 @@ def test_a_stack_stands_for_a_launch_file_that_is_not_here(tmp_path: Path) -> No
     found = told(actions(tmp_path, body, more="stack: slam_toolbox"))
     assert "IncludeLaunchDescription" not in found
     assert any("slam_toolbox_node" in it for it in found)
+
+
+def test_what_stands_for_a_package_is_no_value(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A launch file may write down what it has of a package that is not here."""
+    setup = "import acme_params, yaml; made = yaml.dump({'a': acme_params.make('x')})"
+    found = actions(tmp_path, "here('n', parameters=[{'text': made, 'b': 2}]),", setup)
+    assert of(found, "n")["parameters"][0] == {"b": 2}
+    assert "the parameter text is made of a package that is not here" in capsys.readouterr().err
+    for name in ("fleet.launch.py", "plan.yaml"):
+        assert "unknown_modules" not in (tmp_path / "out" / name).read_text()
+
+
+def test_words_of_ros2_name_what_the_robot_has(tmp_path: Path) -> None:
+    body = """
+        ExecuteProcess(cmd=['ros2', 'topic', 'pub', '/arm/cmd', 'std_msgs/msg/String', '{}']),
+        ExecuteProcess(cmd=['/opt/ros/bin/ros2', 'lifecycle', 'set', '/amcl', 'configure']),
+        ExecuteProcess(cmd=['cat', '/amcl']),
+    """
+    found = actions(tmp_path, body, layout="tf-per-robot")
+    words = [it.values["cmd"] for it in found if it.kind == "ExecuteProcess"]
+    assert [it[3] for it in words[:2]] == ["/robot2/arm/cmd", "/robot2/amcl"]
+    assert words[2] == ["cat", "/amcl"]
+
+
+def test_spawners_wait_for_each_other_as_in_the_launch_file(tmp_path: Path) -> None:
+    """In the lines of commands.md they stand in another order."""
+    text = "{a: {type: T}, b: {type: T}}".replace(
+        "T", "joint_state_broadcaster/JointStateBroadcaster"
+    )
+    (tmp_path / "c.yaml").write_text(f"controller_manager:\n  ros__parameters: {text}\n")
+    body = """
+        Node(package='controller_manager', executable='ros2_control_node',
+            parameters=['FOLDER/c.yaml']),
+        RegisterEventHandler(OnProcessExit(target_action=second, on_exit=[
+            Node(package='controller_manager', executable='spawner', arguments=['a'])])),
+        second,
+    """.replace("FOLDER", str(tmp_path))
+    setup = "second = Node(package='controller_manager', executable='spawner', arguments=['b'])"
+    found = actions(tmp_path, body, setup)
+    words = [it.values["arguments"][0] for it in found if _word(it) == "spawner"]
+    assert words == ["a", "b"]
+    assert told(found)[-4:] == ["OnProcessExit of spawner", "spawner", "end", "spawner"]
+
+
+def test_a_node_of_all_robots_keeps_its_names(tmp_path: Path) -> None:
+    own = "{'base_frame_id': 'base_link', 'odom_frame_id': 'odom'}"
+    more = "simulator: none\nshared_nodes: [eyes]"
+    body = f"here('eyes', name='eyes', parameters=[{own}]),"
+    found = actions(tmp_path, body, more=more, layout="frames-per-robot")
+    assert of(found, "eyes")["parameters"][0] == {
+        **{"base_frame_id": "base_link", "odom_frame_id": "odom"}
+    }
+
+
+def test_a_bridge_under_another_name_is_that_of_the_build(tmp_path: Path) -> None:
+    """Both would bring the clock, and topics that the vendor's robot alone has."""
+    body = """
+        Node(package='ros_gz_bridge', executable='parameter_bridge', name='sensor_bridge',
+            arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock']),
+        Node(package='rviz2', executable='rviz2', name='view'), here('first'),
+    """
+    assert told(actions(tmp_path, body)) == ["first"]

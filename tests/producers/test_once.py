@@ -49,7 +49,6 @@ robots:
         ("/gz", "simulator"),
         ("/usr/bin/gzserver", "simulator"),
         ("nav2_map_server/map_server", "map"),
-        ("nav2_map_server/nav2_map_server::MapServer", "map"),
         ("rviz2/rviz2", "looks"),
         ("rqt_gui/rqt_gui", "looks"),
         ("foxglove_bridge/foxglove_bridge", "looks"),
@@ -62,6 +61,8 @@ robots:
         ("/MicroXRCEAgent", ""),
         ("/ros2 topic pub", ""),
         ("nav2_amcl/amcl", ""),
+        ("acme_bringup/rviz_pose_check.py", ""),
+        ("tf2_ros/static_transform_publisher", ""),
         ("joint_state_publisher_gui/joint_state_publisher_gui", ""),
         ("usb_cam/usb_cam_node_exe", ""),
         ("robot_state_publisher/robot_state_publisher", ""),
@@ -114,3 +115,10 @@ def test_an_unknown_name_is_refused(tmp_path: Path, capsys: pytest.CaptureFixtur
     with pytest.raises((AssertionError, InputError)):
         started(tmp_path, "own_nodes: [map_servr]")
     assert "own_nodes: no robot has a node 'map_servr'" in capsys.readouterr().err
+
+
+def test_a_component_is_in_the_container_of_its_robot() -> None:
+    more = ((), (), "/box", (), "", NOWHERE)
+    node = LaunchedNode("nav2_map_server", "map_server", "map_server", "/", *more)
+    assert once_for_all(node) == ""
+    assert once_for_all(node._replace(container=""))

@@ -52,6 +52,8 @@ _INCLUDE = "IncludeLaunchDescription"
 # Handlers are registered in this order.
 _EVENTS = (("OnProcessStart", "on_start"), ("OnProcessExit", "on_exit"))
 _INCLUDED = {GZ: "ros_gz_sim/gz_sim", CLASSIC: "gazebo_ros/gazebo"}
+# What is in a variable before.
+_REST = "rest"
 # More of a value is not shown.
 _SHOWN = 100
 _NOTHING = object()
@@ -110,12 +112,17 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     names = [it.name for it in starts.robots]
     other = {"headless": "true", "world": "other.sdf"}
     told = {name: it for name, it in other.items() if name in usual}
-    return [
+    launches = (
         Launching({}, frozenset({BRIDGE})),
         Launching({name: it for name, it in off.items() if name in usual}),
         *(Launching({"robots": ",".join(it), **told}) for it in (names[:2], names[2:]) if it),
         Launching({"robots": "1", "use_sim_time": "1"}),
-    ]
+    )
+    every = (starts.environment, *(it.environment for it in starts.every))
+    pairs = (pair for it in every for pair in it.items())
+    there = {name: _REST for name, it in pairs if ":" in (it[:1], it[-1:])}
+    # The last one has none of it.
+    return [*(it._replace(environment=there) for it in launches[:-1]), launches[-1]]
 
 
 class _Planned(NamedTuple):
@@ -202,8 +209,8 @@ class _Planned(NamedTuple):
             return
         time = {SIM_TIME: clock}
         own, *inner = (one._replace(parameters=(*one.parameters, time)) for one in it.every)
-        values = self.value(_given(own._replace(components=tuple(inner))))
         environment = self.environment(robot)
+        values = self.value(_given(own._replace(components=tuple(inner)), environment))
         kind = "ComposableNodeContainer" if inner else "LifecycleNode" if it.brought_up else "Node"
         yield Action(kind, {**values, "output": "screen", "environment": environment})
         if it.brought_up:
@@ -217,13 +224,22 @@ class _Planned(NamedTuple):
         """Return the environment of what is started for a robot."""
         domains = self.starts.domains
         domain = {"ROS_DOMAIN_ID": f"{domains[robot]}"} if domains else {}
-        return {**{name: it.strip(":") for name, it in self.starts.environment.items()}, **domain}
+        there = self.launch.environment
+        every = self.starts.environment.items()
+        own = {
+            name: "".join(with_rest(it, _REST)) if there else it.strip(":") for name, it in every
+        }
+        return {**there, **own, **domain}
 
     def other(self, it: Start, robot: str) -> Action:
         """Return a command, or the launch file of a package."""
         environment = self.environment(robot)
         if not it.process.is_include:
-            values = {**self.value(_given(it)), "output": "screen", "environment": environment}
+            values = {
+                **self.value(_given(it, environment)),
+                "output": "screen",
+                "environment": environment,
+            }
             return Action("ExecuteProcess", values)
         source = f"{share(it.package)}/{it.executable}"
         words = self.value(it.arguments)
@@ -246,9 +262,9 @@ class _Planned(NamedTuple):
         return [self.value(one) for one in it] if isinstance(it, list | tuple) else it
 
 
-def _given(it: Start) -> dict[str, Any]:
-    """Return the keywords of a process; nothing else is in the environment of a launch here."""
-    own = {name: with_rest(text, "") for name, text in it.environment.items()}
+def _given(it: Start, there: Mapping[str, str]) -> dict[str, Any]:
+    """Return the keywords of a process in an environment."""
+    own = {name: with_rest(text, there.get(name, "")) for name, text in it.environment.items()}
     return {name: own if name == "additional_env" else one for name, one in keywords(it).items()}
 
 
@@ -277,7 +293,13 @@ def _of_robot(robot: RobotStarts, printed: Sequence[Start]) -> Iterator[str]:
     for program in _TOLD:
         wanted = [it for it in planned if it[:2] == program]
         given = [it for it in printed if it[:2] == program and not left & {*it.arguments}]
+        # Lines stand in the order of nodes, processes in that of the launch.
+        wanted, given = (sorted(several, key=_words) for several in (wanted, given))
         yield from (f"{robot.name}: {it}" for it in _apart(wanted, given))
+
+
+def _words(it: Start) -> list[str]:
+    return [*map(path_of, it.arguments)]
 
 
 def _apart(planned: Iterable[Start], printed: Iterable[Start]) -> Iterator[str]:

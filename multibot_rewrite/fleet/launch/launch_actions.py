@@ -14,6 +14,7 @@ from typing import Any, TypeAlias
 from multibot_rewrite.base.conventions import BY_HAND
 from multibot_rewrite.base.naming import TF_TOPICS, Naming
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.fleet.checks.lacking import CARTOGRAPHER
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
@@ -61,6 +62,7 @@ from multibot_rewrite.spelling.start import (
     Parameters,
     Start,
     Text,
+    path_of,
     spawner_of,
     start_of,
 )
@@ -79,6 +81,10 @@ _BY_HAND = (*BY_HAND, "ros_gz_bridge", start_poses.NODE)
 _DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/stacks.md)"
 _NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
 _NO_NAME = "unnamed"
+# What of MoveIt's parameters has names of joints, links and controllers.
+_NAMED = ("robot_description", "moveit_simple_controller_manager", "moveit_ros_control_interface")
+# The words of ros2 behind which nodes stand, and those with topics, services and actions.
+_OF_NODES, _OF_NAMES = ("lifecycle", "param"), ("topic", "service", "action")
 _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
 _DOMAIN_BRIDGE = ("domain_bridge", "domain_bridge")
 
@@ -161,7 +167,7 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
     relayed = {it.run.node for it in relays(given.robot.spec.namespace, naming, file)}
     for name in given.names.started:
         it = given.facts.get(name)
-        if name in _BY_HAND or name in relayed:
+        if name in relayed or not {name, it.kind if it else ""}.isdisjoint(_BY_HAND):
             yield name, ""
         elif it is None:
             yield name, f"nothing is known of its program; {_DESCRIBE.format('programs')}"
@@ -177,7 +183,8 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
 
 def _is_needed(given: _Given, it: NodeFacts) -> bool:
     """A node under a condition: what nobody else sends is needed, and what is launched runs."""
-    if it.name in given.plan.evidence_of(given.robot).handed_on:
+    evidence = given.plan.evidence_of(given.robot)
+    if it.name in evidence.handed_on or it.name in evidence.spawned:
         return True
     topic = it.when.removeprefix(f"{UNSENT}: ")
     if topic == it.when:
@@ -202,7 +209,9 @@ def _started(given: _Given, name: str) -> Start:
     assert program is not None
     made = _with_own(given.plan, given.robot, start_of(it, program, _parameters(given, name)), name)
     own = given.values.get((given.robot.spec.name, name), {})
-    words = with_frames(made.arguments, own) if facts.kind == STATIC else made.arguments
+    words = made.arguments
+    if facts.kind == STATIC:
+        words = with_frames([path_of(it) for it in words], own)
     return made._replace(
         arguments=(*words, *_options(given, facts)),
         components=tuple(_components(given, name)),
@@ -260,6 +269,23 @@ def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
             yield made._replace(arguments=tuple(_with_files(made, robot)))
 
 
+def _of_one(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
+    """The words of a process; a command of ``ros2`` asks for nodes and topics of its robot."""
+    if it.package or os.path.basename(it.executable) != "ros2" or not it.arguments:
+        return it.arguments
+    return tuple(_named_for(word, it.arguments[0], space, naming) for word in it.arguments)
+
+
+def _named_for(word: str, verb: str, space: str, naming: Naming) -> str:
+    if not word.startswith("/") or check_topic_name(word):
+        return word
+    if verb in _OF_NODES:
+        above, name = placed(space, word, naming)
+        return f"{above.rstrip('/')}/{name}"
+    target = target_of(word, TOPIC, space, naming) if verb in _OF_NAMES else ""
+    return f"/{space}/{target}" if target and target[0] != "/" else target or word
+
+
 def _with_files(it: Start, robot: RewrittenRobot) -> Iterator[str | File]:
     """The words of a process, with the robot's own parameter files in those of a launch file."""
     own = {os.path.realpath(one): one for one in robot.spec.companions.get("params", ())}
@@ -281,7 +307,7 @@ def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) ->
     if made.process.is_include and naming is not None:
         topics = ((f"/{it}", target_of(f"/{it}", TOPIC, space, naming)) for it in TF_TOPICS)
         rules = tuple((old, new) for old, new in topics if new)
-    is_node, words = bool(made.package), made.arguments
+    is_node, words = bool(made.package), _of_one(made, space, naming) if naming else made.arguments
     if made.process.is_include:
         words = tuple(part for word in words for part in word.split(":=", 1))
     return Start(
@@ -336,6 +362,9 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
         elif robot.spec.srdf:
             srdf = Text(path_for(robot, expanded_name(robot.spec.srdf)))
             found.append({moveit_parameters.SEMANTIC: srdf})
+        # Of names those of the files count, of all else what the launch file says.
+        own = {key: it for key, it in (values or {}).items() if not key.startswith(_NAMED)}
+        found += [own] if own and made.path in given.files else []
     if known == LIFECYCLE_MANAGER:
         managed = (_called(given, it) for it in given.names.managed.get(name, ()))
         found.append({"autostart": True, "node_names": list(filter(None, managed))})
@@ -468,13 +497,15 @@ def _shared(
     first, started = plan.robots[0], []
     for name, it in names.started.items():
         facts = known.get(name)
-        program = program_of(facts, plan.file.distro) if facts and name not in _BY_HAND else None
-        if facts is None or program is None or name == "ros_gz_bridge":
+        if facts is None or not {name, facts.kind}.isdisjoint(_BY_HAND):
+            continue
+        program = program_of(facts, plan.file.distro)
+        if program is None:
             continue
         paths = first.spec.companions.get("params", ())
         files: list[Parameters] = [File(path_for(first, one)) for one in paths]
-        own = values.get((first.spec.name, name))
-        files += [own] if own else []
+        given = values.get((first.spec.name, name))
+        files += [given] if given else []
         if facts.kind in NAV2:
             started.append(it.node.name)
         if plan.file.cell and name == MOVE_GROUP:
@@ -485,5 +516,5 @@ def _shared(
         yield made._replace(remappings=rules, number=-1)
     if started:
         manager = known_program(LIFECYCLE_MANAGER, plan.file.distro)
-        values = {"autostart": True, "node_names": started}
-        yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (values,))
+        own = {"autostart": True, "node_names": started}
+        yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (own,))

@@ -16,7 +16,7 @@ from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.params.sections import raw_sections

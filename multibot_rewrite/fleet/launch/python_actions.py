@@ -138,8 +138,8 @@ def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
     else:
         yield from lines("cmd=", [*_pairs((it.executable, *it.arguments))], ",")
     if it.environment:
-        own = {name: _with_rest(name, text) for name, text in it.environment.items()}
-        yield from lines("additional_env=", own, ",")
+        set_ = {name: _with_rest(name, text) for name, text in it.environment.items()}
+        yield from lines("additional_env=", set_, ",")
     for name in HOW:
         if given := getattr(it.process, name):
             yield f"{name}={value(given)},"

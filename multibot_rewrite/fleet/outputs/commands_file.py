@@ -86,7 +86,11 @@ def _lines(starts: Iterable[Start], use_sim_time: bool | None) -> Iterator[str]:
 
 def _controllers(plan: FleetPlan) -> Iterator[str]:
     """The command that loads each controller, with the condition under which the robot has it."""
-    when = {it.name: said(it.when) for it in plan.fleet.facts if it.when}
+    (robot,) = plan.robots
+    # What a launch file spawns is started, if later.
+    spawned = plan.evidence_of(robot).spawned
+    facts = (it for it in plan.fleet.facts if it.when and it.name not in spawned)
+    when = {it.name: said(it.when) for it in facts}
     for it in started(plan.fleet.table):
         if it.way == SPAWNER:
             condition = when.get(it.node.node, "")

@@ -12,22 +12,20 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.formats import made_for_any
-from multibot_rewrite.companions.kinds import LUA, MOVEIT, PARAMS, TREE
-from multibot_rewrite.companions.named_file import Companion, NamedFile
-from multibot_rewrite.companions.names.node_topics import facts_by_name
-from multibot_rewrite.companions.params.lacking_sections import all_sections
-from multibot_rewrite.companions.params.rewrite import rewrite_params, rewrite_values
-from multibot_rewrite.companions.params.shared_defaults import missing_defaults
-from multibot_rewrite.companions.params.values import ParamsJob
-from multibot_rewrite.companions.sites import found_in
-from multibot_rewrite.companions.template import (
+from multibot_rewrite.companions.context import (
     NAMESPACE_SLOT,
     NUMBER_STEP,
     TAG_SLOT,
     fill_template,
     make_template,
 )
+from multibot_rewrite.companions.formats import made_for_any
+from multibot_rewrite.companions.named_file import LUA, MOVEIT, PARAMS, TREE, Companion, NamedFile
+from multibot_rewrite.companions.names.node_topics import facts_by_name
+from multibot_rewrite.companions.params.rewrite import rewrite_params, rewrite_values
+from multibot_rewrite.companions.params.shared_defaults import all_sections, missing_defaults
+from multibot_rewrite.companions.params.values import ParamsJob
+from multibot_rewrite.companions.sites import found_in
 from multibot_rewrite.companions.yaml_text import Splice, read_yaml
 from multibot_rewrite.description.own_ports import said_of_numbers
 from multibot_rewrite.fleet.checks.written_files import wrong_in_file
@@ -89,13 +87,19 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
     findings: list[Finding] = []
     numbers = {it.spec.name: at for at, it in enumerate(plan.robots)}
     for group in group_robots(plan):
-        for name, it in plan.evidence_of(group.robots[0]).handed_on.items():
+        evidence = plan.evidence_of(group.robots[0])
+        once = {it.name for it in evidence.nodes if it.shared}
+        for name, it in evidence.handed_on.items():
+            if name in once:
+                # It is no robot's: its names stay.
+                values |= {(one.spec.name, name): it.values for one in group.robots if it.values}
+                continue
             made = rewrite_values(_values_job(plan, group, name, it))
             lacking = _lacking(plan, group, name, it)
             if not (it.values or lacking):
                 continue
-            place = {"file": it.place.file, "line": it.place.line, "column": 1}
-            findings += (one._replace(**place) for one in made.findings)
+            file, line, *_ = it.place
+            findings += (one._replace(file=file, line=line, column=1) for one in made.findings)
             for robot in group.robots:
                 spec = robot.spec
                 own = spec.namespace, spec.tag, numbers[spec.name]
@@ -117,8 +121,6 @@ def _lacking(plan: FleetPlan, group: RobotGroup, name: str, it: HandedOn) -> str
     first, *_ = (*group.companions.get("params", ()), "")
     has_section = name in group.context.nodes and (not first or os.path.realpath(first) in it.files)
     if it.kind not in known.nodes or has_section or it.kind == STATIC:
-        return ""
-    if any(node.name == name and node.shared for node in evidence.nodes):
         return ""
     given = {key for run in evidence.given if run.node == name for key in run.values}
     lines = missing_defaults(group.context, known.nodes[it.kind], given | it.values.keys())

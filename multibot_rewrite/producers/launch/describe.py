@@ -44,6 +44,7 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
 from multibot_rewrite.producers.launch.spawners import controller_files
+from multibot_rewrite.producers.launch.unknown_modules import STOOD_FOR
 from multibot_rewrite.spelling.start import Process
 from multibot_rewrite.system.records import Place
 
@@ -357,7 +358,14 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
             names = (text(name, here.context) for name in given)
             yield from (_values({})._replace(untold=name) for name in names)
         return
-    if isinstance(found, dict):
+    if isinstance(found, dict) and STOOD_FOR in repr(found):
+        # The launch file has written down what stands for a package that is not here.
+        for name in found:
+            here.note(
+                f"the parameter {name} is made of a package that is not here", parameters=True
+            )
+            yield _values({})._replace(untold=name)
+    elif isinstance(found, dict):
         yield _values(found)
         yield from _made(found.values(), here)
         _keep_files(found.values(), here)
@@ -422,6 +430,9 @@ def _file(path: str, here: Visit) -> Iterator[ParameterText]:
     source = source_of(path, here.context)
     with open(path, encoding="utf-8", errors="replace") as file:
         text_ = file.read()
+    if STOOD_FOR in text_:
+        here.note("a parameter file is made of a package that is not here", parameters=True)
+        return
     # A file that the launch makes is gone when this is read.
     yield ParameterText("" if is_made(path) else os.path.realpath(path), text_, kept_file(source))
 

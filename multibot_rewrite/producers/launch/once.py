@@ -13,10 +13,15 @@ _LOOKS = "it only looks, or passes on what a person asks for"
 
 
 def once_for_all(node: LaunchedNode) -> str:
-    """Return why a process runs once for all robots; empty if each robot has its own."""
+    """Return why a process runs once for all robots; empty if each robot has its own, as its container
+    has of the components in it."""
+    if node.container:
+        return ""
     program = node.executable.rpartition("/")[2]
     command = f"{node.package}/{program}"
     told = (command, f"{command} {node.arguments[0]}" if node.arguments else command)
     rows = ((why, it) for why, every in programs().once.items() for it in every)
     found = (why for why, it in rows if any(fnmatchcase(one, it) for one in told))
-    return next(found, _LOOKS if only_looks(node.name or program) or only_looks(program) else "")
+    # A program that is called so belongs to a package that is: rviz_check.py of a robot is no window.
+    looks = only_looks(program) and (not node.package or only_looks(node.package))
+    return next(found, _LOOKS if looks else "")

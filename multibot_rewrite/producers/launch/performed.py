@@ -45,11 +45,12 @@ _OF_COMPONENT = ("package", "node_plugin", "node_name", "node_namespace")
 
 
 class Launching(NamedTuple):
-    """How a launch file is launched: its arguments, and the installed packages of those that it asks
-    for."""
+    """How a launch file is launched: its arguments, the installed packages of those that it asks for,
+    and the environment."""
 
     arguments: Mapping[str, str]
     installed: frozenset[str] = frozenset()
+    environment: Mapping[str, str] = {}
 
     @property
     def command(self) -> str:
@@ -129,6 +130,7 @@ def _performed(module: Any, path: str, it: Launching, packages: _Packages) -> Pe
     packages.installed = it.installed
     context = LaunchContext(noninteractive=True)
     context.environment.clear()
+    context.environment.update(it.environment)
     context.launch_configurations.update(it.arguments)
     try:
         description = module.generate_launch_description()

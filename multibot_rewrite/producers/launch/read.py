@@ -153,6 +153,10 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
     found = LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
     own = tuple(changed_environment(seen).items())
+    # The environment of launch is that of its process, and the file may be read again.
+    for name in [it for it in context.environment if it not in before]:
+        del context.environment[name]
+    context.environment.update(before)
     return found._replace(includes=tuple(seen.includes), environment=own, declared=declared)
 
 

@@ -25,6 +25,10 @@ def is_unknown(value: object) -> bool:
     return isinstance(value, Unknown | _Module)
 
 
+# How it is called in a text that is made of it.
+STOOD_FOR = __name__
+
+
 class Unknown:
     """What nothing is known of but the module that it is taken from; it has nothing in it."""
 

@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: Apache-2.0
+"""MB3: how names are written: those of links, joints and the robot that are not valid in URDF, SDF
+or tf, and those that are not valid in ROS: frames, topics, interfaces.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Claim, Edit
+from multibot_rewrite.base.naming import FRAME_KINDS, NOT_PLAIN, is_keyword
+from multibot_rewrite.base.rosnames import check_topic_name, propose_token, split_remap
+from multibot_rewrite.companions.named_file import EVERY
+from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.steps.document import value_slot
+from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.subject import Subject
+
+WORLD = "world"
+
+
+@rule("MB302", "empty-name", ERROR)
+def empty_name(subject: Subject) -> Iterator[Problem]:
+    """Names that are empty or white space."""
+    for kind, name, element in named(subject):
+        if not name.strip():
+            yield Problem(element, f"a {kind} has an empty name", "name")
+
+
+@rule("MB303", "space-in-name", WARNING)
+def space_in_name(subject: Subject) -> Iterator[Problem]:
+    """White space in a name or around it."""
+    for kind, name, element in named(subject):
+        if name.strip() and BLANK.search(name):
+            where = "" if name == name.strip() else " around it"
+            near = "_".join(name.split())
+            yield Problem(
+                element, f"{kind} {name!r} contains white space{where}", "name", f"use {near!r}"
+            )
+
+
+@rule("MB305", "double-colon", ERROR)
+def double_colon(subject: Subject) -> Iterator[Problem]:
+    """Names that become names in SDF."""
+    for kind, name, element in named(subject):
+        if "::" in name:
+            hint = f"use {name.replace('::', '_')!r}"
+            yield Problem(
+                element, f"{kind} {name!r} contains '::', which SDF reserves", "name", hint
+            )
+    if "::" in (name_of_robot(subject) or ""):
+        yield Problem(
+            subject.document.root, "the robot's name contains '::', which SDF reserves", "name"
+        )
+
+
+@rule("MB306", "reserved-name", ERROR)
+def reserved_name(subject: Subject) -> Iterator[Problem]:
+    """Links, joints and the robot; a link called world is MB307."""
+    for kind, name, element in named(subject):
+        if is_keyword(name) or (kind == "joint" and name == WORLD):
+            yield Problem(element, f"SDF reserves the name {name!r}: no {kind} may have it", "name")
+    robot = name_of_robot(subject)
+    if robot is not None and (is_keyword(robot) or robot == WORLD):
+        message = f"SDF reserves the name {robot!r}: no model may have it"
+        yield Problem(subject.document.root, message, "name")
+
+
+@rule("MB307", "world-link", WARNING)
+def world_link(subject: Subject) -> Iterator[Problem]:
+    """One finding, for its worst fault."""
+    link = subject.robot.link.get(WORLD)
+    if link is None:
+        return
+    above = subject.robot.above.get(WORLD, ())
+    content = next(
+        (it.tag for it in link.element.iterchildren("inertial", "visual", "collision")), ""
+    )
+    if above:
+        message = f"link 'world' is not the root: joint {above[0].name!r} moves it with the robot"
+        yield Problem(link.element, message, "name")
+    elif content:
+        message = f"link 'world' has <{content}>, which Gazebo ignores"
+        yield Problem(link.element, message, "name")
+
+
+@rule("MB308", "link-and-joint-alike", WARNING)
+def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
+    """Only where both stay: Gazebo merges the links of a fixed joint, and its name is gone."""
+    robot = subject.robot
+    for joint in robot.joints:
+        if joint.name not in robot.link or joint.type == "fixed" or not joint.name.strip():
+            continue
+        if all(it.type != "fixed" or it.parent == WORLD for it in robot.above.get(joint.name, ())):
+            message = f"{joint.name!r} is a joint and a link"
+            yield Problem(joint.element, message, "name", f"call it {joint.name + '_joint'!r}")
+
+
+@rule("MB309", "names-differ-by-case", NOTE)
+def names_differ_by_case(subject: Subject) -> Iterator[Problem]:
+    """The second of each pair."""
+    links = {it.name: it.element for it in subject.robot.links}
+    joints = {it.name: it.element for it in subject.robot.joints}
+    for kind, parts in (("link", links), ("joint", joints)):
+        if len({name.lower() for name in parts}) == len(parts):
+            continue
+        seen: dict[str, str] = {}
+        for name, element in parts.items():
+            first = seen.setdefault(name.lower(), name)
+            if first != name:
+                message = f"{kind} {name!r} differs from {first!r} only in upper and lower case"
+                yield Problem(element, message, "name")
+
+
+@rule("MB310", "name-not-ascii", NOTE)
+def name_not_ascii(subject: Subject) -> Iterator[Problem]:
+    """The message names the letter, which may look like another one."""
+    for kind, name, element in named(subject):
+        if not name.isascii():
+            letter = next(it for it in name if not it.isascii())
+            code = f"U+{ord(letter):04X}"
+            yield Problem(element, f"{kind} {name!r} contains {letter!r} ({code})", "name")
+
+
+# Names with a substitution are skipped: MB105 reports them.
+SUBSTITUTION = "$"
+BLANK = lazy_compile(r"\s")
+
+
+@memoized
+def named(subject: Subject) -> list[tuple[str, str, _Element]]:
+    """(kind, name, element) of the links and joints that have a name attribute."""
+    links, joints = subject.robot.links, subject.robot.joints
+    every = [
+        *[("link", it.name, it.element) for it in links],
+        *[("joint", it.name, it.element) for it in joints],
+    ]
+    return [it for it in every if SUBSTITUTION not in it[1] and _has_name(*it[1:])]
+
+
+def _has_name(name: str, element: _Element) -> bool:
+    return bool(name) or element.get("name") is not None
+
+
+def name_of_robot(subject: Subject) -> str | None:
+    """The robot's own name; None where it has none, or a substitution."""
+    root = subject.document.root
+    name = root.get("name") if root.tag == "robot" else None
+    return None if name is None or SUBSTITUTION in name else name
+
+
+# Interfaces that ros2_control has names for (hardware_interface_type_values.hpp).
+STANDARD = frozenset(("position", "velocity", "effort", "acceleration"))
+ROS_KINDS = frozenset({"topic", "service", "namespace"})
+_TOKEN = lazy_compile(r"[A-Za-z_]\w*", re.ASCII)
+# ROS 1, ROS 2 and both Gazebos agree on these.
+_ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
+
+
+@rule("MB301", "leading-slash", WARNING, formats=(URDF, SRDF, *EVERY))
+def leading_slash(subject: Subject) -> Iterator[Problem]:
+    """With a fix where the frame without the slash is a link. Plugins know /world."""
+    shared = subject.settings.naming.shared_frames
+    for claim in subject.inventory.claims:
+        if claim.value[:1] != "/" or claim.site.form != "whole":
+            continue
+        name = claim.value[1:]
+        if claim.site.kinds[0] in FRAME_KINDS and name and name not in shared:
+            known = name in subject.inventory.declared["link"]
+            message = f"frame {claim.value!r} starts with a slash, which tf2 refuses"
+            edits = _without_slash(subject, claim) if known else ()
+            yield Problem(claim.element, message, claim.attribute, "delete the slash", edits)
+
+
+def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
+    slot = value_slot(subject.document.source, claim.start, claim.attribute, claim.value)
+    if slot is None or subject.document.source[slot[0] : slot[0] + 1] != b"/":
+        return ()
+    return (Edit(slot[0], slot[0] + 1, b"", None),)
+
+
+@rule("MB304", "slash-in-joint", NOTE)
+def slash_in_joint(subject: Subject) -> Iterator[Problem]:
+    """Every component that has interfaces."""
+    for system in subject.elements.every("ros2_control"):
+        for part in system.iterchildren("joint", "sensor", "gpio"):
+            name = part.get("name", "")
+            if "/" in name and SUBSTITUTION not in name:
+                cut = name.partition("/")[0]
+                owner = f"its interfaces are taken as those of {cut!r}"
+                message = f"{part.tag} {name!r} contains a slash: {owner}"
+                yield Problem(part, message, "name", f"use {name.replace('/', '_')!r}")
+
+
+@rule("MB311", "robot-name", NOTE)
+def robot_name(subject: Subject) -> Iterator[Problem]:
+    """Names with '::' are MB305."""
+    name = name_of_robot(subject)
+    if name is None or "::" in name or _TOKEN.fullmatch(name):
+        return
+    hint = f"use {propose_token(name)!r}" if name.strip() else "add one"
+    yield Problem(
+        subject.document.root, f"robot name {name!r} is not a valid ROS name", "name", hint
+    )
+
+
+@rule("MB312", "invalid-ros-name", WARNING, formats=(URDF, *EVERY))
+def invalid_ros_name(subject: Subject) -> Iterator[Problem]:
+    """Values that are relative to a ROS namespace; those with a substitution are skipped."""
+    for claim in subject.inventory.claims:
+        site = claim.site
+        if not site.namespaced or site.kinds[0] not in ROS_KINDS:
+            continue
+        for name in _ros_names(claim):
+            if fault := _name_fault(name, site.section):
+                message = f"{site.kinds[0]} {name!r} is not a valid ROS name: {fault}"
+                yield Problem(claim.element, message, claim.attribute)
+
+
+def _ros_names(claim: Claim) -> list[str]:
+    """The names in a value: itself, or both sides of a remap rule."""
+    sides = [claim.value] if claim.site.form == "whole" else []
+    if claim.site.form in ("remap", "argument"):
+        rule = split_remap(claim.value)
+        sides = [rule.source, rule.target] if rule and not rule.source.startswith("__") else []
+    return [it for it in sides if it.strip("/") and NOT_PLAIN.isdisjoint(it.replace(" ", ""))]
+
+
+def _name_fault(name: str, section: str) -> str:
+    """Why rcl rejects a name; in a plugin that may be for ROS 1 or Gazebo, why all of them do."""
+    if _ALLOWED_EVERYWHERE.fullmatch(name) and not section.startswith("block ros"):
+        return ""
+    fault = check_topic_name(name.rstrip("/"))
+    return fault.reason if fault else ""
+
+
+@rule("MB313", "odd-interface-name", WARNING)
+def odd_interface(subject: Subject) -> Iterator[Problem]:
+    """Components and their interfaces; the name of a joint is reported at its declaration."""
+    for system in subject.elements.every("ros2_control"):
+        for it in system.iter(
+            "ros2_control", "sensor", "gpio", "command_interface", "state_interface"
+        ):
+            name = it.get("name")
+            if name is not None and (not name.strip() or _is_odd(it.tag, name.split())):
+                yield Problem(it, f"<{it.tag}> has the name {name!r}", "name")
+
+
+def _is_odd(tag: str, words: Collection[str]) -> bool:
+    """Is white space inside a name a slip, not the way a driver calls its registers?"""
+    return len(words) > 1 and (not tag.endswith("_interface") or not STANDARD.isdisjoint(words))
