@@ -6,9 +6,10 @@ What is looked for is data: ``HANDLERS`` has a function for each kind of syntax.
 
 from __future__ import annotations
 
-import itertools
+import math
 import re
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.producers.sources.expressions import (
@@ -160,10 +161,15 @@ def _not(text: str) -> str:
 
 def _is_left_before(block: Node, statement: Node) -> bool:
     """May the function end in a statement before this one?"""
-    if block.type != "compound_statement":
-        return False
-    before = itertools.takewhile(lambda it: it != statement, block.named_children)
-    return any(_may_leave(it) for it in before if it.type in ("if_statement", "preproc_ifdef"))
+    return block.type == "compound_statement" and _left_at(block) < statement.start_byte
+
+
+@lru_cache(maxsize=256)
+def _left_at(block: Node) -> float:
+    """Where the first statement of a block begins in which the function may end."""
+    left = ("if_statement", "preproc_ifdef")
+    found = (it.start_byte for it in block.named_children if it.type in left and _may_leave(it))
+    return next(found, math.inf)
 
 
 def _may_leave(node: Node) -> bool:
