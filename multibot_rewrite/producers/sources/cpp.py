@@ -44,8 +44,8 @@ if TYPE_CHECKING:
     from multibot_rewrite.producers.sources.syntax import Node
 
 LONGEST_CONDITION = 60
-_EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*,?\s*\)")
-_COMPONENT = re.compile(r"^\s*RCLCPP_COMPONENTS_REGISTER_NODE\(\s*([\w:]+)\s*\)", re.MULTILINE)
+_EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*(?:,\s*)?\)")
+COMPONENT = re.compile(r"^[ \t]*RCLCPP_COMPONENTS_REGISTER_NODE\(\s*([\w:]+)\s*\)", re.MULTILINE)
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([^>\"\n]+)[>\"]", re.MULTILINE)
 # Below these a thing happens only sometimes, or later.
 _SOMETIMES = {
@@ -65,7 +65,7 @@ def read_cpp(text: str, place: Place) -> Source:
         for item in HANDLERS[node.type](node, place):
             found[type(item)].append(item)
     found[Plugin] = [Plugin(last(one), last(base)) for one, base in _EXPORT.findall(text)]
-    found[Call] += [_component(it, place) for it in _COMPONENT.findall(text)]
+    found[Call] += [_component(it, place) for it in COMPONENT.findall(text)]
     read = Source(*(tuple(found[kind]) for kind in _COLUMNS))
     return read._replace(imports=tuple(dict.fromkeys(_INCLUDE.findall(text))))
 
