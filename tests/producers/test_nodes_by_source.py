@@ -376,6 +376,16 @@ def test_a_long_file_is_read_in_little_time(acme: Path) -> None:
     assert len(read("tool", acme).facts.endpoints) == 10_000
 
 
+def test_a_long_function_in_cpp_is_read_in_little_time(acme: Path) -> None:
+    lines = "".join(
+        f'  create_publisher<std_msgs::msg::String>("t{at}", 1);\n  if (x) {{ y = {at}; }}\n'
+        for at in range(5_000)
+    )
+    text = UNIT.replace("  setUp();\n", f"  setUp();\n{lines}")
+    (acme / "src" / "driver.cpp").write_text(text)
+    assert len(read("driver_node", acme).facts.endpoints) > 5_000
+
+
 def test_nothing_is_imported_or_run(acme: Path, tmp_path: Path) -> None:
     trace = tmp_path / "trace"
     (acme / "scripts" / "tool.py").write_text(f"open({str(trace)!r}, 'w')\nimport antigravity\n")

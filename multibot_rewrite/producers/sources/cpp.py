@@ -6,9 +6,10 @@ What is looked for is data: ``HANDLERS`` has a function for each kind of syntax.
 
 from __future__ import annotations
 
-import itertools
+import math
 import re
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.producers.sources.expressions import (
@@ -43,8 +44,8 @@ if TYPE_CHECKING:
     from multibot_rewrite.producers.sources.syntax import Node
 
 LONGEST_CONDITION = 60
-_EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*,?\s*\)")
-_COMPONENT = re.compile(r"^\s*RCLCPP_COMPONENTS_REGISTER_NODE\(\s*([\w:]+)\s*\)", re.MULTILINE)
+_EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*(?:,\s*)?\)")
+COMPONENT = re.compile(r"^[ \t]*RCLCPP_COMPONENTS_REGISTER_NODE\(\s*([\w:]+)\s*\)", re.MULTILINE)
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([^>\"\n]+)[>\"]", re.MULTILINE)
 # Below these a thing happens only sometimes, or later.
 _SOMETIMES = {
@@ -64,7 +65,7 @@ def read_cpp(text: str, place: Place) -> Source:
         for item in HANDLERS[node.type](node, place):
             found[type(item)].append(item)
     found[Plugin] = [Plugin(last(one), last(base)) for one, base in _EXPORT.findall(text)]
-    found[Call] += [_component(it, place) for it in _COMPONENT.findall(text)]
+    found[Call] += [_component(it, place) for it in COMPONENT.findall(text)]
     read = Source(*(tuple(found[kind]) for kind in _COLUMNS))
     return read._replace(imports=tuple(dict.fromkeys(_INCLUDE.findall(text))))
 
@@ -160,10 +161,15 @@ def _not(text: str) -> str:
 
 def _is_left_before(block: Node, statement: Node) -> bool:
     """May the function end in a statement before this one?"""
-    if block.type != "compound_statement":
-        return False
-    before = itertools.takewhile(lambda it: it != statement, block.named_children)
-    return any(_may_leave(it) for it in before if it.type in ("if_statement", "preproc_ifdef"))
+    return block.type == "compound_statement" and _left_at(block) < statement.start_byte
+
+
+@lru_cache(maxsize=256)
+def _left_at(block: Node) -> float:
+    """Where the first statement of a block begins in which the function may end."""
+    left = ("if_statement", "preproc_ifdef")
+    found = (it.start_byte for it in block.named_children if it.type in left and _may_leave(it))
+    return next(found, math.inf)
 
 
 def _may_leave(node: Node) -> bool:

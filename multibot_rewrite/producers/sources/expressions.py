@@ -25,7 +25,7 @@ LAST_TEXT = ("joinWithParentNamespace", "resolve_topic_name", "append")
 NAMES_PARAMETER = re.compile(r"(get|declare|add)\w*[pP]aram(eter)?(_if_not_declared|_or)?")
 LONGEST_NAME = 80
 MESSAGE = re.compile(r"::(msg|srv|action)::")
-_SCOPE = re.compile(r"(?:\w+(?:<[^<>]*>)?::)+(?=\w)")
+_SCOPE = re.compile(r"\b(?:\w+(?:<[^<>]*>)?::)+(?=\w)")
 _NODE = re.compile(
     r"<(this|\w*[nN]ode\w*|nh_?|n_?|parent\w*|shared_from_this|\w*interface\w*|Node:.*)>"
 )

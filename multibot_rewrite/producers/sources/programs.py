@@ -12,6 +12,7 @@ from functools import lru_cache
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.sources.cmake import CmakeCall, cmake_calls
+from multibot_rewrite.producers.sources.cpp import COMPONENT
 from multibot_rewrite.producers.sources.files import (
     NOT_RUN,
     READERS,
@@ -21,7 +22,6 @@ from multibot_rewrite.producers.sources.files import (
 )
 
 _ENTRY = re.compile(r"\s*([\w.+-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
-_REGISTERED = re.compile(r"^\s*RCLCPP_COMPONENTS_REGISTER_NODE\(\s*([\w:]+)\s*\)", re.MULTILINE)
 _SCRIPT = re.compile(r"\A#!.*python")
 _MAIN = re.compile(r"\bmain\s*\(")
 
@@ -121,7 +121,7 @@ def _component(folder: str, class_: str) -> Start | None:
     """The class of a component, and the file that registers it."""
     last = class_.rpartition("::")[2]
     for path in sources_in(folder):
-        names = () if path.endswith(".py") else _REGISTERED.findall(start_of_file(path))
+        names = () if path.endswith(".py") else COMPONENT.findall(start_of_file(path))
         if class_ in names or any(it.rpartition("::")[2] == last for it in names):
             return _begin((path,), class_=last)
     return None

@@ -26,7 +26,7 @@ DEEPEST = 12
 SELF = "self."
 _PART = re.compile(r"<([^<>]*)>")
 _BRACED = re.compile(r"\{([^{}]*)\}")
-_ROS_TYPE = re.compile(r"(\w+)(?:::|/|\.)(msg|srv|action)(?:::|/|\.)(?:_\w+\.)?(\w+)")
+_ROS_TYPE = re.compile(r"\b(\w+)(?:::|/|\.)(msg|srv|action)(?:::|/|\.)(?:_\w+\.)?(\w+)")
 FRAMES = ("header.frame_id", "child_frame_id")
 # A list of words, and a loop over one.
 LIST, EACH = "list:", "each "
