@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``python -m tools.bringups FOLDER``: does a fleet start what the vendor's bringup starts?
+
+FOLDER has a checkout of each repository of ``bringups.tsv``, called owner+name. The bringup is started
+with stubs for its programs, and so is the fleet that ``multibot init`` and ``multibot build`` make of
+the repository. Printed is a table: of the bringup's processes how many start for each robot, once for all,
+or not, and what differs. launch and launch_ros have to be importable, from ROS or on PYTHONPATH;
+``--sources`` are folders with packages beside the repository's own.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import shlex
+import shutil
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
+
+from tools.bringups.choose import Choice, chosen, launch_files
+from tools.bringups.compare import SHARED, Comparison, Match, compare
+from tools.bringups.running import Process, start
+from tools.strangers import MULTIBOT, run
+
+# How a question which file is meant ends.
+NAMED = re.compile(r"name one: multibot init (.+)")
+
+
+class Verdict(NamedTuple):
+    """What came out for a repository: the comparison, or why there is none."""
+
+    choice: Choice
+    comparison: Comparison
+    fault: str = ""
+    text: str = ""
+
+    def of(self, where: str) -> list[Match]:
+        """Return the processes of the bringup that are there in a way."""
+        return [it for it in self.comparison.matches if it.where == where]
+
+    def named(self, named: bool) -> list[Match]:
+        """Return the missing processes that init, build or the fleet file name, or do not name."""
+        lost = [*self.of("missing"), *self.of("some")]
+        return [it for it in lost if is_named(it.process, self.text) == named]
+
+
+def is_named(process: Process, text: str) -> bool:
+    """Return whether a text names the program of a process, or its node."""
+    words = {process.program, Path(process.program).name, process.name}
+    if process.program == "spawner" and process.words:
+        words = {process.words[0]}
+    return any(re.search(rf"(?<!\w){re.escape(it)}(?!\w)", text) for it in words if it)
+
+
+def judged(choice: Choice, checkout: Path, given: argparse.Namespace, folder: Path) -> Verdict:
+    """Start a bringup and the fleet that is made of it, and compare what starts."""
+    sources = [checkout, *(it.resolve() for it in given.sources)]
+    bringup = start(checkout / choice.file, choice.arguments, sources, folder / "one")
+    if bringup.fault:
+        return Verdict(choice, Comparison((), ()), f"the bringup does not start: {bringup.fault}")
+    without = Comparison(tuple(Match(it, "missing") for it in bringup.processes), ())
+    fault, text = made(choice, checkout, given, folder)
+    file, fleet = folder / "out" / "fleet.launch.py", folder / "fleet.yaml"
+    if fault or not file.exists():
+        return Verdict(choice, without, fault or "build wrote no launch file", text)
+    started = start(file, (), sources, folder / "two")
+    robots = [it["name"] for it in yaml.safe_load(fleet.read_text())["robots"]]
+    found = compare(bringup.processes, started.processes, robots)
+    fault = started.fault and f"the fleet does not start: {started.fault}"
+    return Verdict(choice, found, fault, text)
+
+
+def made(
+    choice: Choice, checkout: Path, given: argparse.Namespace, folder: Path
+) -> tuple[str, str]:
+    """Let multibot make a fleet of a checkout in a folder; return its fault, and all that was said."""
+    command, fleet = shlex.split(given.multibot), folder / "fleet.yaml"
+    shutil.rmtree(folder / "out", ignore_errors=True)
+    fleet.unlink(missing_ok=True)
+    options = ["-n", "2", "--yes", "--force", "-o", str(fleet)]
+    known = "--launch" in run([*command, "init", "--help"], choice.release).out
+    launch = ["--launch", str(checkout / choice.file), *choice.arguments] if known else []
+    words, text = [str(checkout), *launch], ""
+    for _ in range(4):
+        init = run([*command, "init", *words, *options], choice.release)
+        text += init.err + init.out
+        named = NAMED.search(init.err)
+        if named is None:
+            break
+        words = shlex.split(named[1])
+    if init.code not in (0, 1) or not fleet.exists():
+        return f"init {init.code}: {_last(init.err)}", text
+    if given.launched and "\nlaunch:" not in fleet.read_text():
+        row = shlex.join([str(checkout / choice.file), *choice.arguments])
+        with fleet.open("a") as out:
+            print(f"launch: [{json.dumps(row)}]\nlaunch_roots: [{checkout}]", file=out)
+    build = run(
+        [*command, "build", str(fleet), "-o", str(folder / "out"), "--force"], choice.release
+    )
+    text += fleet.read_text() + build.err + build.out
+    (folder / "said.txt").write_text(text)
+    return f"build {build.code}: {_last(build.err)}" if build.code else "", text
+
+
+def _last(text: str) -> str:
+    lines = [it for it in text.splitlines() if it.strip()]
+    errors = [it for it in lines if " error" in it]
+    return (errors or lines or [""])[-1][:300]
+
+
+HEAD = ("repository", "processes", "each", "differ", "once", "named", "silent", "extra", "why not")
+
+
+def table(verdicts: Iterable[Verdict]) -> Iterator[str]:
+    """Print a row for each repository, and the sums."""
+    yield f"| {' | '.join(HEAD)} |"
+    yield f"|---|{'--:|' * (len(HEAD) - 2)}---|"
+    sums: Counter[str] = Counter()
+    for it in verdicts:
+        each = it.of("each")
+        row = {
+            "processes": len(it.comparison.matches),
+            "each": len(each),
+            "differ": sum(bool(one.differs) for one in each),
+            "once": len(it.of("once")),
+            "named": len(it.named(True)),
+            "silent": len(it.named(False)),
+            "extra": len(it.comparison.extra),
+        }
+        sums.update(row)
+        yield f"| {' | '.join([it.choice.name, *map(str, row.values()), it.fault])} |"
+    yield f"| sum | {' | '.join(str(sums[it]) for it in HEAD[1:-1])} | |"
+
+
+def details(verdict: Verdict) -> Iterator[str]:
+    """Print each process of a bringup with where it is, its reason and what differs."""
+    yield f"## {verdict.choice.name}: {verdict.choice.file} {' '.join(verdict.choice.arguments)}"
+    if verdict.fault:
+        yield f"!! {verdict.fault}"
+    for it in verdict.comparison.matches:
+        where = it.where
+        if where in ("missing", "some"):
+            where += ", named" if is_named(it.process, verdict.text) else ", silent"
+        if where == "once" and Path(it.process.program).name not in SHARED:
+            where += ", no reason"
+        first = f" {it.process.words[0]}" if it.process.program == "spawner" else ""
+        yield f"{where:16} {it.process.label}{first}"
+        yield from (f"                   - {line}" for line in it.differs)
+    for one, count in Counter(it.label for it in verdict.comparison.extra).items():
+        yield f"extra            {one} x{count}"
+
+
+def main(words: Sequence[str]) -> int:
+    """Judge the repositories that were asked for; returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--half", choices=("work", "kept", "six"), default="work")
+    parser.add_argument("--only", default="", help="a part of the names")
+    parser.add_argument("--sources", type=Path, nargs="*", default=[])
+    parser.add_argument("--keep", type=Path, required=True, help="where to write")
+    parser.add_argument(
+        "--multibot", default=shlex.join(MULTIBOT), help="the command that is judged"
+    )
+    parser.add_argument(
+        "--launched", action="store_true", help="add launch: to a fleet file that has it not"
+    )
+    parser.add_argument(
+        "--list", action="store_true", help="list launch files that may be bringups"
+    )
+    given = parser.parse_args(words)
+    verdicts = []
+    for choice in chosen(given.half):
+        if given.only not in choice.name:
+            continue
+        checkout = (given.folder / choice.name.replace("/", "+")).resolve()
+        if given.list:
+            print(choice.name, *launch_files(checkout), sep="\n  ")
+            continue
+        keep = (given.keep / checkout.name).resolve()
+        verdicts.append(judged(choice, checkout, given, keep))
+        keep.mkdir(parents=True, exist_ok=True)
+        (keep / "details.txt").write_text("\n".join(details(verdicts[-1])) + "\n")
+        print(choice.name, verdicts[-1].fault, file=sys.stderr, flush=True)
+    print(*table(verdicts), sep="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
