@@ -17,6 +17,7 @@ from tools.bringups import running
 from tools.bringups.choose import chosen, launch_files
 from tools.bringups.compare import Comparison, compare
 from tools.bringups.install import install
+from tools.bringups.reading import read
 from tools.bringups.running import Process, start
 from tools.strangers import strangers
 
@@ -252,3 +253,21 @@ def test_the_list_has_each_once_and_no_stranger() -> None:
     names = [it.name for half in ("work", "kept", "six") for it in chosen(half)]
     assert len(names) == len(set(names))
     assert not {it.name for it in strangers()} & set(names)
+
+
+def test_without_launch_the_stand_in_reads_what_would_start(tmp_path: Path) -> None:
+    package = tmp_path / "acme"
+    (package / "launch").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>acme</name></package>")
+    (package / "launch/b.launch.py").write_text(
+        "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
+        "def generate_launch_description():\n    return LaunchDescription([\n"
+        "        Node(package='acme', executable='driver', name='d', parameters=[{'a': 1}],\n"
+        "             remappings=[('scan', '/front')], arguments=['-v']),\n"
+        "        Node(package='controller_manager', executable='spawner', arguments=['a', 'b'])])\n"
+    )
+    found = read(package / "launch/b.launch.py", (), [tmp_path])
+    driver, *spawners = found.processes
+    assert (driver.label, driver.rules) == ("acme/driver (d)", (("scan", "/front"),))
+    assert (driver.parameters, driver.words) == ({"a": 1}, ("-v",))
+    assert [it.words for it in spawners] == [("a",), ("b",)]

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """``python -m tools.bringups FOLDER``: does a fleet start what the vendor's bringup starts?
 
-FOLDER has a checkout of each repository of ``bringups.tsv``, called owner+name. The bringup is started
-with stubs for its programs, and so is the fleet that ``multibot init`` and ``multibot build`` make of
-the repository. Printed is a table: of the bringup's processes how many start for each robot, once for all,
-or not, and what differs. launch and launch_ros have to be importable, from ROS or on PYTHONPATH;
-``--sources`` are folders with packages beside the repository's own.
+FOLDER has a checkout of each repository of ``bringups.tsv``, called owner+name. The bringup is
+started with stubs for its programs, and so is the fleet that ``multibot init`` and ``multibot build``
+make of the repository. Printed is a table: of the bringup's processes how many start for each robot,
+once for all, or not, and what differs. launch and launch_ros come from ROS or from PYTHONPATH;
+without them the files are read by the package's stand-in. ``--sources`` are folders with packages
+beside the repository's own.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import json
 import re
 import shlex
@@ -25,7 +27,8 @@ import yaml
 
 from tools.bringups.choose import Choice, chosen, launch_files
 from tools.bringups.compare import SHARED, Comparison, Match, compare
-from tools.bringups.running import Process, start
+from tools.bringups.reading import read
+from tools.bringups.running import Process, Ran, start
 from tools.strangers import MULTIBOT, run
 
 # How a question which file is meant ends.
@@ -58,10 +61,30 @@ def is_named(process: Process, text: str) -> bool:
     return any(re.search(rf"(?<!\w){re.escape(it)}(?!\w)", text) for it in words if it)
 
 
+def ran(file: Path, given: Sequence[str], sources: Sequence[Path], folder: Path) -> Ran:
+    """Return what a launch file starts; where launch is not installed, what it would start."""
+    if importlib.util.find_spec("launch_ros"):
+        return start(file, given, sources, folder)
+    return read(file, given, sources)
+
+
+def found_in(checkout: Path, sources: Sequence[Path], folder: Path) -> str:
+    """Return the launch file that starts most of those that may be the bringup."""
+    files = list(launch_files(checkout))
+    files = [it for it in files if "bringup" in it] or files
+    counts = {}
+    for it in files:
+        one = ran(checkout / it, (), sources, folder)
+        counts[it] = 0 if one.fault else len(one.processes)
+    return max(counts, key=lambda it: (counts[it], it), default="")
+
+
 def judged(choice: Choice, checkout: Path, given: argparse.Namespace, folder: Path) -> Verdict:
     """Start a bringup and the fleet that is made of it, and compare what starts."""
     sources = [checkout, *(it.resolve() for it in given.sources)]
-    bringup = start(checkout / choice.file, choice.arguments, sources, folder / "one")
+    if choice.file == "-":
+        choice = choice._replace(file=found_in(checkout, sources, folder / "one"))
+    bringup = ran(checkout / choice.file, choice.arguments, sources, folder / "one")
     if bringup.fault:
         return Verdict(choice, Comparison((), ()), f"the bringup does not start: {bringup.fault}")
     without = Comparison(tuple(Match(it, "missing") for it in bringup.processes), ())
@@ -69,7 +92,7 @@ def judged(choice: Choice, checkout: Path, given: argparse.Namespace, folder: Pa
     file, fleet = folder / "out" / "fleet.launch.py", folder / "fleet.yaml"
     if fault or not file.exists():
         return Verdict(choice, without, fault or "build wrote no launch file", text)
-    started = start(file, (), sources, folder / "two")
+    started = ran(file, (), sources, folder / "two")
     robots = [it["name"] for it in yaml.safe_load(fleet.read_text())["robots"]]
     found = compare(bringup.processes, started.processes, robots)
     fault = started.fault and f"the fleet does not start: {started.fault}"

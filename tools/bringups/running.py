@@ -188,7 +188,7 @@ def _processes(row: dict[str, Any], base: Mapping[str, str], folder: Path) -> It
     )
     if bridged := _bridged(node.parameters.get("config_file", "")):
         node = node._replace(parameters={**node.parameters, BRIDGED: bridged})
-    yield from _by_controller(node)
+    yield from by_controller(node)
 
 
 def _program(words: Sequence[str], folder: Path) -> tuple[str, str, list[str]]:
@@ -310,7 +310,7 @@ def flat(values: Any, above: str = "") -> Iterator[tuple[str, Any]]:
         yield from flat(value, f"{above}.{name}" if above else str(name))
 
 
-def _by_controller(node: Process) -> Iterator[Process]:
+def by_controller(node: Process) -> Iterator[Process]:
     """Return a process for each controller that a spawner, or a command of ros2 control, starts."""
     words = list(node.words)
     if [node.program, *words[:2]] == ["ros2", "control", "load_controller"]:
