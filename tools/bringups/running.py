@@ -88,23 +88,23 @@ class Ran(NamedTuple):
 def start(file: Path, given: Sequence[str], sources: Iterable[Path], folder: Path) -> Ran:
     """Start a launch file with the packages below ``sources`` installed, and write below ``folder``."""
     shutil.rmtree(folder, ignore_errors=True)
-    for name in ("rows", "bin", "home", "tmp", "install/lib"):
+    for name in ("rows", "bin", "home", "tmp", "site", "install/lib"):
         (folder / name).mkdir(parents=True)
     index = folder / "install/share/ament_index/resource_index/packages"
     index.mkdir(parents=True)
-    modules = []
     for source in sources:
         for name, place in packages(source).items():
             if not (index / name).exists():
                 (index / name).touch()
                 install(name, place, folder / "install")
-                modules.append(str(place))
+                if (place / name / "__init__.py").is_file():
+                    (folder / "site" / name).symlink_to(place / name)
     (folder / "bin/xacro").write_text(XACRO.format(python=sys.executable))
     (folder / "bin/xacro").chmod(0o755)
     for name in PLAIN:
         if (Path("/bin") / name).exists():
             (folder / "bin" / name).symlink_to(Path("/bin") / name)
-    environ = _environment(folder, modules)
+    environ = _environment(folder)
     command = [*FENCED, str(folder), sys.executable, str(WATCH), str(folder), str(file), *given]
     with (folder / "log").open("w") as log:
         child = subprocess.Popen(
@@ -128,9 +128,9 @@ def start(file: Path, given: Sequence[str], sources: Iterable[Path], folder: Pat
     return Ran(tuple(processes), _fault(folder / "log") if failed else "")
 
 
-def _environment(folder: Path, modules: Sequence[str]) -> dict[str, str]:
+def _environment(folder: Path) -> dict[str, str]:
     """Return the variables that a launch file sees: those of a plain machine with ROS, no secret."""
-    path = os.pathsep.join([*modules, os.environ.get("PYTHONPATH", "")])
+    path = os.pathsep.join([os.environ.get("PYTHONPATH", ""), str(folder / "site")])
     prefixes = [str(folder / "install"), os.environ.get("AMENT_PREFIX_PATH", "")]
     return {
         "AMENT_PREFIX_PATH": os.pathsep.join(prefixes).strip(os.pathsep),

@@ -41,6 +41,8 @@ def main() -> None:
     with open(f"{place}.part", "w") as out:
         json.dump(row, out)
     os.rename(f"{place}.part", place)
+    if asked == "answer":  # what launch files ask a program of a package for is a description
+        print('<robot name="not_made"/>')
     if asked or os.path.basename(sys.argv[0]) in ENDING:
         return
     signal.pthread_sigmask(signal.SIG_SETMASK, ())

@@ -100,7 +100,7 @@ def with_packages(prefix: Prefix) -> None:
     """Let every package and every program of one be found."""
     import ament_index_python
     from ament_index_python import packages
-    from launch.substitutions import FindExecutable
+    from launch.substitutions import Command, FindExecutable
     from launch.utilities import perform_substitutions
     from launch_ros.substitutions import ExecutableInPackage, find_package
 
@@ -111,6 +111,18 @@ def with_packages(prefix: Prefix) -> None:
         name = perform_substitutions(context, self.executable)
         return prefix.program(perform_substitutions(context, self.package), name)
 
+    answer = Command.perform
+
+    def answered(self: Any, context: Any) -> str:
+        for name in COMMANDS.findall(perform_substitutions(context, self.command)):
+            prefix.command(name)
+        os.environ["BRINGUP_ASKED"] = "answer"
+        try:
+            return str(answer(self, context))
+        finally:
+            os.environ["BRINGUP_ASKED"] = "1"
+
+    Command.perform = answered
     ExecutableInPackage.perform = found
     FindExecutable.perform = lambda self, context: prefix.command(
         perform_substitutions(context, self.name)
@@ -256,14 +268,24 @@ def with_programs(prefix: Prefix, running: dict[int, Any]) -> None:
     TimerAction.execute = lambda self, context: self.actions
 
 
+def is_shutdown(action: Any) -> bool:
+    """Return whether an action ends the launch."""
+    from launch.actions import EmitEvent, Shutdown
+    from launch.events import Shutdown as Ended
+
+    return isinstance(action, Shutdown) or (
+        isinstance(action, EmitEvent) and isinstance(action.event, Ended)
+    )
+
+
 def is_meant(handler: Any) -> bool:
     """Return whether an end is waited for by the launch file, to do more than to stop."""
-    from launch.actions import ExecuteLocal, Shutdown
+    from launch.actions import ExecuteLocal
 
     own = "_OnActionEventBase__"
     actions = getattr(handler, f"{own}actions_on_event", ())
     if actions:
-        return any(it is not None and not isinstance(it, Shutdown) for it in actions)
+        return any(it is not None and not is_shutdown(it) for it in actions)
     call = getattr(handler, f"{own}on_event", None)
     return call is not None and not isinstance(getattr(call, "__self__", None), ExecuteLocal)
 
@@ -296,15 +318,15 @@ def end_awaited(context: Any, running: dict[int, Any]) -> bool:
 async def launched(service: Any, rows: Path, running: dict[int, Any]) -> None:
     """Run the launch until nothing more starts; what runs ends with this process."""
     task = asyncio.ensure_future(service.run_async())
-    for _ in range(ROUNDS):
+    for number in range(ROUNDS):
         before = (-1, -1)
         while before != (now := (len(running), len(os.listdir(rows)))) and not task.done():
             before = now
             await asyncio.sleep(QUIET)
+        if task.done() and task.result() and not number:
+            note(rows, {"failed": True})
         if task.done() or not end_awaited(service.context, running):
             break
-    if task.done() and task.result():
-        note(rows, {"failed": True})
 
 
 def main(folder: str, file: str, *given: str) -> None:
