@@ -224,14 +224,14 @@ def test_all_that_a_launch_file_starts_is_seen(tmp_path: Path) -> None:
     found = {it.label: it for it in ran.processes}
     assert found.keys() == {
         *("acme/first", "acme/second", "acme/third", "not_here/launch/x.launch.py"),
-        *("controller_manager/spawner", "MicroXRCEAgent", "touch"),
+        *("controller_manager/spawner", "MicroXRCEAgent udp4", "touch /etc/x"),
     }
     first = found["acme/first"]
     assert (first.name, first.namespace, first.words) == ("first", "/sub", ("--fast",))
     assert (first.rules, first.parameters) == ((("scan", "/front"),), {"a": 1, "b": "y"})
     assert first.environ == {"MODEL": "x"}
     assert found["acme/third"].words == ("-v",)
-    assert found["MicroXRCEAgent"].words == ("udp4",)
+    assert found["MicroXRCEAgent udp4"].words == ("udp4",)
     assert found["not_here/launch/x.launch.py"].words == ("k:=v",)
     spawners = [it.words[0] for it in ran.processes if it.program == "spawner"]
     assert spawners == ["a", "b"]

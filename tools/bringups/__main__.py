@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import json
+import os
 import re
 import shlex
 import shutil
@@ -197,6 +198,8 @@ def main(words: Sequence[str]) -> int:
         "--list", action="store_true", help="list launch files that may be bringups"
     )
     given = parser.parse_args(words)
+    for name in ("PYTHONPATH", "AMENT_PREFIX_PATH"):
+        os.environ.pop(name, None)
     verdicts = []
     for choice in chosen(given.half):
         if given.only not in choice.name:

@@ -47,6 +47,10 @@ OWN: dict[str, dict[str, str]] = {
 }
 
 
+# Static transforms for the poses in the fleet file.
+POSES = {"start_pose"}
+
+
 class Match(NamedTuple):
     """A process of the bringup: where it is in the fleet, and what differs there."""
 
@@ -69,7 +73,7 @@ def compare(
     left = list(fleet)
     matches = [_match(process, left, robots) for process in bringup]
     # Bridges are merged: each is there if its topics are bridged.
-    left = [it for it in left if it.program not in BRIDGES]
+    left = [it for it in left if it.program not in BRIDGES and it.name not in POSES]
     return Comparison(tuple(matches), tuple(left))
 
 

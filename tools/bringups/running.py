@@ -48,6 +48,9 @@ PLAIN = (
     "sed",
     "uname",
 )
+# Where launch comes from, and installed packages; multibot is run without them.
+LAUNCH = os.environ.get("PYTHONPATH", "")
+INSTALLED = os.environ.get("AMENT_PREFIX_PATH", "")
 # Programs with more nodes than the one that their arguments name.
 MANY = {"ros2_control_node", "component_container", "component_container_mt"}
 # Where the topics of a bridge's file are among its parameters.
@@ -75,6 +78,8 @@ class Process(NamedTuple):
     def label(self) -> str:
         """Return what a table calls it."""
         whole = "/".join(it for it in (self.package, self.program) if it)
+        if not self.package:
+            whole = " ".join((self.program, *self.words[:3]))
         return f"{whole} ({self.name})" if self.name and self.name != self.program else whole
 
 
@@ -130,8 +135,8 @@ def start(file: Path, given: Sequence[str], sources: Iterable[Path], folder: Pat
 
 def _environment(folder: Path) -> dict[str, str]:
     """Return the variables that a launch file sees: those of a plain machine with ROS, no secret."""
-    path = os.pathsep.join([os.environ.get("PYTHONPATH", ""), str(folder / "site")])
-    prefixes = [str(folder / "install"), os.environ.get("AMENT_PREFIX_PATH", "")]
+    path = os.pathsep.join([LAUNCH, str(folder / "site")])
+    prefixes = [str(folder / "install"), INSTALLED]
     return {
         "AMENT_PREFIX_PATH": os.pathsep.join(prefixes).strip(os.pathsep),
         "BRINGUP_ROWS": str(folder / "rows"),
