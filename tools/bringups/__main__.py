@@ -36,13 +36,25 @@ from tools.strangers import MULTIBOT, run
 NAMED = re.compile(r"name one: multibot init (.+)")
 
 
+class Made(NamedTuple):
+    """A fleet that was made: what went wrong, all that was said, seconds of init and build."""
+
+    fault: str = ""
+    text: str = ""
+    seconds: float = 0.0
+
+
 class Verdict(NamedTuple):
     """What came out for a repository: the comparison, or why there is none."""
 
     choice: Choice
     comparison: Comparison
-    fault: str = ""
-    text: str = ""
+    made: Made
+
+    @property
+    def fault(self) -> str:
+        """Return why there is no comparison, or what is wrong with it."""
+        return self.made.fault
 
     def of(self, where: str) -> list[Match]:
         """Return the processes of the bringup that are there in a way."""
@@ -51,7 +63,7 @@ class Verdict(NamedTuple):
     def named(self, named: bool) -> list[Match]:
         """Return the missing processes that init, build or the fleet file name, or do not name."""
         lost = [*self.of("missing"), *self.of("some")]
-        return [it for it in lost if is_named(it.process, self.text) == named]
+        return [it for it in lost if is_named(it.process, self.made.text) == named]
 
 
 def is_named(process: Process, text: str) -> bool:
@@ -87,49 +99,51 @@ def judged(choice: Choice, checkout: Path, given: argparse.Namespace, folder: Pa
         choice = choice._replace(file=found_in(checkout, sources, folder / "one"))
     bringup = ran(checkout / choice.file, choice.arguments, sources, folder / "one")
     if bringup.fault:
-        return Verdict(choice, Comparison((), ()), f"the bringup does not start: {bringup.fault}")
+        fault = f"the bringup does not start: {bringup.fault}"
+        return Verdict(choice, Comparison((), ()), Made(fault))
     without = Comparison(tuple(Match(it, "missing") for it in bringup.processes), ())
-    fault, text = made(choice, checkout, given, folder)
-    file, fleet = folder / "out" / "fleet.launch.py", folder / "fleet.yaml"
-    if fault or not file.exists():
-        return Verdict(choice, without, fault or "build wrote no launch file", text)
+    fleet = made(choice, checkout, given, folder)
+    file = folder / "out" / "fleet.launch.py"
+    if fleet.fault or not file.exists():
+        fault = fleet.fault or "build wrote no launch file"
+        return Verdict(choice, without, fleet._replace(fault=fault))
     started = ran(file, (), sources, folder / "two")
-    robots = [it["name"] for it in yaml.safe_load(fleet.read_text())["robots"]]
-    found = compare(bringup.processes, started.processes, robots)
+    rows = yaml.safe_load((folder / "fleet.yaml").read_text())["robots"]
+    found = compare(bringup.processes, started.processes, [it["name"] for it in rows])
     fault = started.fault and f"the fleet does not start: {started.fault}"
-    return Verdict(choice, found, fault, text)
+    return Verdict(choice, found, fleet._replace(fault=fault))
 
 
-def made(
-    choice: Choice, checkout: Path, given: argparse.Namespace, folder: Path
-) -> tuple[str, str]:
-    """Let multibot make a fleet of a checkout in a folder; return its fault, and all that was said."""
+def made(choice: Choice, checkout: Path, given: argparse.Namespace, folder: Path) -> Made:
+    """Let multibot make a fleet of a checkout in a folder."""
     command, fleet = shlex.split(given.multibot), folder / "fleet.yaml"
     shutil.rmtree(folder / "out", ignore_errors=True)
     fleet.unlink(missing_ok=True)
     options = ["-n", "2", "--yes", "--force", "-o", str(fleet)]
     known = "--launch" in run([*command, "init", "--help"], choice.release).out
-    launch = ["--launch", str(checkout / choice.file), *choice.arguments] if known else []
-    words, text = [str(checkout), *launch], ""
+    told = known and not given.found
+    launch = ["--launch", str(checkout / choice.file), *choice.arguments] if told else []
+    words, text, seconds = [str(checkout), *launch], "", 0.0
     for _ in range(4):
         init = run([*command, "init", *words, *options], choice.release)
         text += init.err + init.out
+        seconds += init.seconds
         named = NAMED.search(init.err)
         if named is None:
             break
         words = shlex.split(named[1])
     if init.code not in (0, 1) or not fleet.exists():
-        return f"init {init.code}: {_last(init.err)}", text
+        return Made(f"init {init.code}: {_last(init.err)}", text, seconds)
     if given.launched and "\nlaunch:" not in fleet.read_text():
         row = shlex.join([str(checkout / choice.file), *choice.arguments])
         with fleet.open("a") as out:
             print(f"launch: [{json.dumps(row)}]\nlaunch_roots: [{checkout}]", file=out)
-    build = run(
-        [*command, "build", str(fleet), "-o", str(folder / "out"), "--force"], choice.release
-    )
+    last = ["-o", str(folder / "out"), "--force"]
+    build = run([*command, "build", str(fleet), *last], choice.release)
     text += fleet.read_text() + build.err + build.out
     (folder / "said.txt").write_text(text)
-    return f"build {build.code}: {_last(build.err)}" if build.code else "", text
+    fault = f"build {build.code}: {_last(build.err)}" if build.code else ""
+    return Made(fault, text, seconds + build.seconds)
 
 
 def _last(text: str) -> str:
@@ -138,14 +152,25 @@ def _last(text: str) -> str:
     return (errors or lines or [""])[-1][:300]
 
 
-HEAD = ("repository", "processes", "each", "differ", "once", "named", "silent", "extra", "why not")
+HEAD = (
+    "repository",
+    "processes",
+    "each",
+    "differ",
+    "once",
+    "named",
+    "silent",
+    "extra",
+    "seconds",
+    "why not",
+)
 
 
 def table(verdicts: Iterable[Verdict]) -> Iterator[str]:
     """Print a row for each repository, and the sums."""
     yield f"| {' | '.join(HEAD)} |"
     yield f"|---|{'--:|' * (len(HEAD) - 2)}---|"
-    sums: Counter[str] = Counter()
+    sums: dict[str, float] = {}
     for it in verdicts:
         each = it.of("each")
         row = {
@@ -156,10 +181,13 @@ def table(verdicts: Iterable[Verdict]) -> Iterator[str]:
             "named": len(it.named(True)),
             "silent": len(it.named(False)),
             "extra": len(it.comparison.extra),
+            "seconds": round(it.made.seconds, 1),
         }
-        sums.update(row)
-        yield f"| {' | '.join([it.choice.name, *map(str, row.values()), it.fault])} |"
-    yield f"| sum | {' | '.join(str(sums[it]) for it in HEAD[1:-1])} | |"
+        sums = {name: round(sums.get(name, 0) + row[name], 1) for name in row}
+        cells = [it.choice.name, *map(str, row.values()), it.fault]
+        yield f"| {' | '.join(cells)} |"
+    cells = (str(sums.get(it, 0)) for it in HEAD[1:-1])
+    yield f"| sum | {' | '.join(cells)} | |"
 
 
 def details(verdict: Verdict) -> Iterator[str]:
@@ -170,7 +198,7 @@ def details(verdict: Verdict) -> Iterator[str]:
     for it in verdict.comparison.matches:
         where = it.where
         if where in ("missing", "some"):
-            where += ", named" if is_named(it.process, verdict.text) else ", silent"
+            where += ", named" if is_named(it.process, verdict.made.text) else ", silent"
         if where == "once" and Path(it.process.program).name not in SHARED:
             where += ", no reason"
         first = f" {it.process.words[0]}" if it.process.program == "spawner" else ""
