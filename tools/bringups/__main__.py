@@ -222,6 +222,7 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument(
         "--launched", action="store_true", help="add launch: to a fleet file that has it not"
     )
+    parser.add_argument("--found", action="store_true", help="let init find the launch file")
     parser.add_argument(
         "--list", action="store_true", help="list launch files that may be bringups"
     )
