@@ -28,6 +28,7 @@ import yaml
 
 from tools.bringups.choose import Choice, chosen, launch_files
 from tools.bringups.compare import SHARED, Comparison, Match, compare
+from tools.bringups.install import install, packages
 from tools.bringups.reading import read
 from tools.bringups.running import Process, Ran, start
 from tools.strangers import MULTIBOT, run
@@ -199,13 +200,26 @@ def details(verdict: Verdict) -> Iterator[str]:
         where = it.where
         if where in ("missing", "some"):
             where += ", named" if is_named(it.process, verdict.made.text) else ", silent"
-        if where == "once" and Path(it.process.program).name not in SHARED:
+        shared = Path(it.process.program).name in SHARED
+        if where == "once" and not shared and not is_named(it.process, verdict.made.text):
             where += ", no reason"
         first = f" {it.process.words[0]}" if it.process.program == "spawner" else ""
         yield f"{where:16} {it.process.label}{first}"
         yield from (f"                   - {line}" for line in it.differs)
     for one, count in Counter(it.label for it in verdict.comparison.extra).items():
         yield f"extra            {one} x{count}"
+
+
+def installed(sources: Iterable[Path], prefix: Path) -> Path:
+    """Return a prefix with the packages below some folders, as a sourced workspace has them."""
+    shutil.rmtree(prefix, ignore_errors=True)
+    index = prefix.resolve() / "share/ament_index/resource_index/packages"
+    index.mkdir(parents=True)
+    for source in sources:
+        for name, place in packages(source.resolve()).items():
+            (index / name).touch()
+            install(name, place, prefix.resolve())
+    return prefix.resolve()
 
 
 def main(words: Sequence[str]) -> int:
@@ -227,8 +241,8 @@ def main(words: Sequence[str]) -> int:
         "--list", action="store_true", help="list launch files that may be bringups"
     )
     given = parser.parse_args(words)
-    for name in ("PYTHONPATH", "AMENT_PREFIX_PATH"):
-        os.environ.pop(name, None)
+    os.environ.pop("PYTHONPATH", None)
+    os.environ["AMENT_PREFIX_PATH"] = str(installed(given.sources, given.keep / "installed"))
     verdicts = []
     for choice in chosen(given.half):
         if given.only not in choice.name:

@@ -56,7 +56,11 @@ MANY = {"ros2_control_node", "component_container", "component_container_mt"}
 # Where the topics of a bridge's file are among its parameters.
 BRIDGED = "\0bridged"
 # Variables that launch, Python and the referee set themselves.
-_OWN = re.compile(r"BRINGUP_|ROS_LOG_DIR$|PYTHON|OVERRIDE_LAUNCH|_$|PWD$|OLDPWD$|SHLVL$|LC_CTYPE$")
+_OWN = re.compile(
+    r"BRINGUP_|ROS_LOG_DIR$|PYTHON|OVERRIDE_LAUNCH|_$|PWD$|OLDPWD$|SHLVL$|LC_CTYPE$|\w+_NUM_THREADS$"
+)
+    r"BRINGUP_|ROS_LOG_DIR$|PYTHON|OVERRIDE_LAUNCH|_$|PWD$|OLDPWD$|SHLVL$|LC_CTYPE$|\w+_NUM_THREADS$"
+)
 
 
 class Process(NamedTuple):
