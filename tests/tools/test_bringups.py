@@ -41,6 +41,7 @@ DRIVER = Process(
     rules=(("/scan", "/front/scan"),),
     parameters={"port": "/dev/ttyUSB0", "frame": "laser", "rate": 5},
     environ={"MODEL": "x"},
+    facts={"respawn": "yes"},
 )
 
 
@@ -76,6 +77,7 @@ def test_what_the_rename_map_does_is_no_difference() -> None:
         ({"rules": ()}, "rule lost: scan:=front/scan"),
         ({"rules": (*DRIVER.rules, ("a", "b"))}, "rule more: a:=b"),
         ({"environ": {}}, "environment lost: MODEL"),
+        ({"facts": {}}, "respawn lost: yes"),
         ({"words": ("-v",)}, "argument more: -v"),
         ({"kind": "component"}, "component in place of program"),
         ({"parameters": {**DRIVER.parameters, "rate": 6}}, "parameter changed: rate: 5 -> 6"),
@@ -187,6 +189,7 @@ def generate_launch_description():
     own = FindPackageShare('acme')
     there = [FindPackageShare('not_here'), '/launch/x.launch.py']
     first = Node(package='acme', executable='first', name='first', namespace='sub',
+                 respawn=True, prefix='gdb --args',
                  parameters=[PathJoinSubstitution([own, 'config', 'p.yaml']), {'b': 'y'}],
                  remappings=[('scan', '/front')], arguments=['--fast'])
     return LaunchDescription([
@@ -226,11 +229,13 @@ def test_all_that_a_launch_file_starts_is_seen(tmp_path: Path) -> None:
         *("acme/first", "acme/second", "acme/third", "not_here/launch/x.launch.py"),
         *("controller_manager/spawner", "MicroXRCEAgent udp4", "touch /etc/x"),
     }
+    assert len(ran.processes) == len(found) + 1  # the spawner of two controllers
     first = found["acme/first"]
     assert (first.name, first.namespace, first.words) == ("first", "/sub", ("--fast",))
     assert (first.rules, first.parameters) == ((("scan", "/front"),), {"a": 1, "b": "y"})
     assert first.environ == {"MODEL": "x"}
-    assert found["acme/third"].words == ("-v",)
+    assert first.facts == {"respawn": "yes", "prefix": "gdb --args"}
+    assert (found["acme/third"].words, found["acme/third"].facts) == (("-v",), {"delay": "900.0"})
     assert found["MicroXRCEAgent udp4"].words == ("udp4",)
     assert found["not_here/launch/x.launch.py"].words == ("k:=v",)
     spawners = [it.words[0] for it in ran.processes if it.program == "spawner"]

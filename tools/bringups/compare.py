@@ -242,6 +242,9 @@ def differences(process: Process, other: Process, robot: str) -> Iterator[str]:
     yield from _parameters(process, other, robot)
     if process.program not in STATIC:
         yield from _words(process, other, robot)
+    for name, it in process.facts.items():
+        if value(other.facts.get(name, ""), robot) != value(it, ""):
+            yield f"{name} lost: {_short(it)}"
     for name, it in process.environ.items():
         if value(other.environ.get(name, ""), robot) != value(it, ""):
             yield f"environment lost: {name}"

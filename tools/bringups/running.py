@@ -75,6 +75,8 @@ class Process(NamedTuple):
     environ: Mapping[str, str] = {}
     # Parameters that it has only if it is called as a section of a file is: its name is not told.
     loose: frozenset[str] = frozenset()
+    # What else its launch file says of it: respawn, delay, prefix, folder.
+    facts: Mapping[str, str] = {}
 
     @property
     def label(self) -> str:
@@ -131,7 +133,12 @@ def start(file: Path, given: Sequence[str], sources: Iterable[Path], folder: Pat
     rows = [json.loads(it.read_text()) for it in sorted((folder / "rows").glob("*.json"))]
     failed = child.returncode != 0 or any(it.get("failed") for it in rows)
     base = next((it["base"] for it in rows if "base" in it), {})
-    processes = [made for row in rows for made in _processes(row, base, folder)]
+    facts = {it["of"]: it["facts"] for it in rows if "facts" in it}
+    processes = [
+        made._replace(facts={**made.facts, **facts.get(row.get("pid"), {})})
+        for row in rows
+        for made in _processes(row, base, folder)
+    ]
     return Ran(tuple(processes), _fault(folder / "log") if failed else "")
 
 
@@ -165,7 +172,7 @@ def _fault(log: Path) -> str:
 
 def _processes(row: dict[str, Any], base: Mapping[str, str], folder: Path) -> Iterator[Process]:
     """Return what a row says was started: a spawner of two controllers is two."""
-    if row.get("asked") or row.keys() <= {"failed", "base"}:
+    if row.get("asked") or row.keys() & {"failed", "base", "facts"}:
         return
     if "include" in row:
         words = [f"{name}:={it}" for name, it in sorted(row["arguments"].items())]
@@ -189,26 +196,32 @@ def _processes(row: dict[str, Any], base: Mapping[str, str], folder: Path) -> It
         for name, it in row["environ"].items()
         if base.get(name) != it and not _OWN.match(name)
     }
-    package, program, words = _program(row["words"], folder)
+    package, program, words, before = _program(row["words"], folder)
+    home = str(folder / "home")
+    facts = {"prefix": before, "folder": "" if row["folder"] == home else row["folder"]}
     node = _node(words, row["files"], program in MANY)._replace(
-        package=package, program=program, environ=environ
+        package=package,
+        program=program,
+        environ=environ,
+        facts={name: it for name, it in facts.items() if it},
     )
     if bridged := _bridged(node.parameters.get("config_file", "")):
         node = node._replace(parameters={**node.parameters, BRIDGED: bridged})
     yield from by_controller(node)
 
 
-def _program(words: Sequence[str], folder: Path) -> tuple[str, str, list[str]]:
-    """Return package and program of a command line, and the words after it."""
+def _program(words: Sequence[str], folder: Path) -> tuple[str, str, list[str], str]:
+    """Return package and program of a command line, the words after it, and those before."""
     inside = folder / "install/lib"
     for number, word in enumerate(words):  # behind xterm -e, gdb --args, sudo
         if Path(word).is_relative_to(inside):
             package, program = Path(word).relative_to(inside).parts[:2]
-            return package, program, list(words[number + 1 :])
+            before = " ".join((Path(words[0]).name, *words[1:number])) if number else ""
+            return package, program, list(words[number + 1 :]), before
     name, rest = Path(words[0]).name, list(words[1:])
     if [name, *rest[:1]] == ["ros2", "run"] and len(rest) > 2:
-        return rest[1], rest[2], rest[3:]
-    return "", name, rest
+        return rest[1], rest[2], rest[3:], ""
+    return "", name, rest, ""
 
 
 def _node(words: Sequence[str], files: Mapping[str, str], many: bool = False) -> Process:

@@ -35,6 +35,7 @@ def main() -> None:
         "files": {word: text(word) for word in sys.argv[1:] if text(word)},
         "environ": dict(os.environ),
         "folder": os.getcwd(),
+        "pid": os.getpid(),
         "asked": bool(asked),
     }
     place = os.path.join(os.environ["BRINGUP_ROWS"], f"{time.time_ns()}.json")

@@ -17,7 +17,7 @@ import sys
 import time
 import types
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 STUB = Path(__file__).with_name("stub.py")
 # Seconds without a new process after which a launch file has started what it starts.
@@ -26,6 +26,8 @@ QUIET = 1.5
 ROUNDS = 20
 # Programs that a shell is, and what runs as it is.
 SHELLS = {"sh", "bash", "dash"}
+# The launch configuration that says after how many seconds something starts.
+DELAY = "bringup_delay"
 # What begins a command in a line of a shell.
 COMMANDS = re.compile(r"(?:^|&&|\|\||[;|&(])\s*(?:exec\s+|source\s+\S+\s*&&\s*)?([\w.+-]+)")
 
@@ -238,9 +240,23 @@ def with_components(rows: Path) -> None:
     LifecycleTransition.execute = lambda self, context: None
 
 
-def with_programs(prefix: Prefix, running: dict[int, Any]) -> None:
+class Watched(NamedTuple):
+    """The processes of a launch: those that run, and of each what its command line does not show."""
+
+    running: dict[int, Any]
+    started: list[tuple[Any, dict[str, Any]]]
+
+
+def with_programs(prefix: Prefix, watched: Watched) -> None:
     """Let every command be a stub, and nothing wait for a time."""
-    from launch.actions import ExecuteLocal, TimerAction, execute_local
+    from launch.actions import (
+        ExecuteLocal,
+        SetLaunchConfiguration,
+        TimerAction,
+        UnsetLaunchConfiguration,
+        execute_local,
+    )
+    from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 
     real = execute_local.async_execute_process
     begin = ExecuteLocal.execute
@@ -260,12 +276,23 @@ def with_programs(prefix: Prefix, running: dict[int, Any]) -> None:
         return await real(protocol, cmd=cmd, shell=shell, env=environ, **options)
 
     def execute(self: Any, context: Any) -> Any:
-        running[id(self)] = self
-        return begin(self, context)
+        found = begin(self, context)
+        watched.running[id(self)] = self
+        again = {"respawn": "yes"} if self._ExecuteLocal__respawn is True else {}
+        delay = context.launch_configurations.get(DELAY, "")
+        watched.started.append((self, again | ({"delay": delay} if delay else {})))
+        return found
+
+    def at_once(self: Any, context: Any) -> Any:
+        period = self._TimerAction__period
+        if not isinstance(period, (int, float)):
+            period = perform_substitutions(context, normalize_to_list_of_substitutions(period))
+        mark = SetLaunchConfiguration(DELAY, str(float(period)))
+        return [mark, *self.actions, UnsetLaunchConfiguration(DELAY)]
 
     execute_local.async_execute_process = started
     ExecuteLocal.execute = execute
-    TimerAction.execute = lambda self, context: self.actions
+    TimerAction.execute = at_once
 
 
 def is_shutdown(action: Any) -> bool:
@@ -309,24 +336,28 @@ def end_awaited(context: Any, running: dict[int, Any]) -> bool:
         words = {"action": action, "name": "", "cmd": [], "cwd": "", "env": {}, "pid": 1}
         events = (ProcessExited(returncode=0, **words), ExecutionComplete(action=action))
         if any(handler.matches(event) for handler in waiting for event in events):
+            action._ExecuteLocal__respawn = False
             os.kill(transport.get_pid(), signal.SIGUSR1)
             del running[key]
             ended = True
     return ended
 
 
-async def launched(service: Any, rows: Path, running: dict[int, Any]) -> None:
+async def launched(service: Any, rows: Path, watched: Watched) -> None:
     """Run the launch until nothing more starts; what runs ends with this process."""
     task = asyncio.ensure_future(service.run_async())
     for number in range(ROUNDS):
         before = (-1, -1)
-        while before != (now := (len(running), len(os.listdir(rows)))) and not task.done():
+        while before != (now := (len(watched.started), len(os.listdir(rows)))) and not task.done():
             before = now
             await asyncio.sleep(QUIET)
         if task.done() and task.result() and not number:
             note(rows, {"failed": True})
-        if task.done() or not end_awaited(service.context, running):
+        if task.done() or not end_awaited(service.context, watched.running):
             break
+    for action, facts in watched.started:
+        if facts and action._subprocess_transport is not None:
+            note(rows, {"facts": facts, "of": action._subprocess_transport.get_pid()})
 
 
 def main(folder: str, file: str, *given: str) -> None:
@@ -336,21 +367,21 @@ def main(folder: str, file: str, *given: str) -> None:
     from launch.actions import IncludeLaunchDescription
     from launch.launch_description_sources import AnyLaunchDescriptionSource
 
-    rows, prefix, running = Path(folder, "rows"), Prefix(Path(folder)), {}
+    rows, prefix, watched = Path(folder, "rows"), Prefix(Path(folder)), Watched({}, [])
     with_frontends()
     with_packages(prefix)
     with_descriptions()
     with_files(prefix)
     with_includes(prefix, rows)
     with_components(rows)
-    with_programs(prefix, running)
+    with_programs(prefix, watched)
     note(rows, {"base": dict(os.environ)})
     os.environ["BRINGUP_ASKED"] = "1"
     service = LaunchService(noninteractive=True)
     words = [tuple(it.split(":=", 1)) for it in given]
     source = IncludeLaunchDescription(AnyLaunchDescriptionSource(file), launch_arguments=words)
     service.include_launch_description(LaunchDescription([source]))
-    asyncio.run(launched(service, rows, running))
+    asyncio.run(launched(service, rows, watched))
     os._exit(0)
 
 
