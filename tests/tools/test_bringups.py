@@ -77,6 +77,7 @@ def test_what_the_rename_map_does_is_no_difference() -> None:
         ({"rules": ()}, "rule lost: scan:=front/scan"),
         ({"rules": (*DRIVER.rules, ("a", "b"))}, "rule more: a:=b"),
         ({"environ": {}}, "environment lost: MODEL"),
+        ({"environ": {"MODEL": "y"}}, "environment changed: MODEL: x -> y"),
         ({"facts": {}}, "respawn lost: yes"),
         ({"words": ("-v",)}, "argument more: -v"),
         ({"kind": "component"}, "component in place of program"),

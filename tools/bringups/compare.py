@@ -246,8 +246,19 @@ def differences(process: Process, other: Process, robot: str) -> Iterator[str]:
         if value(other.facts.get(name, ""), robot) != value(it, ""):
             yield f"{name} lost: {_short(it)}"
     for name, it in process.environ.items():
-        if value(other.environ.get(name, ""), robot) != value(it, ""):
+        if name not in other.environ:
             yield f"environment lost: {name}"
+        elif _paths(other.environ[name], robot) != _paths(it, ""):
+            yield f"environment changed: {name}: {_short(it)} -> {_short(other.environ[name])}"
+
+
+def _paths(text: str, robot: str) -> list[str]:
+    """Return the parts of a variable; of a path of files the last name, unless it is a made one."""
+    parts = text.split(os.pathsep)
+    return [
+        os.path.basename(it) if it.count("/") > 3 and "/multibot_" not in it else bare(it, robot)
+        for it in parts
+    ]
 
 
 def _rules(process: Process, other: Process, robot: str) -> Iterator[str]:
@@ -326,4 +337,4 @@ def _plain(text: str, robot: str) -> str:
 
 def _short(it: Any) -> str:
     text = str(it)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    return text if len(text) <= 90 else f"{text[:40]}...{text[-47:]}"
