@@ -227,8 +227,10 @@ def _program(words: Sequence[str], folder: Path) -> tuple[str, str, list[str], s
 def _node(words: Sequence[str], files: Mapping[str, str], many: bool = False) -> Process:
     """Return name, namespace, rules, parameters and own words of a command line; of a process of
     many nodes the parameters of all."""
-    own, rules, given, inside = [], [], [], False
-    name = space = ""
+    own: list[str] = []
+    rules: list[tuple[str, str]] = []
+    given: list[str | dict[str, Any]] = []
+    name, space, inside = "", "", False
     rest = iter(words)
     for word in rest:
         if word in ("--ros-args", "--"):

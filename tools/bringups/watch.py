@@ -78,13 +78,13 @@ def without_composition() -> None:
     try:
         from composition_interfaces.srv import LoadNode  # noqa: F401
     except ImportError:
-        empty = {"package_name": "", "plugin_name": "", "node_name": "", "node_namespace": ""}
-        request = type("Request", (types.SimpleNamespace,), {**empty, "remap_rules": ()})
-        request.parameters = request.extra_arguments = ()
+        empty = dict.fromkeys(("package_name", "plugin_name", "node_name", "node_namespace"), "")
+        lists = dict.fromkeys(("remap_rules", "parameters", "extra_arguments"), ())
+        request = type("Request", (types.SimpleNamespace,), {**empty, **lists})
         service = types.ModuleType("composition_interfaces.srv")
-        service.LoadNode = type("LoadNode", (), {"Request": request})
+        vars(service).update(LoadNode=type("LoadNode", (), {"Request": request}))
         package = types.ModuleType("composition_interfaces")
-        package.srv = service
+        vars(package).update(srv=service)
         sys.modules |= {package.__name__: package, service.__name__: service}
 
 
