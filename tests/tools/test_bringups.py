@@ -129,6 +129,26 @@ def test_an_include_may_be_there_as_its_nodes() -> None:
     assert where(compare([include], [], ROBOTS)) == ["missing"]
 
 
+def test_files_that_an_include_is_given_are_compared(tmp_path: Path) -> None:
+    def include(folder: str, text: str) -> Process:
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "nav.yaml").write_text(text)
+        return Process(
+            "nav2", "x_launch.py", "include", words=(f"p:={tmp_path}/{folder}/nav.yaml",)
+        )
+
+    text = "amcl: {ros__parameters: {base: base_link, rate: 5, map: map}}"
+    fleet = [
+        include(
+            robot, f"{robot}: {{amcl: {{ros__parameters: {{base: {robot}/base_link, rate: 6}}}}}}"
+        )
+        for robot in ROBOTS
+    ]
+    fleet = [it._replace(namespace=f"/{robot}") for it, robot in zip(fleet, ROBOTS, strict=True)]
+    (match,) = compare([include("own", text)], fleet, ROBOTS).matches
+    assert match.differs == ("nav.yaml lost: amcl.map", "nav.yaml changed: amcl.rate")
+
+
 def test_a_node_reads_the_sections_that_are_for_it() -> None:
     text = json.dumps(
         {

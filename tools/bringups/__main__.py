@@ -227,7 +227,7 @@ def main(words: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--half", choices=("work", "kept", "six"), default="work")
-    parser.add_argument("--only", default="", help="a part of the names")
+    parser.add_argument("--only", nargs="*", default=[""], help="parts of the names")
     parser.add_argument("--sources", type=Path, nargs="*", default=[])
     parser.add_argument("--keep", type=Path, required=True, help="where to write")
     parser.add_argument(
@@ -244,9 +244,7 @@ def main(words: Sequence[str]) -> int:
     os.environ.pop("PYTHONPATH", None)
     os.environ["AMENT_PREFIX_PATH"] = str(installed(given.sources, given.keep / "installed"))
     verdicts = []
-    for choice in chosen(given.half):
-        if given.only not in choice.name:
-            continue
+    for choice in [it for part in given.only for it in chosen(given.half) if part in it.name]:
         checkout = (given.folder / choice.name.replace("/", "+")).resolve()
         if given.list:
             print(choice.name, *launch_files(checkout), sep="\n  ")

@@ -7,9 +7,10 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from tools.bringups.running import BRIDGED, Process
+from tools.bringups.running import BRIDGED, Process, flat, sections, value_of
 
 # Programs that run once for all robots, and need no reason: simulators, worlds, tools.
 SHARED = {
@@ -242,6 +243,7 @@ def differences(process: Process, other: Process, robot: str) -> Iterator[str]:
     yield from _parameters(process, other, robot)
     if process.program not in STATIC:
         yield from _words(process, other, robot)
+        yield from _files(process, other, robot)
     for name, it in process.facts.items():
         if value(other.facts.get(name, ""), robot) != value(it, ""):
             yield f"{name} lost: {_short(it)}"
@@ -304,6 +306,32 @@ def _words(process: Process, other: Process, robot: str) -> Iterator[str]:
             yield f"argument lost: {name} {_short(wanted[name])}".rstrip()
     for name in has.keys() - wanted.keys():
         yield f"argument more: {name} {_short(has[name])}".rstrip()
+
+
+def _files(process: Process, other: Process, robot: str) -> Iterator[str]:
+    """Return what differs in the parameter files among the arguments of two processes."""
+    for word in process.words:
+        file = word.rpartition("=")[2]
+        there = [it.rpartition("=")[2] for it in other.words]
+        same = [it for it in there if os.path.basename(it) == os.path.basename(file)]
+        if file.endswith((".yaml", ".yml")) and same:
+            wanted, has = _content(file, ""), _content(same[0], robot)
+            name = os.path.basename(file)
+            yield from _grouped(f"{name} lost", wanted.keys() - has.keys())
+            both = wanted.keys() & has.keys()
+            yield from _grouped(f"{name} changed", {it for it in both if wanted[it] != has[it]})
+
+
+def _content(file: str, robot: str) -> dict[str, Any]:
+    """Return the values of a parameter file by section and name, as they are compared."""
+    text = Path(file).read_text(errors="replace") if os.path.isfile(file) else ""
+    content = value_of(text)
+    rows = sections(content, "") if isinstance(content, dict) else ()
+    return {
+        f"{bare(section, robot)}.{bare(name, robot)}": value(it, robot)
+        for section, values in rows
+        for name, it in flat(values)
+    }
 
 
 def options(process: Process, robot: str) -> dict[str, str]:

@@ -247,7 +247,7 @@ def _node(words: Sequence[str], files: Mapping[str, str], many: bool = False) ->
                 rules.append((old, new))
         elif word in ("-p", "--param"):
             key, _, value = next(rest, "").partition(":=")
-            given.append({key: _value(value)})
+            given.append({key: value_of(value)})
         elif word == "--params-file":
             given.append(files.get(next(rest, ""), ""))
     parameters: dict[str, Any] = {}
@@ -268,7 +268,7 @@ def _bridged(file: Any) -> list[str]:
     """Return the ROS topics of the file of a bridge."""
     if not isinstance(file, str) or not os.path.isfile(file):
         return []
-    rows = _value(Path(file).read_text(errors="replace"))
+    rows = value_of(Path(file).read_text(errors="replace"))
     topics = [it for it in rows if isinstance(it, dict)] if isinstance(rows, list) else []
     return [str(it.get("ros_topic_name") or it.get("topic_name", "")) for it in topics]
 
@@ -282,7 +282,8 @@ _Values.add_constructor(
 )
 
 
-def _value(text: str) -> Any:
+def value_of(text: str) -> Any:
+    """Return the value of a text in YAML; the text itself if it is none."""
     try:
         return yaml.load(text, _Values)
     except yaml.YAMLError:
@@ -292,23 +293,24 @@ def _value(text: str) -> Any:
 def parameters_of(text: str, name: str, space: str) -> dict[str, Any]:
     """Return the values of a parameter file that a node reads; all of them if its name is not told."""
     found: dict[str, Any] = {}
-    content = _value(text)
-    sections = list(_sections(content, "")) if isinstance(content, dict) else []
+    content = value_of(text)
+    found_sections = list(sections(content, "")) if isinstance(content, dict) else []
     whole = f"{space.rstrip('/')}/{name}" if name else ""
-    for key, values in sorted(sections, key=lambda it: "*" not in it[0]):
+    for key, values in sorted(found_sections, key=lambda it: "*" not in it[0]):
         if not whole or _matches(key, whole):
             found |= dict(flat(values))
     return found
 
 
-def _sections(content: Mapping[Any, Any], above: str) -> Iterator[tuple[str, Mapping[Any, Any]]]:
+def sections(content: Mapping[Any, Any], above: str) -> Iterator[tuple[str, Mapping[Any, Any]]]:
+    """Return the sections of a parameter file, each with its path and its values."""
     for key, values in content.items():
         if not isinstance(values, dict):
             continue
         path = f"{above}/{str(key).strip('/')}"
         if isinstance(values.get("ros__parameters"), dict):
             yield path, values["ros__parameters"]
-        yield from _sections({k: it for k, it in values.items() if k != "ros__parameters"}, path)
+        yield from sections({k: it for k, it in values.items() if k != "ros__parameters"}, path)
 
 
 def _matches(key: str, whole: str) -> bool:
