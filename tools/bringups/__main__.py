@@ -133,6 +133,7 @@ def made(choice: Choice, checkout: Path, given: argparse.Namespace, folder: Path
         if named is None:
             break
         words = shlex.split(named[1])
+        words += [] if "--launch" in words else launch
     if init.code not in (0, 1) or not fleet.exists():
         return Made(f"init {init.code}: {_last(init.err)}", text, seconds)
     if given.launched and "\nlaunch:" not in fleet.read_text():
