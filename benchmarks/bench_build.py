@@ -23,9 +23,8 @@ from pairs import HOW, MACHINE, Row, as_installed, child, least_seconds, paired,
 from robots import robot
 
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import make_context
+from multibot_rewrite.companions.context import fill_template, make_context
 from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back

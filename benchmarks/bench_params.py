@@ -22,9 +22,8 @@ from pairs import HOW, MACHINE, Row, paired, seconds, table
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.context import Context, fill_template, make_context
 from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.stacks import load_stack
 

@@ -16,7 +16,7 @@ import shtab
 from argparse_manpage.manpage import Manpage
 
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.options import Option
+from multibot_rewrite.cli.declared.shared import Option
 from multibot_rewrite.cli.parser import Parser, declare, make_parser
 from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.version import __version__

@@ -88,6 +88,14 @@ def _refuse_pipe(path: str) -> None:
         raise OSError(errno.EINVAL, "it is a pipe: who reads it may wait for ever", path)
 
 
+def bytes_if_read(path: str) -> bytes:
+    """The bytes of a file, none of one that cannot be read."""
+    try:
+        return read_bytes(path)
+    except OSError:
+        return b""
+
+
 def read_text(path: str) -> str:
     """The text of a file, lines ended by a newline; raises what ``read_bytes`` raises, and
     UnicodeDecodeError."""

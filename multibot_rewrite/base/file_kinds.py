@@ -7,8 +7,7 @@ import re
 from codecs import BOM_UTF8
 from collections.abc import Mapping
 
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import COMMENT, without_comments
+from multibot_rewrite.base.lazy import COMMENT, lazy_compile, without_comments
 from multibot_rewrite.base.model import TEMPLATE, InputError
 from multibot_rewrite.base.record import NamedTuple
 

@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Regular expressions that are compiled when first used: a run needs only few of them."""
+"""Regular expressions that are compiled when first used, since a run needs only few of them, and parts
+of patterns that read XML, Python and substitutions, each in linear time.
+
+A search for something without an end would start again at the next place that looks like its start.
+What has no end therefore goes to the end of the text, or stops where the next one starts.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Any, AnyStr, cast
 
 _USES = ("findall", "finditer", "fullmatch", "match", "search", "split", "sub")
@@ -25,3 +31,34 @@ class _Later:
 def lazy_compile(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
     """As ``re.compile``, but a mistake in ``text`` is raised at the first use."""
     return cast("re.Pattern[AnyStr]", _Later(text, flags))
+
+
+COMMENT = rb"<!--(?s:.*?)(?:-->|\Z)"
+# What holds no tags.
+SILENT = COMMENT + rb"|<!\[CDATA\[(?s:.*?)(?:\]\]>|\Z)|<\?(?s:.*?)(?:\?>|\Z)"
+# Inside a start tag, behind its name: no value of an attribute holds a "<".
+ATTRIBUTES = rb"(?:[^<>\"']|\"[^\"<]*\"|'[^'<]*')*"
+# Inside an expression ${...} of xacro, and inside a substitution $(...).
+IN_EXPRESSION = r"(?:[^$}]|\$(?!\{))*"
+IN_SUBSTITUTION = r"(?:[^$)]|\$(?!\())*"
+FILLED_IN = rf"\$\{{{IN_EXPRESSION}\}}|\$\({IN_SUBSTITUTION}\)"
+_SILENT = lazy_compile(SILENT)
+
+
+def without_comments(source: bytes) -> bytes:
+    """Return a text of XML without its comments and processing instructions."""
+    return _SILENT.sub(lambda found: found[0] if found[0].startswith(b"<![") else b"", source)
+
+
+def with_gaps(pieces: Sequence[str], gap: str) -> str:
+    """Return a pattern for whole texts that have the pieces in this order, with one or more of the
+    characters ``gap`` between each two.
+
+    Each piece is taken where it comes first, and no other place is tried: what lies between it and the
+    next one can always be longer.
+    """
+    first, *others = pieces
+    *middle, last = others or [""]
+    taken = (rf"(?=(?P<_{at}>{gap}+?{re.escape(it)}))(?P=_{at})" for at, it in enumerate(middle))
+    end = f"{gap}+{re.escape(last)}" if others else ""
+    return "".join((re.escape(first), *taken, end))

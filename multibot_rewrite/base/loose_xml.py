@@ -14,8 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import ATTRIBUTES, SILENT
+from multibot_rewrite.base.lazy import ATTRIBUTES, SILENT, lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 
 _STAGE = "http://playerstage.sourceforge.net/gazebo/xmlschema/#"
@@ -135,11 +134,8 @@ def _missing(source: bytes, root: bytes) -> bytes:
     left = sorted(used - _KEPT - set(_BOUND.findall(root)))
     if len(left) > MAX_PREFIXES:
         return b""
-    return b"".join(b' xmlns:%s="%s"' % (it, _uri(it.decode()).encode()) for it in left)
-
-
-def _uri(prefix: str) -> str:
-    return NAMESPACES.get(prefix, UNBOUND + prefix)
+    uris = ((it, NAMESPACES.get(it.decode(), UNBOUND + it.decode())) for it in left)
+    return b"".join(b' xmlns:%s="%s"' % (prefix, uri.encode()) for prefix, uri in uris)
 
 
 def _is_tag(part: bytes) -> bool:

@@ -8,6 +8,7 @@ where to insert, and what is put before and after the robot's name.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TypedDict
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.model import UsageError
@@ -368,3 +369,15 @@ def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]
                 met = {POSTFIX: tail, PREFIX: front}
                 pairs |= {(robot, met[side], separator) for side in sides if met[side] in names}
     return sorted(pairs)
+
+
+class Policy(TypedDict, total=False):
+    """The options of ``make_naming`` as one value, for what is passed on to it."""
+
+    layout: str
+    affix: str
+    topics: str | None
+    separators: Mapping[str, str] | None
+    shared_frames: Iterable[str]
+    shared_topics: Iterable[str]
+    groups: str

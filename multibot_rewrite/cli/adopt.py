@@ -7,8 +7,7 @@ import argparse
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.changed import deliver_changed, note_unread, proof_words
-from multibot_rewrite.cli.output import note
+from multibot_rewrite.cli.output import deliver_changed, note, note_unread, proof_words
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
 from multibot_rewrite.refactor.adopt import Adopted, adopt

@@ -34,8 +34,7 @@ from multibot_rewrite.live.watching import (
     verdict_words,
 )
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
-from multibot_rewrite.rules.check import check
-from multibot_rewrite.rules.domains import check_domains
+from multibot_rewrite.rules.check import check, check_domains
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.spelling.plan_file import is_fleet, read_plan

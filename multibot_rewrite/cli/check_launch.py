@@ -27,10 +27,9 @@ from multibot_rewrite.producers.launch.include_arguments import arguments_declar
 from multibot_rewrite.producers.launch.kept_paths import read_text
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words
-from multibot_rewrite.rules.check import side_by_side
-from multibot_rewrite.rules.domains import check_view
+from multibot_rewrite.rules.check import check_view, side_by_side
 from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch, placed
-from multibot_rewrite.rules.launch.started import START_MANAGER, no_manager
+from multibot_rewrite.rules.launch.started import no_manager
 
 _Read = Callable[[Sequence[LaunchOrder]], Launched]
 
@@ -82,8 +81,8 @@ def _with_remedies(
     every = list(found)
     if not any(_is_open(it) for it in every):
         return every
-    remedy = _argument(orders, read) or START_MANAGER
-    return [it._replace(hint=remedy) if _is_open(it) else it for it in every]
+    remedy = _argument(orders, read)
+    return [it._replace(hint=remedy) if remedy and _is_open(it) else it for it in every]
 
 
 def _is_missing(it: Finding) -> bool:
@@ -91,7 +90,8 @@ def _is_missing(it: Finding) -> bool:
 
 
 def _is_open(it: Finding) -> bool:
-    return _is_missing(it) and it.level == ERROR and it.hint == START_MANAGER
+    """Is no controller manager there at all?"""
+    return _is_missing(it) and it.level == ERROR and len(it.names) == 1
 
 
 def _argument(orders: Sequence[LaunchOrder], read: _Read) -> str:

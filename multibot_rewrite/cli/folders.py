@@ -36,7 +36,7 @@ def locked(folder: str) -> Iterator[None]:
     """Alone with a folder: another build into it, or beside it, waits until this one is done."""
     import fcntl
 
-    above = _above(_real(folder))
+    above = _above(os.path.realpath(folder))
     try:
         handle = os.open(above, os.O_RDONLY)
     except OSError:
@@ -48,10 +48,6 @@ def locked(folder: str) -> Iterator[None]:
         yield
     finally:
         os.close(handle)
-
-
-def _real(folder: str) -> str:
-    return os.path.realpath(folder)
 
 
 def _above(folder: str) -> str:
@@ -85,7 +81,7 @@ def change_folder(
     ``note`` is a file with what a build wants, for the time in which files are replaced one by one.
     Raises UsageError with path and cause; everything is as it was then.
     """
-    real = _real(folder)
+    real = os.path.realpath(folder)
     made: list[str] = []
     with _removed_unless_done(made):
         with explained(folder):
@@ -109,7 +105,7 @@ def _removed_unless_done(made: list[str]) -> Iterator[None]:
 
 def clear_leftovers(folder: str) -> None:
     """Remove what builds that were killed have left, beside the folder and in it."""
-    real = _real(folder)
+    real = os.path.realpath(folder)
     above, name = os.path.split(real)
     with suppress(OSError):
         for left in os.listdir(above):

@@ -9,7 +9,7 @@ from multibot_rewrite.base import other_words
 from multibot_rewrite.base.nearest import CHOICE, extensions, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.options import Command
+from multibot_rewrite.cli.declared.shared import Command
 
 # A beginning of so few letters says nothing.
 _BEGUN = 2

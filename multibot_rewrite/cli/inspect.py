@@ -5,20 +5,35 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterator, Sequence
+import re
+import shlex
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.config import configured_vocabulary
-from multibot_rewrite.base.findings.codes import near_name
+from multibot_rewrite.base.findings.codes import (
+    examples,
+    explained,
+    find_rules,
+    listed,
+    near_name,
+    no_rule,
+)
+from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import SiteRow, UsageError
 from multibot_rewrite.base.releases import release_here
-from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.cli import explain, xacro_arguments
+from multibot_rewrite.base.wording import clip, shorten
 from multibot_rewrite.cli.output import deliver, note
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.reports.suggest import suggest, vocabulary_text
+from multibot_rewrite.description.reports.xacro_arguments import (
+    Argument,
+    XacroArguments,
+    as_json as arguments_json,
+    find_arguments,
+)
 from multibot_rewrite.description.rewriters.lookup import block_of, facts, look_up, near_names
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import (
@@ -27,7 +42,9 @@ from multibot_rewrite.description.rewriters.vocabulary import (
     VocabularySection,
     load_vocabulary,
 )
+from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
@@ -43,10 +60,10 @@ def run(options: argparse.Namespace) -> int:
         return draft(options)
     words = plain_words(options)
     paths = any(map(_is_path, words))
-    if not paths and explain.are_codes(words):
-        return explain.run(options, words)
+    if not paths and are_codes(words):
+        return explain(options, words)
     if len(words) > 1 or xacro_args(options) or paths:
-        return xacro_arguments.run(options, words)
+        return try_arguments(options, words)
     return show(options, next(iter(words), None))
 
 
@@ -65,8 +82,8 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     if name is None:
         return _all(options, vocabulary.sections(*TYPES))
     found = look_up(vocabulary, name, TYPES)
-    if not found and explain.is_name(name):
-        return explain.run(options, [name])
+    if not found and is_name(name):
+        return explain(options, [name])
     if not found:
         raise _unknown(vocabulary, name, TYPES)
     if options.form == JSON:
@@ -80,9 +97,9 @@ def _all(options: argparse.Namespace, sections: Sequence[VocabularySection]) -> 
     """Everything that is known: what a description may have, and what may be found in it."""
     if options.form == JSON:
         known = [as_json(it) for it in sections]
-        deliver(options, json_bytes({"sections": known, "rules": explain.as_json()}))
+        deliver(options, json_bytes({"sections": known, "rules": rules_json()}))
     else:
-        deliver_report(options, (*_list(sections), "", explain.grid()))
+        deliver_report(options, (*_list(sections), "", rule_grid()))
     return DONE
 
 
@@ -191,3 +208,135 @@ def draft(options: argparse.Namespace) -> int:
             options, f"{options.suggest}: everything it loads is known, there is nothing to suggest"
         )
     return DONE
+
+
+# More rules than these are listed, a line each.
+MOST_EXPLAINED = 10
+# MB202, as it begins (mb2), and what is nearly one.
+_CODE = re.compile(r"M[A-Z](\d\w*)?", re.IGNORECASE)
+
+
+def are_codes(words: Sequence[str]) -> bool:
+    """Is a code among these words, or are they the name of a rule?"""
+    return any(map(_CODE.fullmatch, _split(words)))
+
+
+def is_name(word: str) -> bool:
+    """Has a rule this name?"""
+    return any(it.name == word for it in rules().values())
+
+
+def explain(options: argparse.Namespace, words: Sequence[str]) -> int:
+    """Explain rules by their codes, how codes begin, or names; more than a few are listed. Returns the
+    exit code."""
+    found = {it.code: it for word in _split(words) for it in _asked(word)}
+    if options.form == JSON:
+        deliver(options, json_bytes({"rules": rules_json(found.values())}))
+    elif len(found) > MOST_EXPLAINED:
+        deliver_report(options, (rule_grid(found.values()),))
+        note(options, "multibot inspect CODE explains one of them")
+    else:
+        deliver(options, "\n".join(map(explained, found.values())).encode())
+    return DONE
+
+
+def rule_grid(found: Iterable[Rule] | None = None) -> Grid:
+    """Return rules (all by default) in a table."""
+    shown = rules().values() if found is None else found
+    return Grid(("code", "level", "name", "what it finds"), [*listed(shown)])
+
+
+def rules_json(found: Iterable[Rule] | None = None) -> list[dict[str, object]]:
+    """Rules (all by default) as ``--form json`` writes them; docs/stacks.md describes it."""
+    fields = ("code", "name", "level", "what", "why", "fix")
+    return [
+        {**{name: getattr(it, name) for name in fields}, "examples": dict(examples(it))}
+        for it in (rules().values() if found is None else found)
+    ]
+
+
+def _split(words: Iterable[str]) -> list[str]:
+    return [code for word in words for code in word.split(",")]
+
+
+def _asked(word: str) -> list[Rule]:
+    known = rules()
+    found = find_rules(word, known) if word else []
+    if not found:
+        raise UsageError(no_rule(word, known))
+    return found
+
+
+ARGUMENT_COLUMNS = ("argument", "default", "goes into", "as", "count", "example")
+
+
+def try_arguments(options: argparse.Namespace, words: Sequence[str]) -> int:
+    """Try the arguments of a xacro file and arguments_report; returns the exit code."""
+    path = _only_xacro(options, words)
+    if options.output:
+        check_target(options.output, [path, *options.vocabulary])
+    tree = builtin_tree(
+        (*configured_vocabulary(path), *options.vocabulary), release_here(options.distro)
+    )
+    reach = Reach(trust=options.trust)
+    found = find_arguments(path, filled(xacro_args(options)), tree, reach=reach)
+    if options.output:
+        check_target(options.output, found.read)
+    if options.form == JSON:
+        deliver(options, json_bytes({"xacro": arguments_json(found)}))
+    else:
+        deliver_report(options, arguments_report(found))
+    return DONE
+
+
+def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
+    """The one word, which is a xacro file; raises UsageError."""
+    missing = next((it for it in words if not os.path.lexists(it)), None)
+    if missing is not None:
+        raise UsageError(f"{missing}: there is no such file or folder")
+    if not words:
+        raise UsageError(f"{options.words[0]} is an argument of a xacro file; name the file")
+    check_xacro(options, words)
+    other = next((it for it in words if not is_xacro(it)), None)
+    if other is not None:
+        linted = shlex.join(["urdf-lint", other])
+        raise UsageError(f"{other} is no xacro; {linted} tells what is not known in it")
+    if len(words) > 1:
+        raise UsageError(f"{words[1]}: the arguments of one xacro file are shown; leave it out")
+    return words[0]
+
+
+def arguments_report(found: XacroArguments) -> Iterator[str | Grid]:
+    """What is printed of a xacro's arguments."""
+    rows = [row for it in found.arguments for row in _argument_rows(it)]
+    if rows:
+        yield Grid(ARGUMENT_COLUMNS, rows)
+        yield ""
+    without = [it.name for it in found.arguments if not it.uses and not it.fault]
+    if without:
+        yield f"go into no names: {', '.join(without)}"
+    refused = [it.name for it in found.arguments if it.fault]
+    if refused:
+        yield f"take no name of a robot: {', '.join(refused)}"
+    if found.untried:
+        yield f"too many to try: {', '.join(found.untried)}"
+    yield from _advice(found)
+
+
+def _argument_rows(it: Argument) -> Iterator[tuple[str, ...]]:
+    first = it.name, clip(it.default)
+    for use in it.uses:
+        how = f"{use.how} {use.separator}".rstrip()
+        yield *first, use.kind, how, f"{use.names} of {use.total}", use.example
+        first = "", ""
+
+
+def _advice(found: XacroArguments) -> Iterator[str]:
+    """The command that uses the arguments for robots."""
+    command = ["urdf-postfix", found.file, "robot1", "robot2", "-o", "out/{robot}.urdf"]
+    line = shlex.join([*command, *found.words])
+    if found.words:
+        yield "each robot by its own argument, and everything else rewritten as usual:"
+    else:
+        yield "no argument gives each robot its own names; the rewrite does it:"
+    yield f"  {line}"

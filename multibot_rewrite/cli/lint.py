@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.formats.shared import counts, in_words
+from multibot_rewrite.base.findings.formats.plain import counts, in_words
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError, VocabularyError
 from multibot_rewrite.base.releases import (
@@ -33,8 +33,7 @@ from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.report import NO_RULES, TEXT, About, by_themselves, report_first
 from multibot_rewrite.cli.usage import check_xacro, plain_words, policy, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files, standard_input
-from multibot_rewrite.companions.kinds import SUFFIXES as BESIDE
-from multibot_rewrite.companions.kinds import is_linted
+from multibot_rewrite.companions.named_file import SUFFIXES as BESIDE, is_linted
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.release_said import release_of_all
 from multibot_rewrite.lint.config.configured import (
@@ -130,7 +129,7 @@ def _check_shared(
     findings: Sequence[Finding],
 ) -> None:
     """Raise UsageError for a name of ``--shared`` that is in none of the files and changes nothing."""
-    from multibot_rewrite.cli.shared_names import check_shared  # few ask for it
+    from multibot_rewrite.cli.rewrite_use import check_shared  # few ask for it
 
     def linted(naming: Mapping[str, Any]) -> list[Finding]:
         changed = with_options(configured_alone, **{**given(options), **naming})

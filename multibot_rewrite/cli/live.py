@@ -26,8 +26,7 @@ from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.rules.check import ABSENCE
 from multibot_rewrite.system.environment import settings
-from multibot_rewrite.system.parameters import with_answers
-from multibot_rewrite.system.questions import ANSWER_SECONDS, NO_MORE, questions
+from multibot_rewrite.system.parameters import ANSWER_SECONDS, NO_MORE, questions, with_answers
 from multibot_rewrite.system.records import System, answering
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from multibot_rewrite.base import other_words
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import ALIKE, did_you_mean_one_of
 from multibot_rewrite.cli.declared.commands import COMMANDS
-from multibot_rewrite.cli.options import Command
+from multibot_rewrite.cli.declared.shared import Command
 from multibot_rewrite.cli.output import AUTO, is_coloured, print_bytes
 from multibot_rewrite.cli.parser import painted
 from multibot_rewrite.cli.process import DONE, PROGRAM, guarded, start

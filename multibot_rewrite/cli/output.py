@@ -8,13 +8,13 @@ import io
 import os
 import stat
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TextIO, TypeGuard, TypeVar
 
 from multibot_rewrite.base import editors
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.wording import for_terminal, one_line
+from multibot_rewrite.base.wording import for_terminal, one_line, plural
 from multibot_rewrite.cli.walk import check_link, check_target
 
 AUTO, ALWAYS = "auto", "always"
@@ -248,3 +248,35 @@ def _named(path: str) -> bytes:
 def _painted(line: bytes) -> bytes:
     paint = _PAINT.get(line[:1], b"")
     return paint + line[:-1] + _PLAIN + b"\n" if paint else line
+
+
+def deliver_changed(
+    options: argparse.Namespace,
+    before: Mapping[str, bytes],
+    after: Mapping[str, bytes],
+    write: bool,
+) -> None:
+    """Write the files, or what ``git apply`` takes in this folder: to ``-o``, or printed."""
+    if write:
+        from multibot_rewrite.cli.files import write_all
+
+        write_all(after.items())
+        return
+    colour = prints_colour(options)
+    names = {path: os.path.relpath(path) for path in after}
+    patches = (
+        diff(before[path], data, f"a/{names[path]}", f"b/{names[path]}", colour)
+        for path, data in after.items()
+    )
+    deliver(options, b"".join(patches))
+
+
+def proof_words(unread: Mapping[str, str]) -> str:
+    """Return the word for a change that is proved, with how many descriptions were not read for it."""
+    return f"proved, {plural(len(unread), 'description')} not read" if unread else "proved"
+
+
+def note_unread(options: argparse.Namespace, unread: Mapping[str, str]) -> None:
+    """Name the descriptions that could not be read, each with the reason."""
+    for path, why in unread.items():
+        note(options, f"not looked at: {why or path}")

@@ -20,13 +20,13 @@ from multibot_rewrite.live.rehearsal import (
     Stub,
     bridge_stub,
     domain_bridge_stubs,
+    staged,
+    stages,
     stub_nodes,
     with_own_types,
     with_substitutes,
 )
-from multibot_rewrite.live.staged import staged, stages
-from multibot_rewrite.rules.check import check
-from multibot_rewrite.rules.domains import check_domains
+from multibot_rewrite.rules.check import check, check_domains
 from multibot_rewrite.spelling.transforms import Edges, with_odometry
 from multibot_rewrite.spelling.ways import WAYS
 from multibot_rewrite.system.domains import by_domain, domain_of, side_by_side

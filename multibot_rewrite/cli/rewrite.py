@@ -23,7 +23,10 @@ from multibot_rewrite.cli.output import STANDARD, serves_a_program
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.rewrite_use import (
     CHANGES,
+    FRAMES,
+    TOPICS,
     below,
+    check_shared,
     check_unread,
     check_use,
     deliver,
@@ -31,7 +34,6 @@ from multibot_rewrite.cli.rewrite_use import (
     is_stopped,
     tell,
 )
-from multibot_rewrite.cli.shared_names import FRAMES, TOPICS, check_shared
 from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.description.checks.verdict import given, not_proved
@@ -69,7 +71,7 @@ def _is_beside(source: Source) -> bool:
     """As ``is_beside``, which need not be asked of what is called as descriptions are."""
     if isinstance(source, str) and source.endswith((".urdf", ".sdf", ".xacro")):
         return False
-    from multibot_rewrite.companions.kinds import is_beside
+    from multibot_rewrite.companions.named_file import is_beside
 
     return is_beside(source)
 

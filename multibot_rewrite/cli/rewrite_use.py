@@ -6,11 +6,14 @@ from __future__ import annotations
 import argparse
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import Any
 
+from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import did_you_mean
 from multibot_rewrite.cli.output import (
     diff,
     note,
@@ -21,8 +24,9 @@ from multibot_rewrite.cli.output import (
     write_files,
 )
 from multibot_rewrite.cli.report import About, by_themselves, check_report, chosen, report_beside
-from multibot_rewrite.cli.usage import xacro_args
+from multibot_rewrite.cli.usage import policy, xacro_args
 from multibot_rewrite.cli.walk import check_link, check_target
+from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.description.sources.read import is_xacro
 
 PLACEHOLDER = "{robot}"
@@ -168,3 +172,58 @@ def deliver(
 def _no_link(item: tuple[str, bytes]) -> tuple[str, bytes]:
     check_link(item[0])
     return item
+
+
+TOPICS, FRAMES = "shared_topics", "shared_frames"
+USUAL: Mapping[str, tuple[str, ...]] = {TOPICS: SHARED_TOPICS, FRAMES: WORLD_FRAMES}
+# Makes the result with another naming policy; equal results are equal in texts and findings.
+Make = Callable[[Mapping[str, Any]], object]
+
+
+def check_shared(
+    options: argparse.Namespace,
+    result: object,
+    make: Make,
+    names: Mapping[str, Collection[str]],
+    files: Sequence[str] = (),
+) -> None:
+    """Raise UsageError for a name of ``--shared`` without which the input gives the same result.
+
+    ``names`` are the frames and topics of the input by ``FRAMES`` and ``TOPICS``, as far as they are
+    known; where they are not, a name that is in the text of one of the ``files`` may be one. What is
+    shared by default may be named again.
+    """
+    given: dict[str, Any] = {**policy(options)}
+    for word in dict.fromkeys(options.shared):
+        kind = TOPICS if word.startswith("/") else FRAMES
+        if word in USUAL[kind] or word.strip("/") in names.get(kind, ()):
+            continue
+        without = [
+            it for it in options.shared if it.startswith("/") == (kind == TOPICS) and it != word
+        ]
+        if make({**given, kind: without}) == result:
+            hint = _hint(word, given, make, result, names)
+            if not hint and any(word.strip("/").encode() in data_of_file(it) for it in files):
+                continue
+            what = "topic" if kind == TOPICS else "frame"
+            raise UsageError(f"--shared {word}: the input has no {what} {word!r}{hint}")
+
+
+def _hint(
+    word: str,
+    given: Mapping[str, Any],
+    make: Make,
+    result: object,
+    names: Mapping[str, Collection[str]],
+) -> str:
+    """Return what was probably meant: the same name of the other kind, or one that is like it."""
+    kind, other = (TOPICS, FRAMES) if word.startswith("/") else (FRAMES, TOPICS)
+    bare = word.strip("/")
+    spelled = bare if other == FRAMES else f"/{bare}"
+    as_other = {**given, other: [*given.get(other, USUAL[other]), spelled]}
+    if bare in names.get(other, ()) or make(as_other) != result:
+        slash = "topics are written with a slash" if other == TOPICS else "frames have no slash"
+        return f"; {slash}: --shared {spelled}"
+    slashed = "/" if kind == TOPICS else ""
+    near = did_you_mean(word, sorted(f"{slashed}{it}" for it in names.get(kind, ())))
+    return f"; {near}" if near else ""

@@ -4,21 +4,31 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
+from multibot_rewrite.base import editors
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.releases import facts_of_release, release_here
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli import learn, live
-from multibot_rewrite.cli.output import STANDARD, deliver, note, say
+from multibot_rewrite.cli import live
+from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say, write_files
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.walk import check_folder, check_target
+from multibot_rewrite.knowledge.node_library import NodeLibrary
+from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
+from multibot_rewrite.knowledge.nodl.writing import NodlFile, file_name
+from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.live.learning.choosing import choose_nodes, helpers_without_owner, left_out
+from multibot_rewrite.live.learning.learn import LearnedNode, learn
+from multibot_rewrite.live.learning.nodes_file import to_nodl, to_yaml as to_nodes_yaml
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.rosgraph.writing import to_yaml
+from multibot_rewrite.system.environment import machines
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.reach import machines
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -34,6 +44,7 @@ from multibot_rewrite.system.records import (
     System,
     answering,
     clocks,
+    doubts,
     incomplete,
 )
 
@@ -53,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
     request = Request(options.timeout or live.LOOK_SECONDS, tuple(options.expect))
     snapshot = live.with_states(options, live.graph(options, request))
     if describes:
-        return learn.write(options, snapshot)
+        return write_nodes(options, snapshot)
     if options.output is None and options.form is None:
         deliver_report(options, report(snapshot))
     else:
@@ -73,7 +84,7 @@ def _check_use(options: argparse.Namespace) -> bool:
     if options.output not in (None, STANDARD):
         check_folder(options.output)
         check_target(options.output, options.snapshot)
-    return learn.is_asked(options)
+    return is_asked(options)
 
 
 def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
@@ -146,3 +157,89 @@ def _reach(around: Environment) -> str:
     range_ = f", range {around.range}" if around.range else ""
     peers = f", peers {' '.join(around.static_peers)}" if around.static_peers else ""
     return f"{router}{range_}{peers}"
+
+
+NODES, NODL = "nodes", "nodl"
+
+
+def is_asked(options: argparse.Namespace) -> bool:
+    """Are nodes to be described, not a snapshot to be written? Raises UsageError."""
+    if options.form in (NODES, NODL) or is_nodl(options):
+        return True
+    given = [f"--{it}" for it in ("node", "namespace", "stack", "distro") if getattr(options, it)]
+    if given:
+        raise UsageError(f"{given[0]} is for a description of nodes: add --form {NODES}")
+    return False
+
+
+def write_nodes(options: argparse.Namespace, graph: System) -> int:
+    """Learn, write_nodes, note what is left out; returns the exit code."""
+    doubtful = doubts(graph)
+    for caveat in doubtful:
+        say(f"incomplete: {caveat.message}", PROGRAM)
+    namespace = options.namespace or "/"
+    names = choose_nodes(graph, options.node, namespace)
+    release = release_here(options.distro)
+    library = built_in(release)
+    learned = learn(graph, names, namespace, library)
+    remarks = [*_notes(graph, learned, options.namespace, bool(options.node))]
+    as_nodl = is_nodl(options)
+    stack = options.stack or "learned"
+    if as_nodl:
+        remarks += _write_nodl(options, _as_nodl(options, graph, learned, library))
+    else:
+        deliver(options, to_nodes_yaml(learned, stack, library).encode(), editors.NODES)
+    for remark in remarks:
+        note(options, f"note: {remark}")
+    shape = "NoDL" if as_nodl else f"stack {stack}"
+    what = f"{plural(len(learned), 'node')} learned as {shape}"
+    note(options, f"{what}{facts_of_release(release)}")
+    return live.INCONCLUSIVE if doubtful else DONE
+
+
+def is_nodl(options: argparse.Namespace) -> bool:
+    """Is the result NoDL, by --form or by the name of the file? Raises UsageError."""
+    named = (options.output or "").endswith(SUFFIXES)
+    if named and options.form not in (None, NODL):
+        form = f"--form {options.form}"
+        raise UsageError(f"{options.output} is the name of a NoDL file; leave out {form}")
+    return named or options.form == NODL
+
+
+def _as_nodl(
+    options: argparse.Namespace, graph: System, learned: Sequence[LearnedNode], library: NodeLibrary
+) -> list[NodlFile]:
+    in_json = (options.output or "").endswith(".json")
+    return [to_nodl(it, graph, options.namespace or "/", library, in_json) for it in learned]
+
+
+def _write_nodl(options: argparse.Namespace, found: Sequence[NodlFile]) -> Iterator[str]:
+    """Write a document to a file or standard output, several below a folder; what is left out."""
+    if not goes_to_file(options) or options.output.endswith(SUFFIXES):
+        if len(found) > 1:
+            hint = "name one with --node, or a folder with -o"
+            raise UsageError(f"a NoDL file is for one node, here are {len(found)}; {hint}")
+        deliver(options, found[0].text.encode())
+    else:
+        items = [(os.path.join(options.output, file_name(it.node)), it.text) for it in found]
+        write_files(options, [(path, text.encode()) for path, text in items])
+    for it in found:
+        if it.left_out:
+            yield f"{it.node}: NoDL has no form for {', '.join(it.left_out)}; left out"
+
+
+def _notes(
+    graph: System, learned: Sequence[LearnedNode], namespace: str | None, named: bool
+) -> Iterator[str]:
+    for node in learned:
+        yield from (f"{node.seen}: {remark}" for remark in node.remarks)
+    lost = helpers_without_owner(graph, [node.seen for node in learned])
+    if lost:
+        yield f"whose helpers these are is not seen, they are left out: {', '.join(lost)}"
+    tools = left_out(graph, [node.seen for node in learned], namespace or "/")
+    if tools and not named:
+        yield f"left out as tools: {', '.join(tools)}; to learn one give its name to --node"
+    first = {node.facts.name.partition("/")[0] for node in learned if "/" in node.facts.name}
+    if namespace is None and len(first) == 1 and all("/" in node.facts.name for node in learned):
+        where = f"/{first.pop()}"
+        yield f"all are below {where}; if that is the robot's namespace, add --namespace {where}"

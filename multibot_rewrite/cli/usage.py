@@ -13,7 +13,7 @@ from multibot_rewrite.base.rosnames import MOST, numbered_names
 from multibot_rewrite.description.sources.read import is_xacro
 
 if TYPE_CHECKING:
-    from multibot_rewrite.base.policy import Policy
+    from multibot_rewrite.base.naming import Policy
 
 # Kinds that ``--separator SEP`` without a kind is for.
 OF_DESCRIPTION = tuple(kind for kind in SEPARATORS if kind not in ROS_SEPARATORS)

@@ -11,7 +11,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import deliver_report
 from multibot_rewrite.cli.usage import rewriting, robots
-from multibot_rewrite.companions.kinds import is_beside
+from multibot_rewrite.companions.named_file import is_beside
 from multibot_rewrite.description.library import explain
 from multibot_rewrite.description.reports.explain import Explanation
 

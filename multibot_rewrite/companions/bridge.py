@@ -32,27 +32,28 @@ from multibot_rewrite.companions.bridge_entry import (
     row_of,
     text_in,
 )
-from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.engine import splices_of
-from multibot_rewrite.companions.engine import text_of as spelled_text
-from multibot_rewrite.companions.kinds import BRIDGE
-from multibot_rewrite.companions.named_file import Companion, NamedFile
+from multibot_rewrite.companions.context import Context, FileTemplate, make_template
+from multibot_rewrite.companions.engine import splices_of, text_of as spelled_text
+from multibot_rewrite.companions.named_file import BRIDGE, Companion, NamedFile
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.sites import GZ_TOPIC, Site, site_at
-from multibot_rewrite.companions.template import FileTemplate, make_template
-from multibot_rewrite.companions.yaml_blocks import Block, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import (
+    Block,
     Splice,
     YamlText,
+    blocks,
+    cut_out,
+    is_block,
     is_text,
     items,
-    line_of,
+    newline,
     pairs,
     quoted,
     refuse_anchors,
+    refused,
     replaced,
 )
 from multibot_rewrite.description.rewriters.forms import NamePart
@@ -154,17 +155,13 @@ def _others(node: yaml.Node) -> Iterator[Site]:
 
 
 def _refuse(document: YamlText) -> None:
-    root, file = document.root, document.file
+    root = document.root
     if root is None:
-        raise InputError(f"{file}: the bridge file is empty; write a list of topics")
+        raise InputError(f"{document.file}: the bridge file is empty; write a list of topics")
     if not isinstance(root, yaml.SequenceNode):
-        raise InputError(
-            f"{file}:{line_of(root)}: not a list of topics; start each entry with a dash"
-        )
+        raise refused(document, root, "not a list of topics; start each entry with a dash")
     if root.value and not is_block(root):
-        raise InputError(
-            f"{file}:{line_of(root)}: the list is in brackets; start each entry with a dash"
-        )
+        raise refused(document, root, "the list is in brackets; start each entry with a dash")
     refuse_anchors(document)
 
 

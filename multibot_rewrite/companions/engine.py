@@ -4,21 +4,25 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
-from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.context import (
+    NAMESPACE_SLOT,
+    TAG_SLOT,
+    Context,
+    check_no_slots,
+    make_template,
+)
+from multibot_rewrite.companions.named_file import Companion, NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_plain
 from multibot_rewrite.companions.names.node_topics import Facts, TopicText, spell_topic
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.sites import AS_IS, UNCLEAR, XML, Site, Slot
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, quoted
 
-Speller = Callable[[Site], str]
 # Names that the remap rules of their node move, too.
 GRAPH = ("topic", "service")
 _IN_QUOTES = {**ESCAPES, ord("'"): "&apos;"}
@@ -52,9 +56,14 @@ def text_of(context: Context, facts: Facts, site: Site) -> str:
     return spell_site(context, facts, site).text
 
 
-def name_splices(file: NamedFile, speller: Speller) -> Iterator[Splice]:
-    """The splices that give each name of a file its text for a robot; raises as ``splices_of``."""
-    yield from splices_of(file.text, file.file, ((it, speller(it)) for it in file.names))
+def with_slots(file: NamedFile, facts: Facts, more: Iterable[Splice] = ()) -> Companion:
+    """Return a file in which each name has its text for a robot, and ``more`` splices are made; raises
+    as ``check_no_slots`` and ``splices_of``."""
+    check_no_slots(file.text, file.file)
+    made = ((it, text_of(file.context, facts, it)) for it in file.names)
+    return Companion(
+        make_template(file.text, [*more, *splices_of(file.text, file.file, made)]), file
+    )
 
 
 def splices_of(text: str, file: str, made: Iterable[tuple[Site, str]]) -> Iterator[Splice]:

@@ -1,19 +1,42 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kinds of files beside a description: how each is read, and made for any robot."""
+"""The kinds of files beside a description: how each is read, made for any robot, and rewritten
+alone.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 
+from multibot_rewrite.base.file_kinds import refuse_others
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.behavior_tree.rewrite import named_tree, rewrite_behavior_tree
-from multibot_rewrite.companions.bridge import read_bridge
-from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.kinds import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
+from multibot_rewrite.companions.bridge import read_bridge, rewrite_bridge
+from multibot_rewrite.companions.bridge_entry import MODEL_SLOT
+from multibot_rewrite.companions.context import Context, FileTemplate, fill_template
 from multibot_rewrite.companions.lua import read_lua, rewrite_lua
+from multibot_rewrite.companions.moveit.file_kind import find_kind
 from multibot_rewrite.companions.moveit.rewrite import read_moveit, rewrite_moveit
-from multibot_rewrite.companions.named_file import Companion, NamedFile
+from multibot_rewrite.companions.named_file import (
+    BRIDGE,
+    LUA,
+    MOVEIT,
+    PARAMS,
+    RVIZ,
+    TREE,
+    Companion,
+    NamedFile,
+    kind_of,
+)
+from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
 from multibot_rewrite.companions.params.rewrite import read_params, rewrite_params
-from multibot_rewrite.companions.rviz.rewrite import read_rviz
+from multibot_rewrite.companions.rviz.rewrite import read_rviz, rewrite_rviz
+from multibot_rewrite.companions.rviz.values import RvizRobot
+from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -53,3 +76,96 @@ _WRITERS: Mapping[str, _Writer] = {
     TREE: lambda data, file, context, _: rewrite_behavior_tree(data, file, context),
     LUA: lambda data, file, context, _: rewrite_lua(data, file, context),
 }
+
+
+# A file of parameters that is written in braces.
+_IN_BRACES = lazy_compile(rb"\bros__parameters\b")
+
+
+def kind_alone(data: bytes, file: str) -> str:
+    """The kind of a file by its text; InputError for a file of no kind."""
+    found = kind_of(data)
+    if found or _IN_BRACES.search(data):
+        return found or PARAMS
+    with suppress(InputError):
+        if find_kind(read_yaml(data, file)):
+            return MOVEIT
+    if not data.strip():
+        raise InputError(f"{file}: the file is empty; a robot description starts with <robot>")
+    refuse_others(data, file)
+    hint = "name a description, parameters, a tree, or a file of RViz, MoveIt, ros_gz_bridge or Lua"
+    raise InputError(f"{file}:1:1: it is none of the files that are rewritten; {hint}")
+
+
+class OneFile(NamedTuple):
+    """A file for one robot: its text, what was read, what its rewrite found, and how many names of the
+    description did not become the robot's."""
+
+    text: str
+    file: NamedFile
+    findings: tuple[Finding, ...]
+    kept: int
+
+
+def rewrite_alone(
+    kind: str, data: bytes, file: str, context: Context, robot: str, number: int
+) -> OneFile:
+    """The file for a robot whose word in names and in the graph is one, the ``number``-th after the
+    first; what a bridge carries for all robots is in that of the first. Raises InputError for a file
+    that its reader rejects."""
+    if kind == RVIZ:
+        text, named, found = _shown(data, file, context, robot)
+    else:
+        made, template = _made(kind, data, file, context, not number)
+        text = fill_template(template, robot, robot, number).replace(MODEL_SLOT, robot)
+        named, found = made.file, made.findings
+    kept = _kept(named, read_named(kind, text.encode(), file, _of(context, robot)), robot)
+    return OneFile(text, named, found, kept)
+
+
+def _made(
+    kind: str, data: bytes, file: str, context: Context, first: bool
+) -> tuple[Companion, FileTemplate]:
+    if kind == BRIDGE:
+        bridge = rewrite_bridge(read_yaml(data, file), context)
+        return bridge.own, bridge.whole if first else bridge.own.template
+    made = made_for_any(kind, data, file, context)
+    return made, made.template
+
+
+def _of(context: Context, robot: str) -> Context:
+    """The context of the robot's own description, in which every name is the robot's."""
+    names = context.names._replace(robot=robot)
+    declared = {
+        kind: {spell(names, kind, it): at for it, at in its.items()} if kind in KINDS else its
+        for kind, its in names.declared.items()
+    }
+    own = names._replace(declared=declared)
+    return context._replace(names=own, topics=own)
+
+
+def _kept(before: NamedFile, after: NamedFile, robot: str) -> int:
+    """How many names that the description declares are not those of the robot in the result."""
+    names = before.context.names._replace(robot=robot)
+    wanted = Counter(spell(names, it.kind, it.text) for it in _declared(before))
+    return (wanted - Counter(it.text for it in after.names)).total()
+
+
+def _declared(file: NamedFile) -> Iterator[Site]:
+    names = file.context.names
+    yield from (
+        it for it in file.names if it.kind in _PARTS and is_declared(names, it.kind, it.text)
+    )
+
+
+# Names that are spelled without regard to the node.
+_PARTS = frozenset(("link", "joint", "frame", "sensor", "gpio"))
+
+
+def _shown(
+    data: bytes, file: str, context: Context, robot: str
+) -> tuple[str, NamedFile, tuple[Finding, ...]]:
+    document = read_yaml(data, file)
+    names, topics = (it._replace(robot=robot) for it in (context.names, context.topics))
+    texts, found = rewrite_rviz(document, [RvizRobot(robot, names, topics)])
+    return texts[0].text, read_rviz(document, context), found

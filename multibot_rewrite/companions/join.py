@@ -17,8 +17,8 @@ from multibot_rewrite.companions.rviz.joined import JoinedRviz, joined_rviz, par
 from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
-from multibot_rewrite.description.joining.part import Part, prefixing
-from multibot_rewrite.description.joining.proof import split_text
+from multibot_rewrite.description.joining.part import Part, ReadPart, prefixing
+from multibot_rewrite.description.joining.second_reading import split_text
 from multibot_rewrite.description.joining.semantic import (
     JoinedSemantics,
     PartSemantics,
@@ -30,7 +30,7 @@ from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.sources.read import Source, SourceText, args_for, read_file
 from multibot_rewrite.description.sources.whole import read_whole
-from multibot_rewrite.description.steps.collect import NOTHING, collect
+from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 
 
@@ -171,7 +171,7 @@ def _moveit(
 ) -> Iterator[PartMoveit]:
     for it, mounted in zip(given, made.parts, strict=True):
         part, said = mounted.part, NOTHING
-        before = collect(read_document(part.data, part.file), tree) if it.moveit else part.inventory
+        before = _without_prefix(part, tree) if it.moveit else part.inventory
         if it.moveit and it.srdf is not None:
             text = _srdf(it, it.srdf, trust)
             document = read_document(text.data, text.file)
@@ -180,12 +180,16 @@ def _moveit(
             yield part_moveit(read_file(at), at, before, said, part.prefix)
 
 
+def _without_prefix(part: ReadPart, tree: Tree) -> Inventory:
+    return collect(read_document(part.data, part.file), tree)
+
+
 def _rviz(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedRviz:
     found = []
     for it, mounted in zip(given, made.parts, strict=True):
         part = mounted.part
         if it.rviz:
-            before = collect(read_document(part.data, part.file), tree)
+            before = _without_prefix(part, tree)
             found.append(part_rviz(read_file(it.rviz), it.rviz, before, part.name, part.prefix))
     return joined_rviz(found) if found else JoinedRviz(b"", ())
 
@@ -193,8 +197,7 @@ def _rviz(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedRviz:
 def _controllers(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFiles:
     files = []
     for it, mounted in zip(given, made.parts, strict=True):
-        part = mounted.part
-        before = collect(read_document(part.data, part.file), tree)
+        part, before = mounted.part, _without_prefix(mounted.part, tree)
         files += [part_file(read_file(at), at, before, part.prefix) for at in it.controllers]
     return joined_files(files) if files else JoinedFiles(b"", ())
 

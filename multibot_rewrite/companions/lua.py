@@ -9,17 +9,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from functools import partial
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.engine import name_splices, text_of
-from multibot_rewrite.companions.kinds import LUA
-from multibot_rewrite.companions.named_file import Companion, NamedFile
+from multibot_rewrite.companions.engine import with_slots
+from multibot_rewrite.companions.named_file import LUA, Companion, NamedFile
 from multibot_rewrite.companions.sites import AS_IS, Site, Slot
-from multibot_rewrite.companions.template import check_no_slots, make_template
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
 # Cartographer's own files, which set no frames (cartographer/configuration_files).
@@ -72,23 +69,26 @@ def rewrite_lua(data: bytes, file: str, context: Context) -> Companion:
     Only ``name = "frame"`` is rewritten; any other assignment is ``computed``. Raises InputError for
     strings and comments that do not end, and text that is not UTF-8.
     """
-    text = _text(data, file)
-    check_no_slots(text, file)
-    named = _named(text, file, context)
-    splices = name_splices(named, partial(text_of, context, {}))
-    return Companion(make_template(text, splices), named)
+    return with_slots(read_lua(data, file, context), {})
 
 
 def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
     """The names of a file; raises as ``rewrite_lua``."""
-    return _named(_text(data, file), file, context)
-
-
-def _text(data: bytes, file: str) -> str:
     try:
-        return data.decode()
+        text = data.decode()
     except UnicodeDecodeError:
         raise InputError(f"{file}: it is not UTF-8; save it as UTF-8") from None
+    tokens = list(tokens_of(text, file))
+    options = list(_options(tokens))
+    values = {it.value.at: (it.name.text, it.value) for it in options if it.value}
+    names = tuple(_site("frame", it, key) for key, it in values.values())
+    computed = tuple(_site("", it.name, it.name.text) for it in options if it.value is None)
+    strings = (it for it in tokens if it.kind in ("string", "long") and it.at not in values)
+    others = tuple(_site("", it) for it in strings)
+    included = tuple(_site("", it) for it in _included(tokens))
+    return NamedFile(
+        LUA, file, text, context, {}, names, others, included=included, computed=computed
+    )
 
 
 def tokens_of(text: str, file: str) -> Iterator[Token]:
@@ -138,20 +138,6 @@ def _included(tokens: Sequence[Token]) -> Iterator[Token]:
         behind = next((it for it in tokens[at + 1 : at + 3] if it.text != "("), None)
         if behind and behind.kind in ("string", "long") and _plain(behind) not in OWN_FILES:
             yield behind
-
-
-def _named(text: str, file: str, context: Context) -> NamedFile:
-    tokens = list(tokens_of(text, file))
-    options = list(_options(tokens))
-    values = {it.value.at: (it.name.text, it.value) for it in options if it.value}
-    names = tuple(_site("frame", it, key) for key, it in values.values())
-    computed = tuple(_site("", it.name, it.name.text) for it in options if it.value is None)
-    strings = (it for it in tokens if it.kind in ("string", "long") and it.at not in values)
-    others = tuple(_site("", it) for it in strings)
-    included = tuple(_site("", it) for it in _included(tokens))
-    return NamedFile(
-        LUA, file, text, context, {}, names, others, included=included, computed=computed
-    )
 
 
 def _site(kind: str, token: Token, key: str = "") -> Site:

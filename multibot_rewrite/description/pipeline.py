@@ -10,8 +10,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Rewr
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import TWIN, Naming, overlap
-from multibot_rewrite.description.checks import audit
-from multibot_rewrite.description.checks import robots as checks
+from multibot_rewrite.description.checks import audit, robots as checks
 from multibot_rewrite.description.checks.meeting import shared_by_all, shared_by_both, shared_with
 from multibot_rewrite.description.checks.mentions import MENTIONED, find_mentions, usual_names
 from multibot_rewrite.description.checks.problem import Problem, to_findings

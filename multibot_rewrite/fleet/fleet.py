@@ -8,8 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.naming import Naming, make_naming
-from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.naming import Naming, Policy, make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.sources.read import Source
@@ -26,8 +25,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 )
 from multibot_rewrite.fleet.robots.member import Member, is_for_simulator, line_of, member
 from multibot_rewrite.knowledge.node_library import with_included
-from multibot_rewrite.knowledge.nodl.facts import NodeKnowledge, nodes_of
-from multibot_rewrite.knowledge.nodl.lookup import find_interfaces
+from multibot_rewrite.knowledge.nodl.lookup import NodeKnowledge, find_interfaces, nodes_of
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack

@@ -15,9 +15,8 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.rosnames import check_robot_names
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.companions.alone import kind_alone, rewrite_alone
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.formats import read_named
+from multibot_rewrite.companions.formats import kind_alone, read_named, rewrite_alone
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
 from multibot_rewrite.description.rewriters.made_topics import words_of

@@ -32,7 +32,7 @@ A node:
     sends      the parameter of the parent -> that of the child in a transform it sends, or {child,
                if}, or a list of these
     claims     command or state -> the interfaces that a controller claims, as templates over its
-               parameters (``producers/evidence/claims.py``)
+               parameters (``producers/evidence/hardware.py``)
     ids        a word in <> -> the parameter that lists what it stands for; the type of a list of
                names and types is list/msg/Type, list/srv/Type or list/action/Type
     aliases    other usual names; ``types``: of controllers, as a controller manager loads them;

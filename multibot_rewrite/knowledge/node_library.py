@@ -9,12 +9,12 @@ from contextlib import suppress
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import share_release
-from multibot_rewrite.knowledge.endpoint_entries import checked_endpoint, endpoints_of
-from multibot_rewrite.knowledge.fact_words import condition_of, releases_of
 from multibot_rewrite.knowledge.node_entries import (
     GRAPH_KEYS,
     NODE_KEYS,
     check_name,
+    checked_endpoint,
+    endpoints_of,
     read_node,
     taken_over,
 )
@@ -26,11 +26,13 @@ from multibot_rewrite.knowledge.parameter_entries import (
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, NodeParameters
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
+    condition_of,
     entries,
     entries_of,
     flag_of,
     known_word,
     read_yaml_with_lines,
+    releases_of,
     table,
     table_of,
     unknown,

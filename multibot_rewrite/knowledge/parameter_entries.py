@@ -5,20 +5,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.knowledge.fact_words import (
-    FACT_KEYS,
-    check_apart,
-    releases_of,
-    source_of,
-    variants,
-)
 from multibot_rewrite.knowledge.records import NodeParameters, Param
 from multibot_rewrite.knowledge.yaml_with_lines import (
+    FACT_KEYS,
     YamlItem,
+    check_apart,
     flag_of,
     one_of,
+    releases_of,
+    source_of,
     table,
     table_of,
+    variants,
     word,
     word_of,
     words_of,

@@ -146,7 +146,7 @@ class SentTransform(NamedTuple):
 
 class Claim(NamedTuple):
     """Interfaces that a controller claims: ``kind`` is command or state, ``template`` a name with
-    parameters in <> (``evidence.claims``); ``condition`` and ``releases`` as in ``Endpoint``."""
+    parameters in <> (``evidence.hardware``); ``condition`` and ``releases`` as in ``Endpoint``."""
 
     kind: str
     template: str

@@ -10,23 +10,29 @@ removed at the end of the launch. Source: launch, launch_ros jazzy.
 
 from __future__ import annotations
 
-from multibot_rewrite.launch.actions import composable_node as composable_node
-from multibot_rewrite.launch.actions import container as container
-from multibot_rewrite.launch.actions import each_robot as each_robot
-from multibot_rewrite.launch.actions import lifecycle_node as lifecycle_node
-from multibot_rewrite.launch.actions import node as node
-from multibot_rewrite.launch.actions import place as place
-from multibot_rewrite.launch.actions import spawn as spawn
-from multibot_rewrite.launch.context import RobotRef as RobotRef
-from multibot_rewrite.launch.context import file_of as file_of
-from multibot_rewrite.launch.context import fleet_of as fleet_of
-from multibot_rewrite.launch.context import perform as perform
-from multibot_rewrite.launch.context import robot_of as robot_of
-from multibot_rewrite.launch.substitutions import FILE as FILE
-from multibot_rewrite.launch.substitutions import WORDS as WORDS
-from multibot_rewrite.launch.substitutions import bridge_config as bridge_config
-from multibot_rewrite.launch.substitutions import description as description
-from multibot_rewrite.launch.substitutions import params_file as params_file
-from multibot_rewrite.launch.substitutions import rviz_config as rviz_config
-from multibot_rewrite.launch.substitutions import value as value
+from multibot_rewrite.launch.actions import (
+    composable_node as composable_node,
+    container as container,
+    each_robot as each_robot,
+    lifecycle_node as lifecycle_node,
+    node as node,
+    place as place,
+    spawn as spawn,
+)
+from multibot_rewrite.launch.context import (
+    RobotRef as RobotRef,
+    file_of as file_of,
+    fleet_of as fleet_of,
+    perform as perform,
+    robot_of as robot_of,
+)
+from multibot_rewrite.launch.substitutions import (
+    FILE as FILE,
+    WORDS as WORDS,
+    bridge_config as bridge_config,
+    description as description,
+    params_file as params_file,
+    rviz_config as rviz_config,
+    value as value,
+)
 from multibot_rewrite.producers.launch.door import missing as missing

@@ -13,8 +13,7 @@ from multibot_rewrite.base.model import Claim, InputError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.formats import read_named
-from multibot_rewrite.companions.kinds import MOVEIT, kind_of
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import MOVEIT, NamedFile, kind_of
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.packages import entries, package_of

@@ -3,132 +3,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
 
 from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.record import NamedTuple
 
-
-class Home(NamedTuple):
-    """Rules whose codes begin with ``start``, and the modules (below the package) that declare them."""
-
-    start: str
-    modules: tuple[str, ...]
-
-
-HOMES: tuple[Home, ...] = (
-    Home(
-        "MB1",
-        ("description.steps.plan", "description.checks.robots", "description.checks.arguments"),
-    ),
-    Home(
-        "MF1",
-        (
-            "companions.params.rewrite",
-            "companions.params.values",
-            "companions.params.shared_defaults",
-            "companions.params.bringup_style",
-        ),
-    ),
-    Home(
-        "MF2",
-        (
-            "companions.rviz.window_checks",
-            "companions.rviz.of_plan",
-        ),
-    ),
-    Home("MF5", ("fleet.outputs.bridge_outputs",)),
-    Home(
-        "MF7",
-        (
-            "fleet.robots.start_poses",
-            "fleet.outputs.spawn",
-            "fleet.checks.of_robots",
-            "fleet.outputs.controller_files",
-        ),
-    ),
-    Home(
-        "MF8",
-        (
-            "producers.evidence.nodes",
-            "producers.launch.findings",
-            "fleet.launch.launched_files",
-            "fleet.outputs.controller_files",
-            "fleet.launch.launched_prefix",
-            "fleet.file.filled_arguments",
-            "fleet.robots.simulators",
-            "fleet.checks.lacking",
-            "fleet.checks.other_manager",
-            "fleet.checks.of_robots",
-            "fleet.robots.joined_robots",
-            "fleet.robots.world_systems",
-            "fleet.checks.across_domains",
-            "fleet.checks.shared_names",
-            "fleet.robots.own_ports",
-            "fleet.outputs.given_world",
-            "fleet.robots.robot_nodes",
-            "fleet.outputs.params_style",
-            "fleet.outputs.cell_outputs",
-            "fleet.outputs.moveit_parameters",
-        ),
-    ),
-    Home(
-        "MG1",
-        (
-            "rules.system.planned_nodes",
-            "rules.system.planned_ends",
-            "rules.system.demands",
-            "rules.system.enclaves",
-            "rules.system.planned_states",
-        ),
-    ),
-    Home("MG2", ("rules.system.planned_frames",)),
-    Home(
-        "MG3",
-        (
-            "rules.system.nodes",
-            "rules.system.names",
-            "rules.system.matching",
-            "rules.system.commands",
-            "rules.system.relays",
-            "rules.system.sharing",
-            "rules.system.equal_robots",
-            "rules.system.likes",
-            "rules.system.differing",
-            "rules.system.unsent",
-        ),
-    ),
-    Home(
-        "MG4",
-        (
-            "rules.system.transforms",
-            "rules.system.tf_topics",
-            "rules.system.tf_pieces",
-            "rules.system.frame_ids",
-            "rules.system.lookups",
-            "rules.system.localized",
-            "rules.system.refused",
-            "rules.system.stamps",
-        ),
-    ),
-    Home(
-        "MG5",
-        ("rules.system.clocks", "rules.system.states", "rules.system.interfaces"),
-    ),
-    Home(
-        "MG7",
-        (
-            "rules.launch.ending",
-            "rules.launch.models",
-            "rules.launch.rows",
-            "rules.launch.started",
-            "rules.launch.words",
-        ),
-    ),
-    Home("MR1", ("spelling.table_checks", "spelling.way_checks")),
+# The modules (below the package) that declare rules beside those of ``rules``.
+HOMES = (
+    "description.steps.plan",
+    "description.checks.robots",
+    "description.checks.arguments",
+    "companions.params.rewrite",
+    "companions.params.values",
+    "companions.params.shared_defaults",
+    "companions.params.bringup_style",
+    "companions.rviz.window_checks",
+    "companions.rviz.of_plan",
+    "fleet.outputs.bridge_outputs",
+    "fleet.robots.start_poses",
+    "fleet.outputs.spawn",
+    "fleet.checks.of_robots",
+    "fleet.outputs.controller_files",
+    "producers.evidence.nodes",
+    "producers.launch.findings",
+    "fleet.launch.launched_files",
+    "fleet.launch.launched_prefix",
+    "fleet.file.filled_arguments",
+    "fleet.robots.simulators",
+    "fleet.checks.lacking",
+    "fleet.checks.other_manager",
+    "fleet.robots.joined_robots",
+    "fleet.robots.world_systems",
+    "fleet.checks.across_domains",
+    "fleet.checks.shared_names",
+    "fleet.robots.own_ports",
+    "fleet.outputs.given_world",
+    "fleet.robots.robot_nodes",
+    "fleet.outputs.params_style",
+    "fleet.outputs.cell_outputs",
+    "fleet.outputs.moveit_parameters",
+    "spelling.table_checks",
+    "spelling.way_checks",
 )
+_OF_LINT = "MB"
 
 
 @cache
@@ -137,14 +55,26 @@ def rules() -> Mapping[str, Rule]:
     from multibot_rewrite.lint.registry import RULES
 
     # A lint has some with examples of its own.
-    found = [*RULES.values(), *(it for home in HOMES for it in declared(home))]
-    by_code = {it.code: it for it in sorted(found, key=lambda it: it.code)}
-    assert len({(it.code, it.name) for it in found}) == len(by_code), "two rules have one code"
+    by_code = {it.code: it for it in sorted((*RULES.values(), *declared()), key=_code)}
+    names = {(it.code, it.name) for it in (*RULES.values(), *by_code.values())}
+    assert len(names) == len(by_code), "two rules have one code"
     return by_code
 
 
-def declared(home: Home) -> Iterator[Rule]:
-    """The rules of its modules, once each: some modules import one of another."""
-    modules = [import_module(f"multibot_rewrite.{name}") for name in home.modules]
+@cache
+def declared() -> tuple[Rule, ...]:
+    """The rules of commands other than the lint, in the order of the codes. Of two with one code, which
+    differ in their examples, it is that of the module which declares it."""
+    from multibot_rewrite.lint.registry import RULES
+    from multibot_rewrite.rules import check
+    from multibot_rewrite.rules.launch import judge
+
+    modules = [import_module(f"multibot_rewrite.{name}") for name in HOMES]
     found = [it for one in modules for it in vars(one).values() if isinstance(it, Rule)]
-    yield from {id(it): it for it in found if it.code.startswith(home.start)}.values()
+    every = (*judge.RULES, *check.RULES.values(), *found)
+    own = (it for it in every if it.code not in RULES or not it.code.startswith(_OF_LINT))
+    return tuple(sorted({it.code: it for it in own}.values(), key=_code))
+
+
+def _code(rule: Rule) -> str:
+    return rule.code

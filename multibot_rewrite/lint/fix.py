@@ -14,12 +14,17 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit, ProofError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.description.checks.poses import ROTATIONS, pose_of
-from multibot_rewrite.description.checks.rotation import NO_ROTATION, SAME, matrix_of_quaternion
+from multibot_rewrite.description.checks.poses import (
+    NO_ROTATION,
+    ROTATIONS,
+    SAME,
+    matrix_of_quaternion,
+    pose_of,
+)
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.rules.convert.capsules import capsules, ends_of
+from multibot_rewrite.rules.convert import capsules, ends_of
 from multibot_rewrite.rules.settings import Settings
 
 # A fix may make another one possible; more rounds than this never end.

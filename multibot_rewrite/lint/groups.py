@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from importlib import import_module
-from types import ModuleType
 
 from multibot_rewrite.base.findings.rule import URDF, Rule
 from multibot_rewrite.base.findings.selection import is_on
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.settings import Settings
 
 
@@ -23,31 +22,25 @@ class Group(NamedTuple):
 
 
 GROUPS = (
-    Group("MB0", "meta"),
-    Group("MB1", "files"),
-    Group("MB2", "references"),
-    Group("MB3", "names"),
-    Group("MB4", "multirobot"),
-    Group("MB5", "structure"),
-    Group("MB6", "physics"),
-    Group("MB7", "meshes"),
-    Group("MB8", "beside", False),
-    Group("MB9", "rewriting"),
+    Group("MB0", "description.meta"),
+    Group("MB1", "description.files"),
+    Group("MB2", "description.references"),
+    Group("MB3", "description.names"),
+    Group("MB4", "description.multirobot"),
+    Group("MB5", "description.structure"),
+    Group("MB6", "description.physics"),
+    Group("MB7", "description.meshes"),
+    Group("MB8", "description.srdf", False),
+    Group("MB8", "files", False),
+    Group("MB9", "description.rewriting"),
 )
+# A module of rules that find nothing where no robots are named.
+OF_ROBOTS = ("meeting",)
 
 
 def rules_of(group: Group, of_robots: bool = True) -> list[Rule]:
-    """The rules of a group's themes, those that are ``of_robots`` too; a group of one file is its own
-    theme."""
-    module = import_module(f"multibot_rewrite.rules.description.{group.module}")
-    themes: tuple[str | ModuleType, ...] = getattr(module, "THEMES", (module,))
-    more = getattr(module, "OF_ROBOTS", ()) if of_robots else ()
-    found = (_loaded(theme, module.__name__) for theme in (*themes, *more))
-    return [it for theme in found for it in vars(theme).values() if isinstance(it, Rule)]
-
-
-def _loaded(theme: str | ModuleType, package: str) -> ModuleType:
-    return import_module(theme, package) if isinstance(theme, str) else theme
+    """The rules of a group, those that are ``of_robots`` too."""
+    return rules_in(group.module, *(() if of_robots else OF_ROBOTS))
 
 
 def active_rules(settings: Settings, format_: str) -> tuple[Rule, ...]:

@@ -21,7 +21,7 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.formats import read_named
-from multibot_rewrite.companions.kinds import BRIDGE, PARAMS, kind_of
+from multibot_rewrite.companions.named_file import BRIDGE, PARAMS, kind_of
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.read import read_file
@@ -30,11 +30,7 @@ from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.described import in_use, may_stop
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.bridges import expands, is_bridge, told_rows
-from multibot_rewrite.producers.launch.launched import (
-    InSimulator,
-    Launched,
-    file_of,
-)
+from multibot_rewrite.producers.launch.launched import InSimulator, Launched, file_of
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.rules.files.bridges import (
     GzTopic,

@@ -11,10 +11,9 @@ from multibot_rewrite.base.naming import LAYOUTS, Layout
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
-from multibot_rewrite.rules.check import ABSENCE, inconclusive_where_in_doubt, judge
-from multibot_rewrite.rules.domains import in_domain
+from multibot_rewrite.rules.check import ABSENCE, in_domain, inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.system.differing import COMPARED
-from multibot_rewrite.rules.system.equal_robots import less_than_another_robot
+from multibot_rewrite.rules.system.likes import less_than_another_robot
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import named, side_by_side, space_of, unnamed
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess

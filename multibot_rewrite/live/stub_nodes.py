@@ -28,7 +28,7 @@ from multibot_rewrite.live.rehearsal import (
 )
 from multibot_rewrite.producers.ros import ros
 from multibot_rewrite.producers.ros.look import own_ends
-from multibot_rewrite.producers.ros.worker import Send, run_worker
+from multibot_rewrite.producers.ros.request import Send, run_worker
 from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.records import (
     ACTION,

@@ -71,7 +71,7 @@ def _head(row: FindingRow, link: str) -> str:
     place = f"<code>{safe(finding.node)}</code>" if finding.node else "show"
     return (
         f'<summary><b class="level {level}">{level}</b>'
-        f'<a class="rule" href="{rule_link(finding.code)}">{safe(finding.code)}</a>'
+        f'<a class="rule" href="#rule-{finding.code}">{safe(finding.code)}</a>'
         f'<b class="who" title="{safe(who)}">{safe(named)}</b>'
         f'<span class="what"><a class="place" href="{link}">{place}</a>'
         f" {safe(finding.message)}{hint}</span></summary>"
@@ -100,11 +100,6 @@ def _snippet(place: str, lines: Sequence[str]) -> str:
     wanted = place.rpartition(":")[2]
     marked = (f"<b>{safe(line)}</b>" if line.split()[0] == wanted else safe(line) for line in lines)
     return f"<pre>{chr(10).join(marked)}</pre>"
-
-
-def rule_link(code: str) -> str:
-    """The link to the explanation of a code."""
-    return f"#rule-{code}"
 
 
 def explanations(codes: Iterable[str], rules: Mapping[str, Rule]) -> Iterator[str]:

@@ -6,8 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.bridge_entry import BOTH, FRAME, GZ, ROS, below
-from multibot_rewrite.companions.bridge_entry import SERVICE as SERVICE_ROW
+from multibot_rewrite.companions.bridge_entry import (
+    BOTH,
+    FRAME,
+    GZ,
+    ROS,
+    SERVICE as SERVICE_ROW,
+    below,
+)
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.of_runs import with_names

@@ -35,10 +35,9 @@ from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.renames import make_renames, respeller
-from multibot_rewrite.refactor.configurations import configurations
 from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
 from multibot_rewrite.refactor.launch_argument import Space
-from multibot_rewrite.refactor.launches import Trial, with_launches
+from multibot_rewrite.refactor.launches import Trial, fillable, with_launches
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
 from multibot_rewrite.refactor.namespaces import namespaced, space_proved
 from multibot_rewrite.refactor.package import (
@@ -46,12 +45,12 @@ from multibot_rewrite.refactor.package import (
     Expanding,
     Package,
     as_named,
+    configurations,
     inventory_of,
     read_package,
     read_text,
     texts_of,
 )
-from multibot_rewrite.refactor.parameters import fillable
 from multibot_rewrite.refactor.placing import Left, placed
 from multibot_rewrite.refactor.source_edits import (
     SourceEdit,

@@ -2,28 +2,37 @@
 """The launch files of a package with a new argument of its xacros, and the proof that they hand it on.
 
 A launch file is read in a copy of the package, with the changed files in it: with the argument every
-link of the description that it gives its nodes has the prefix.
+link of the description that it gives its nodes has the prefix. A parameter file that it fills in gets
+``$(var prefix)`` before the names of the robot.
+
+Source: launch_ros parameter_descriptions.py (``ParameterFile``: with ``allow_substs`` the text of the
+file is a substitution). What else reads the file, as a plugin of Gazebo, would take it as it is, so one
+launch file alone may name it.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from itertools import zip_longest
 from tempfile import TemporaryDirectory
 
 from multibot_rewrite.base.bounded import load_yaml
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.names.rename_map import KINDS
 from multibot_rewrite.description.checks.links_and_joints import WORLD
+from multibot_rewrite.description.joining.part import PREFIXED
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.one_file import names_in_file
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 from multibot_rewrite.refactor.launch_argument import OF_ROBOT, LaunchEdit, Space, with_argument
 from multibot_rewrite.refactor.namespaces import TRIED_SPACE
-from multibot_rewrite.refactor.parameters import Filled
 from multibot_rewrite.refactor.placing import Left
 
 _DESCRIPTION = "robot_description"
@@ -214,3 +223,57 @@ def _descriptions(text: str) -> Iterator[str]:
             if key == _DESCRIPTION and isinstance(value, str):
                 yield value
             todo.append(value)
+
+
+class Filled(NamedTuple):
+    """A parameter file as it is, as it becomes, and what it is with the prefix that is tried."""
+
+    path: str
+    before: bytes
+    after: bytes
+    tried: bytes
+
+
+def fillable(
+    paths: Sequence[str],
+    urdfs: Sequence[bytes],
+    names: Collection[str],
+    argument: str,
+    tried: str,
+) -> Mapping[str, Filled]:
+    """The parameter files that have some of the names of the descriptions ``urdfs``, by their own
+    names; those that two have are left out."""
+    own = [os.path.basename(it) for it in paths]
+    found: dict[str, Filled] = {}
+    for path in paths:
+        data, name = read_file(path), os.path.basename(path)
+        # A file with substitutions is filled in already.
+        if own.count(name) > 1 or b"$(" in data or not urdfs:
+            continue
+        with suppress(MultibotError):
+            file = names_in_file(data, path, urdfs[0])
+            starts = set(starts_of(file, names, PREFIXED))
+            if starts:
+                words = (f"$(var {argument})", tried)
+                texts = (respelled(file, data, starts, 0, it) for it in words)
+                found[name] = Filled(path, data, *texts)
+    return found
+
+
+def starts_of(file: NamedFile, names: Collection[str], kinds: Collection[str]) -> Iterator[int]:
+    """Where in the text of a file names of these kinds begin."""
+    for site in file.names:
+        if site.text in names and not {site.kind, *KINDS.get(site.kind, ())}.isdisjoint(kinds):
+            start = file.text.find(site.text, site.slot.start + site.at, site.slot.end)
+            if start >= 0:
+                yield start
+
+
+def respelled(file: NamedFile, data: bytes, starts: Collection[int], size: int, word: str) -> bytes:
+    """The bytes of a file with a word in place of so many characters from each start of its text."""
+    text = file.text
+    # A byte order mark is none of the text.
+    mark = data[: len(data) - len(text.encode())]
+    for at in sorted(starts, reverse=True):
+        text = text[:at] + word + text[at + size :]
+    return mark + text.encode()

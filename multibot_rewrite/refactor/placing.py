@@ -16,7 +16,7 @@ from lxml import etree
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.expand import Expansion
-from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
+from multibot_rewrite.description.sources.trace import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.steps.document import attribute_slots, tag_end
 from multibot_rewrite.refactor.package import Description
 from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, place_of

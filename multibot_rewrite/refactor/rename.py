@@ -28,6 +28,7 @@ from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.fleet.one_file import names_in_file
+from multibot_rewrite.refactor.launches import respelled, starts_of
 from multibot_rewrite.refactor.named_elsewhere import files_below
 from multibot_rewrite.refactor.package import (
     Description,
@@ -38,7 +39,6 @@ from multibot_rewrite.refactor.package import (
     read_text,
     texts_of,
 )
-from multibot_rewrite.refactor.parameters import respelled, starts_of
 from multibot_rewrite.refactor.source_edits import (
     Composed,
     SourceEdit,

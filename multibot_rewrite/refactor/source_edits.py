@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Changes of the values of an expansion -> edits of the xacro files that make them.
 
-A value is put together from pieces (``description/sources/pieces.py``). A change can be made where all
+A value is put together from pieces (``description/sources/trace.py``). A change can be made where all
 of it is in one piece that stands in a file as it is; what an expression computes is left to its author.
 """
 
@@ -14,7 +14,7 @@ from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.expand import Expansion
-from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
+from multibot_rewrite.description.sources.trace import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.steps.document import Document, place_in, value_slot
 
 

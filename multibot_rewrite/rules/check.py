@@ -1,66 +1,44 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A system, alone or with its plan -> findings, in the order of the codes.
+"""A system, alone or with its plan -> findings, in the order of the codes; and robots in several
+ROS domains: a plan and what was seen in each of them.
 
-Where the view may be incomplete, a finding about something missing is *inconclusive*.
+Where the view may be incomplete, a finding about something missing is *inconclusive*. Each domain
+is held against its part of the plan, or against the whole of one for robots without names: who is
+in another one is never met. Robots are held against each other wherever they are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
-from multibot_rewrite.base.findings.finding import INCONCLUSIVE, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.producers.bags.recording import is_recorded
-from multibot_rewrite.rules.system import (
-    clocks,
-    commands,
-    demands,
-    differing,
-    enclaves,
-    equal_robots,
-    frame_ids,
-    interfaces,
-    likes,
-    localized,
-    lookups,
-    matching,
-    names,
-    nodes,
-    planned_ends,
-    planned_frames,
-    planned_nodes,
-    planned_states,
-    refused,
-    relays,
-    sharing,
-    stamps,
-    states,
-    tf_pieces,
-    tf_topics,
-    transforms,
-    unsent,
-)
+from multibot_rewrite.rules.declaration import rules_in
+from multibot_rewrite.rules.system import clocks, differing, frame_ids, likes, localized
 from multibot_rewrite.rules.system.commands import command_to_nobody
+from multibot_rewrite.rules.system.differing import COMPARED
 from multibot_rewrite.rules.system.names import topic_names_miss
 from multibot_rewrite.rules.system.planned import missing
+from multibot_rewrite.rules.system.planned_ends import missing_endpoint
+from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.rules.with_plan import one_for_a_cause
+from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
+from multibot_rewrite.system.domains import (
+    by_domain,
+    domain_of,
+    seen_by_domain,
+    side_by_side as domains_together,
+)
 from multibot_rewrite.system.index import NO_COUNTS, Index, beside, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.patterns import fitted
-from multibot_rewrite.system.records import System, doubts
-from multibot_rewrite.system.records import clocks as time_by_node
+from multibot_rewrite.system.records import System, clocks as time_by_node, doubts
 from multibot_rewrite.system.tf_copies import without_bridged
 
-_MODULES = (
-    *(nodes, names, matching, commands, relays, sharing, transforms, tf_topics, tf_pieces),
-    *(frame_ids, lookups, localized, refused, stamps, clocks, states, equal_robots, likes),
-    *(differing, unsent, interfaces, enclaves, planned_nodes, planned_ends, demands),
-    *(planned_states, planned_frames),
-)
-_FOUND = (it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule))
-RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
+RULES = {it.code: it for it in sorted(rules_in("system"), key=lambda it: it.code)}
 _LACKS = likes.lacks_what_its_likes_have
 # Findings about something missing: an incomplete view cannot prove them.
 ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
@@ -168,3 +146,88 @@ def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Fin
 def _inconclusive(finding: Finding) -> Finding:
     hint = "the view of the graph may be incomplete: the line `incomplete:` says why"
     return finding._replace(level=INCONCLUSIVE, hint=hint, file="", line=0)
+
+
+_MISSING = frozenset((missing_node.code, missing_robot.code))
+
+
+def check_view(plan: System, seen: System) -> list[Finding]:
+    """What is other than planned in one view of all nodes, each in the domain that it is planned in."""
+    return check_domains(plan, seen_by_domain(plan, seen)) if plan.domains else check(plan, seen)
+
+
+def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
+    """What is other than planned in the domains that were looked at, and wrong there."""
+    parts = by_domain(plan)
+    found = [
+        _told(it, number, plan, seen)
+        for number, view in seen.items()
+        for it in check(parts.get(number, plan), view)
+        if not _is_planned_elsewhere(it, number, plan)
+    ]
+    if parts and len(seen) > 1:
+        found += _across(plan, seen, {name for it in found for name in it.names})
+    return sorted(found, key=lambda it: it.code)
+
+
+def _across(plan: System, seen: Mapping[int, System], told: Set[str]) -> Iterator[Finding]:
+    """In what robots of several domains differ. The copies that bridges send are left out: beside
+    what they are copies of they would be a second sender."""
+    whole, together = (_without_bridges(it, plan) for it in (plan, domains_together(seen)))
+    found = check(whole._replace(domains=()), together)
+    return (it for it in found if it.code in COMPARED and told.isdisjoint(it.names))
+
+
+def _without_bridges(system: System, plan: System) -> System:
+    own = _bridges(plan)
+    return system._replace(
+        nodes=tuple(it for it in system.nodes if it.name not in own),
+        ends=tuple(it for it in system.ends if it.node not in own),
+    )
+
+
+def _bridges(plan: System) -> set[str]:
+    return {it.name for it in plan.nodes if it.stack == DOMAIN_BRIDGE}
+
+
+def _told(it: Finding, number: int, plan: System, seen: Mapping[int, System]) -> Finding:
+    """The finding with its domain, and where what is missing runs instead."""
+    nodes = {own.name for own in plan.nodes if own.robot == it.robot and plan.domains}
+    wanted = nodes if it.code == missing_robot.code else nodes & {it.node}
+    elsewhere = [
+        other
+        for other, view in seen.items()
+        if it.code in _MISSING and other != number and wanted & {own.name for own in view.nodes}
+    ]
+    said = _of_bridge(in_domain(it, number), plan)
+    if not elsewhere:
+        return said
+    hint = f"it runs in domain {elsewhere[0]}: start it with ROS_DOMAIN_ID={number}"
+    return said._replace(hint=hint, file="", line=0)
+
+
+def in_domain(it: Finding, number: int) -> Finding:
+    """The finding with its domain."""
+    return it._replace(message=f"{it.message}, in domain {number}")
+
+
+def _of_bridge(it: Finding, plan: System) -> Finding:
+    """Without a bridge that is missing on one side nothing crosses; its file has its topics."""
+    if it.node not in _bridges(plan):
+        return it
+    if it.code == missing_endpoint.code:
+        return it._replace(
+            hint=f"the file of {DOMAIN_BRIDGE} has no such topic: build the fleet again"
+        )
+    if it.code != missing_node.code:
+        return it
+    level = ERROR if it.level == WARNING else it.level
+    hint = f"nothing crosses: does {DOMAIN_BRIDGE} run for the robot, with the file that was built?"
+    return it._replace(level=level, hint=hint)
+
+
+def _is_planned_elsewhere(it: Finding, number: int, plan: System) -> bool:
+    """Is it a node that is planned, for another domain? It is told where it is missing."""
+    numbers = domain_of(plan)
+    own = {one.name: numbers[one.robot] for one in plan.nodes if numbers}
+    return it.code == unplanned_node.code and own.get(it.node, number) != number

@@ -1,23 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a rule about a system, a launch or a file is declared: on the function that finds it."""
+"""How a rule about a system, a launch or a file is declared, on the function that finds it, and how
+it says where: at the place of a record, and of what is beside it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import wraps
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule, declare, rule
+from multibot_rewrite.system.records import NOWHERE, Place
 
 if TYPE_CHECKING:
+    import yaml
+
     from multibot_rewrite.companions.named_file import NamedFile
     from multibot_rewrite.system.index import Index
 
+
 _Check = TypeVar("_Check", bound=Callable[..., Any])
 _Compare = Callable[["Index", "Index"], Iterator[Finding]]
+_FileCheck = Callable[["NamedFile"], Iterator[Finding]]
 # How pictures show what a finding is about; "" is violet for an error, blue for a warning.
 Drawn = Literal["", "missing", "leak", "cross-talk", "unexpected"]
+# The robots of an example.
+TWO = ("robot1", "robot2")
+OF_TWO: Mapping[str, object] = {"robots": TWO}
 # What the examples of a rule are written in: lines of a system, and of its plan.
 SYSTEM, LAUNCH = "system", "launch"
 
@@ -87,9 +99,7 @@ def launch_rule(code: str, name: str, *, level: str = ERROR) -> Callable[[_Check
     return rule(code, name, level, formats=(LAUNCH,))
 
 
-def of_robots(
-    find: Callable[[NamedFile], Iterator[Finding]],
-) -> Callable[[NamedFile], Iterator[Finding]]:
+def of_robots(find: _FileCheck) -> _FileCheck:
     """A rule about what several robots get: asked of a file that is for a certain robot, and of one
     alone where robots are named."""
 
@@ -99,6 +109,26 @@ def of_robots(
             yield from find(file)
 
     return found
+
+
+def rules_in(package: str, *apart: str) -> list[Rule]:
+    """Return the rules in the modules of a package below this one, without the modules ``apart``. A
+    module is its own package; a rule that several modules have is there once."""
+    name = f"{__package__}.{package}"
+    whole = import_module(name)
+    inside = (it.name for it in iter_modules(getattr(whole, "__path__", ())))
+    modules = [import_module(f"{name}.{it}") for it in inside if it not in apart]
+    found = (it for one in (whole, *modules) for it in vars(one).values() if isinstance(it, Rule))
+    return list({id(it): it for it in found}.values())
+
+
+def robots_rule(
+    code: str, name: str, level: str, *formats: str, options: Mapping[str, object] = OF_TWO
+) -> Callable[[_FileCheck], Rule]:
+    """Make a function a rule about what several robots get of a file, asked as ``of_robots`` says."""
+    return lambda find: declare(
+        code, name, level, of_robots(find), formats=formats, options=options
+    )
 
 
 NOT_EXPORTED = declare(
@@ -112,3 +142,53 @@ CLAIMED_TWICE = declare(
     "MB240", "interface-claimed-twice", WARNING, formats=(SYSTEM,), options=system_options()
 )
 ONE_DEVICE = declare("MB412", "one-device", WARNING, formats=(SYSTEM,), options=system_options())
+
+
+class Placed(Protocol):
+    """A record with the place where a file has it."""
+
+    @property
+    def place(self) -> Place: ...
+
+
+class OnLine(Protocol):
+    """What has a place in a text; lines and columns count from 1."""
+
+    @property
+    def line(self) -> int: ...
+    @property
+    def column(self) -> int: ...
+
+
+def remark(at: OnLine, message: str, hint: str = "", level: str = "") -> Finding:
+    """A finding at the place of a name, in the file and by the rule that are asked; ``level`` is empty
+    for that of the rule."""
+    return Finding("", level, message, hint, "", at.line, at.column)
+
+
+def remark_at(node: yaml.Node, message: str, hint: str = "", level: str = "") -> Finding:
+    """The same at a node of YAML."""
+    mark = node.start_mark
+    return Finding("", level, message, hint, "", mark.line + 1, mark.column + 1)
+
+
+def at(rule: Rule, place: Place, message: str, hint: str, **more: Any) -> Finding:
+    """A finding of a rule at a place."""
+    return rule.finding(message, hint, **_place_fields(place), **more)
+
+
+def where(records: Iterable[Placed]) -> dict[str, Any]:
+    """The fields of a finding at the last record that a file has; nothing where none has any."""
+    places = [it.place for it in records if it.place != NOWHERE]
+    return _place_fields(places[-1]) if places else {}
+
+
+def _place_fields(place: Place) -> dict[str, Any]:
+    return {**place._asdict(), "column": place.column or 1}
+
+
+def see(records: Iterable[Placed]) -> str:
+    """``; see FILE:LINE and FILE:LINE``: the places of all but the last one."""
+    places = dict.fromkeys(str(it.place) for it in records if it.place != NOWHERE)
+    others = [*places][:-1]
+    return f"; see {' and '.join(others)}" if others else ""

@@ -15,12 +15,11 @@ from fnmatch import fnmatchcase
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.wording import shorten, unique
-from multibot_rewrite.rules.system.demands import sender_not_planned
 from multibot_rewrite.rules.system.differing import COMPARED, unexplained
 from multibot_rewrite.rules.system.planned import missing
 from multibot_rewrite.rules.system.planned_ends import missing_endpoint
 from multibot_rewrite.rules.system.planned_frames import frame_without_robot_name
-from multibot_rewrite.rules.system.planned_nodes import unplanned_node
+from multibot_rewrite.rules.system.planned_nodes import sender_not_planned, unplanned_node
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import TF, Index, ends_of
 from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVES, SERVICE, TOPIC, End

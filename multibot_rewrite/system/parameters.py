@@ -1,13 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What nodes answer when they are asked for their state, and the values of parameters as texts."""
+"""Which nodes of a graph are asked for what of their state, what they answer, and the values of
+parameters as texts. Pure."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.system.records import Controller, Node, Parameter, System
+from multibot_rewrite.system.records import (
+    SERVES,
+    SERVICE,
+    SIM_TIME,
+    Controller,
+    Node,
+    Parameter,
+    System,
+)
 
 # The value of a parameter, as rcl has it.
 Scalar = bool | int | float | str
@@ -52,3 +62,37 @@ def with_answers(system: System, answers: Iterable[Answer]) -> System:
 
 def _in_state(node: Node, states: Mapping[str, str]) -> Node:
     return node._replace(lifecycle=states[node.name]) if node.name in states else node
+
+
+GET_STATE = "lifecycle_msgs/srv/GetState"
+GET_PARAMETERS = "rcl_interfaces/srv/GetParameters"
+LIST_CONTROLLERS = "controller_manager_msgs/srv/ListControllers"
+LIST_PARAMETERS = "rcl_interfaces/srv/ListParameters"
+ASKED = (GET_STATE, GET_PARAMETERS, LIST_PARAMETERS, LIST_CONTROLLERS)
+# How long all nodes together have for their answers.
+ANSWER_SECONDS = 5.0
+NO_MORE: Mapping[str, Collection[str]] = {}
+
+
+class Question(NamedTuple):
+    """A service that is called to ask a node, and for which parameters."""
+
+    node: str
+    service: str
+    type: str
+    parameters: tuple[str, ...] = ()
+
+
+def questions(
+    graph: System, parameters: Mapping[str, Collection[str]] = NO_MORE
+) -> Iterator[Question]:
+    """Whom to ask for what; of two nodes with one name, one would answer for the other.
+
+    ``parameters`` are those that are wanted of a node besides ``use_sim_time``, whatever it lists.
+    """
+    times = Counter(node.name for node in graph.nodes)
+    for end in graph.ends:
+        known = (end.kind, end.role) == (SERVICE, SERVES) and end.type in ASKED
+        if known and end.name.startswith(f"{end.node}/") and times[end.node] == 1:
+            wanted = {SIM_TIME, *parameters.get(end.node, ())} if end.type == GET_PARAMETERS else ()
+            yield Question(end.node, end.name, end.type, tuple(sorted(wanted)))

@@ -7,7 +7,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.wildcards import with_gaps
+from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.system.records import End, System
 
 ANY = "*"

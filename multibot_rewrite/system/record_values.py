@@ -9,41 +9,19 @@ from collections.abc import Callable, Collection, Mapping
 from functools import cache, partial
 from operator import attrgetter
 from types import NoneType
-from typing import Any, TypeVar, cast, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, TypeVar, cast, get_args, get_origin, get_type_hints
 
-from multibot_rewrite.base.findings.finding import LEVELS, Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.system.records import (
-    CALIBRATION,
-    CHANGING,
-    COMPUTER,
-    DEVICE,
-    EXPECTED,
-    KINDS,
-    MAY,
-    OFF,
-    OWN,
-    QUIET,
-    ROLES,
-    RUNS,
-    TIMEOUT,
-    UNKNOWN,
-    Address,
-    Controller,
-    Edge,
     End,
-    Environment,
-    Heard,
-    Lookup,
+    FullName,
+    MaybeFullName,
     Node,
-    Parameter,
     Place,
     Qos,
     Robot,
     Sure,
-    System,
-    Topic,
     place_of,
 )
 
@@ -53,32 +31,6 @@ _TYPE_NAMES = {str: "text", int: "a whole number", bool: "true or false"}
 _LARGEST = 1e300
 # What no robot reaches, in metres. NaN is not below it, either.
 FARTHEST = 1e12
-# Of a field that is a list, what its items may be.
-ALLOWED_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
-    (End, "kind"): KINDS,
-    (End, "role"): ROLES,
-    (Topic, "bridge"): ROLES,
-    (Address, "kind"): (DEVICE, CALIBRATION, COMPUTER, OWN),
-    (Sure, "word"): tuple(it.word for it in (RUNS, MAY, UNKNOWN, OFF)),
-    (Environment, "settled"): (EXPECTED, QUIET, TIMEOUT, CHANGING),
-    (Finding, "level"): LEVELS,
-    (System, "release"): ("", *RELEASES),
-}
-FULL_NAMES = {
-    (Node, "name"),
-    (End, "name"),
-    (End, "node"),
-    (Heard, "topic"),
-    (Lookup, "node"),
-    (Address, "node"),
-    (Parameter, "node"),
-    (Controller, "manager"),
-    (Robot, "tf_topic"),
-    (Topic, "name"),
-}
-_NUMBERS = {(Edge, "transform"), (Heard, "pose")}
-# The transforms of a plan say who sends them and not on which topic.
-MAYBE_FULL_NAMES: Mapping[type, str] = {Edge: "topic"}
 # What fixes a file is for the program that found it.
 LEFT_OUT: Mapping[type, str] = {Finding: "edits"}
 # Records that a text says whole, as far as it does: how it is made, and read.
@@ -139,9 +91,9 @@ def read_nothing(value: object) -> object:
     raise WrongValue("not a key of a file; leave it out")
 
 
-def read_full_name(value: object) -> object:
+def read_full_name(may_be_empty: bool, value: object) -> object:
     """A name with a slash in front."""
-    if not isinstance(value, str) or not value.startswith("/"):
+    if not isinstance(value, str) or not (value.startswith("/") or (may_be_empty and not value)):
         raise unexpected("a full name that starts with /", value)
     return value
 
@@ -233,37 +185,39 @@ def reader(expected: Any) -> Reader:
         return lambda value: None if value is None else inner(value)
     if get_origin(expected) is tuple:
         return partial(read_list, reader(options[0]))
+    if get_origin(expected) is Annotated:
+        return _limited(expected, options[1])
     if hasattr(expected, "_fields"):
-        hints = get_type_hints(expected)
-        readers = {name: _field_reader(expected, name, hint) for name, hint in hints.items()}
-        needed = [it for it in hints if is_needed(expected, it)]
-        whole = partial(_read_record, expected, readers, needed)
+        hints = get_type_hints(expected, include_extras=True)
+        readers = {name: reader(hint) for name, hint in hints.items()}
+        if expected in LEFT_OUT:
+            readers[LEFT_OUT[expected]] = read_nothing
+        whole = partial(_read_record, expected, readers, needed(expected, hints))
         return partial(_read_short, expected, whole) if expected in SHORT else whole
     return read_seconds if expected is float else partial(read_plain, expected)
 
 
-def _field_reader(kind: Any, name: str, hint: Any) -> Reader:
-    words = ALLOWED_WORDS.get((kind, name))
-    if words:
-        one = partial(read_word, words)
-        return partial(read_list, one) if get_origin(hint) is tuple else one
-    if (kind, name) in _NUMBERS:
-        return read_transform
-    if MAYBE_FULL_NAMES.get(kind) == name:
-        return lambda value: value if value == "" else read_full_name(value)
-    if LEFT_OUT.get(kind) == name:
-        return read_nothing
-    return read_full_name if (kind, name) in FULL_NAMES else reader(hint)
+def _limited(expected: Any, limit: object) -> Reader:
+    """Return the reader of a field of ``records`` that only some words, names or numbers fit."""
+    if isinstance(limit, tuple):
+        return partial(read_word, limit)
+    if isinstance(limit, str):
+        return partial(read_full_name, expected == MaybeFullName)
+    return read_transform
 
 
 def _read_short(kind: type, whole: Reader, value: object) -> object:
     return whole(SHORT[kind][1](value)._asdict() if isinstance(value, str) else value)
 
 
-def is_needed(kind: Any, name: str) -> bool:
-    """Must a file have the field: has it no default, or one that is no full name where it has to be?"""
+def needed(kind: Any, hints: Mapping[str, Any]) -> list[str]:
+    """The fields that a file must have: without a default, or with one that is no full name."""
     usual = kind._field_defaults
-    return name not in usual or (usual[name] == "" and (kind, name) in FULL_NAMES)
+    return [
+        name
+        for name, hint in hints.items()
+        if name not in usual or (usual[name] == "" and hint == FullName)
+    ]
 
 
 def _read_record(

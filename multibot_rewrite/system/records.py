@@ -7,8 +7,11 @@ Texts for people decide nothing.
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.releases import RELEASES
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
@@ -30,6 +33,14 @@ ZENOH = "rmw_zenoh_cpp"
 SIM_TIME = "use_sim_time"
 # The value of a parameter that only a run tells.
 UNTOLD = ""
+# What a file may have in a field, besides its type: words, what a text begins with, how many numbers.
+FullName = Annotated[str, "^/"]
+MaybeFullName = Annotated[str, "^(/|$)"]
+Transform = Annotated[tuple[float, ...], 7]
+ADDRESSES = (DEVICE, CALIBRATION, COMPUTER, OWN)
+SURE_WORDS = ("runs", "may", "unknown", "off")
+SETTLED = (EXPECTED, QUIET, TIMEOUT, CHANGING)
+RELEASE_WORDS = ("", *RELEASES)
 
 
 class Place(NamedTuple):
@@ -93,12 +104,12 @@ class Sure(NamedTuple):
     runs.
     """
 
-    word: str
+    word: Annotated[str, SURE_WORDS]
     why: str = ""
     instead: tuple[str, ...] = ()
 
 
-RUNS, MAY, UNKNOWN, OFF = Sure("runs"), Sure("may"), Sure("unknown"), Sure("off")
+RUNS, MAY, UNKNOWN, OFF = map(Sure, SURE_WORDS)
 # The code of a caveat: nodes that no source names may run, such as the driver of a robot.
 UNKNOWN_NODES = "unknown-nodes"
 # The code of a finding: what a part of a launch file starts is not in the plan.
@@ -133,7 +144,7 @@ class Robot(NamedTuple):
 
     name: str
     frames: tuple[str, ...] = ()
-    tf_topic: str = "/tf"
+    tf_topic: FullName = "/tf"
     other_frames: tuple[str, ...] = ()
     tag: str = ""
 
@@ -150,7 +161,7 @@ class Node(NamedTuple):
     names it, ``stack`` the stack that it is from. ``known`` is what its stack or file calls it.
     """
 
-    name: str
+    name: FullName
     process: str = ""
     enclave: str = ""
     robot: str = ""
@@ -175,12 +186,12 @@ class End(NamedTuple):
     ``place`` is where a file names it, or its node.
     """
 
-    kind: str
-    role: str
-    name: str
+    kind: Annotated[str, KINDS]
+    role: Annotated[str, ROLES]
+    name: FullName
     type: str
     type_hash: str = ""
-    node: str = ""
+    node: FullName = ""
     qos: Qos | None = None
     process: str = ""
     code_name: str = ""
@@ -199,11 +210,11 @@ class Edge(NamedTuple):
 
     child: str
     parent: str
-    topic: str = ""
+    topic: MaybeFullName = ""
     static: bool = False
     publishers: tuple[str, ...] = ()
     several: bool = False
-    transform: tuple[float, ...] = ()
+    transform: Transform = ()
     rate: float = 0.0
     sure: Sure = RUNS
     place: Place = NOWHERE
@@ -222,14 +233,14 @@ class Heard(NamedTuple):
     ``pose`` that of odometry or a pose, as the numbers of an edge; ``link`` is that of the sensor in a
     simulator which sends it, and ``place`` where that is written."""
 
-    topic: str
+    topic: FullName
     frame: str
     age: float = 0.0
     rate: float = 0.0
     child: str = ""
     joints: tuple[str, ...] = ()
     back: float = 0.0
-    pose: tuple[float, ...] = ()
+    pose: Transform = ()
     link: str = ""
     place: Place = NOWHERE
 
@@ -237,7 +248,7 @@ class Heard(NamedTuple):
 class Lookup(NamedTuple):
     """A transform that ``node`` needs: from ``parent``, empty for any frame, to ``frame``."""
 
-    node: str
+    node: FullName
     frame: str
     parent: str = ""
     place: Place = NOWHERE
@@ -246,7 +257,7 @@ class Lookup(NamedTuple):
 class Parameter(NamedTuple):
     """A parameter of a node; ``value`` is what ``parameter_text`` makes of it."""
 
-    node: str
+    node: FullName
     name: str
     value: str
     place: Place = NOWHERE
@@ -256,7 +267,7 @@ class Controller(NamedTuple):
     """A controller of the controller manager ``manager``, a node; ``claims`` are command interfaces,
     while it is active."""
 
-    manager: str
+    manager: FullName
     name: str
     state: str
     claims: tuple[str, ...] = ()
@@ -278,10 +289,10 @@ class Address(NamedTuple):
     """What one process holds: a ``device`` or its ``calibration``, a port of its ``computer``, or what
     is its ``own`` for another reason; ``name`` is the parameter that has it."""
 
-    kind: str
+    kind: Annotated[str, ADDRESSES]
     name: str
     value: str
-    node: str
+    node: FullName
     place: Place = NOWHERE
 
 
@@ -294,11 +305,11 @@ class Topic(NamedTuple):
     subscribes, both, or nothing; ``type`` is its type then. It serves a service.
     """
 
-    name: str
+    name: FullName
     senders: tuple[str, ...] = ()
     one_sender: bool = False
     qos: tuple[tuple[str, str], ...] = ()
-    bridge: tuple[str, ...] = ()
+    bridge: tuple[Annotated[str, ROLES], ...] = ()
     type: str = ""
 
 
@@ -324,7 +335,7 @@ class Environment(NamedTuple):
     discovery_server: str = ""
     super_client: bool = False
     participants: int = 0
-    settled: str = EXPECTED
+    settled: Annotated[str, SETTLED] = EXPECTED
     seconds: float = 0.0
     caveats: tuple[Caveat, ...] = ()
 
@@ -360,7 +371,7 @@ class System(NamedTuple):
     robots: tuple[Robot, ...] = ()
     topics: tuple[Topic, ...] = ()
     layout: str = ""
-    release: str = ""
+    release: Annotated[str, RELEASE_WORDS] = ""
     shared_topics: tuple[str, ...] = ()
     shared_frames: tuple[str, ...] = ()
     ignored_nodes: tuple[str, ...] = ()

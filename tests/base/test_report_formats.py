@@ -11,9 +11,8 @@ import pytest
 
 from multibot_rewrite.base.findings import codes
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.formats import Report, rendered
-from multibot_rewrite.base.findings.formats import markdown as in_markdown
-from multibot_rewrite.base.findings.formats.shared import by_file, counts, inside, path_below
+from multibot_rewrite.base.findings.formats import Report, plain, rendered
+from multibot_rewrite.base.findings.formats.plain import by_file, counts, inside, path_below
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import Edit, UsageError
 from multibot_rewrite.version import __version__
@@ -185,9 +184,9 @@ def test_markdown(monkeypatch: pytest.MonkeyPatch) -> None:
     assert r"| a\_b\|c\*\<d\> |" in rendered("markdown", [marked], REPORT)
     text = rendered("markdown", [NOTED] * 3, REPORT)
     assert text.startswith("**multibot lint**: 3 notes in 2 files\n")
-    monkeypatch.setattr(in_markdown, "ROOM", len(text))
+    monkeypatch.setattr(plain, "ROOM", len(text))
     assert rendered("markdown", [NOTED] * 3, REPORT) == text
-    monkeypatch.setattr(in_markdown, "ROOM", len(text) - 1)
+    monkeypatch.setattr(plain, "ROOM", len(text) - 1)
     cut = rendered("markdown", [NOTED] * 3, REPORT)
     assert cut.endswith("\n1 more are not shown here.\n") and cut.count("is odd") == 2
 

@@ -8,7 +8,7 @@ from itertools import product
 
 import pytest
 
-from multibot_rewrite.base.wildcards import with_gaps
+from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.knowledge.declared import Declared, checks_in, stands_for
 
 GAPS = [

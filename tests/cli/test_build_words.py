@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from refusals import said
 
-from multibot_rewrite.cli import build, explain
+from multibot_rewrite.cli import build, inspect
 from multibot_rewrite.fleet.manifest import OutputChanges
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
@@ -69,22 +69,22 @@ def test_files_that_are_there_are_known_by_their_hashes(tmp_path: Path) -> None:
 
 def test_rules_are_explained_each_once(capfd: pytest.CaptureFixture[str]) -> None:
     given = options(output=None, form="table")
-    assert explain.run(given, ["MG101,MB101", "MG101"]) == 0
+    assert inspect.explain(given, ["MG101,MB101", "MG101"]) == 0
     text = capfd.readouterr().out
     assert text.startswith("MG101 ") and text.count("\nMB101 ") == 1 and text.count("Why: ") == 2
-    rows = explain.grid().rows
+    rows = inspect.rule_grid().rows
     assert any(tuple(it[:2]) == ("MG101", "error") for it in rows) and rows == sorted(rows)
     for word, hint in (("", "see multibot inspect"), ("MG1019", "did you mean 'MG101'?")):
-        assert said(partial(explain.run, given), [word]) == (
+        assert said(partial(inspect.explain, given), [word]) == (
             f"no rule has the code {word!r}, and none begins with it; {hint}"
         )
 
 
 def test_what_is_taken_for_a_code() -> None:
     """Plugins and elements of the vocabulary are not: no name of it is a letter behind an M."""
-    assert all(map(explain.are_codes, (["MG101"], ["mb2"], ["MB"], ["MB20X"], ["x,MB202"])))
-    assert not any(map(explain.are_codes, ([], [""], ["M"], ["mimic"], ["libMB202.so"])))
-    assert explain.is_name("undeclared-link") and not explain.is_name("camera")
+    assert all(map(inspect.are_codes, (["MG101"], ["mb2"], ["MB"], ["MB20X"], ["x,MB202"])))
+    assert not any(map(inspect.are_codes, ([], [""], ["M"], ["mimic"], ["libMB202.so"])))
+    assert inspect.is_name("undeclared-link") and not inspect.is_name("camera")
 
 
 def test_the_files_that_a_build_was_made_from(tmp_path: Path) -> None:

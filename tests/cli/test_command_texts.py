@@ -16,8 +16,8 @@ from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
 from multibot_rewrite.base.model import InputError, ProofError, Unusable, UsageError
 from multibot_rewrite.cli import (
     adopt,
+    fleet as commands_of_fleets,
     inspect,
-    learn,
     live,
     parser,
     plan,
@@ -27,10 +27,15 @@ from multibot_rewrite.cli import (
     rewrite_file,
     snapshot,
     unplanned,
-    xacro_arguments,
 )
-from multibot_rewrite.cli import fleet as commands_of_fleets
-from multibot_rewrite.cli.options import Command, Example, OptionGroup, argument, choice, switch
+from multibot_rewrite.cli.declared.shared import (
+    Command,
+    Example,
+    OptionGroup,
+    argument,
+    choice,
+    switch,
+)
 from multibot_rewrite.cli.ros2_verb import MultibotCommand
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
@@ -39,7 +44,7 @@ from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.fleet.one_file import RewrittenFile
 from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.live import staged
+from multibot_rewrite.live import rehearsal
 from multibot_rewrite.live.learning.learn import LearnedNode
 from multibot_rewrite.system.records import (
     ACTION,
@@ -144,7 +149,7 @@ def test_arguments_of_a_xacro() -> None:
         ),
         ("late",),
     )
-    parts = render(xacro_arguments.report(found)).splitlines()
+    parts = render(inspect.arguments_report(found)).splitlines()
     assert [it.split() for it in parts[:4]] == [
         ["argument", "default", "goes", "into", "as", "count", "example"],
         ["name", "robot", "link", "prefix", "_", "3", "of", "4", "r_base"],
@@ -159,7 +164,7 @@ def test_arguments_of_a_xacro() -> None:
 
 def test_a_xacro_without_arguments_is_rewritten() -> None:
     found = XacroArguments("a.xacro", (), ())
-    assert render(xacro_arguments.report(found)) == (
+    assert render(inspect.arguments_report(found)) == (
         "no argument gives each robot its own names; the rewrite does it:\n"
         "  urdf-postfix a.xacro robot1 robot2 -o 'out/{robot}.urdf'\n"
     )
@@ -247,18 +252,18 @@ def test_what_is_left_out_is_noted() -> None:
     helper = Node("/transform_listener_impl_55d0", "alone")
     graph = System((Node("/r/a", "p"), helper, Node("/rviz2")))
     below = learned("/r/a", "r/a", "is odd")
-    assert [*learn._notes(graph, [below], None, False)] == [
+    assert [*snapshot._notes(graph, [below], None, False)] == [
         "/r/a: is odd",
         "whose helpers these are is not seen, they are left out: /transform_listener_impl_55d0",
         "left out as tools: /rviz2; to learn one give its name to --node",
         "all are below /r; if that is the robot's namespace, add --namespace /r",
     ]
     quiet = System((Node("/r/a"),))
-    assert [*learn._notes(quiet, [below], "/r", False)] == ["/r/a: is odd"]
+    assert [*snapshot._notes(quiet, [below], "/r", False)] == ["/r/a: is odd"]
     both = [learned("/r/a", "r/a"), learned("/b", "b")]
-    assert [*learn._notes(quiet, both, None, False)] == []
-    assert [*learn._notes(quiet, [both[0], learned("/q/a", "q/a")], None, False)] == []
-    assert [*learn._notes(System((Node("/rviz2"),)), both[1:], None, True)] == []
+    assert [*snapshot._notes(quiet, both, None, False)] == []
+    assert [*snapshot._notes(quiet, [both[0], learned("/q/a", "q/a")], None, False)] == []
+    assert [*snapshot._notes(System((Node("/rviz2"),)), both[1:], None, True)] == []
 
 
 def test_how_many_nodes_answered(capsys: pytest.CaptureFixture[str]) -> None:
@@ -278,18 +283,18 @@ def test_nodl_is_written_to_a_file_or_below_a_folder(
 ) -> None:
     a, b = NodlFile("a", "A\n", ()), NodlFile("r/b", "B\n", ("/x", "/y"))
     usual: dict[str, Any] = {"verbose": False, "program": "multibot", "quiet": False}
-    assert [*learn._write_nodl(options(output=None, **usual), [a])] == []
+    assert [*snapshot._write_nodl(options(output=None, **usual), [a])] == []
     assert capsys.readouterr().out == "A\n"
     file = str(tmp_path / "b.nodl.yaml")
     told = ["r/b: NoDL has no form for /x, /y; left out"]
-    assert [*learn._write_nodl(options(output=file, **usual), [b])] == told
+    assert [*snapshot._write_nodl(options(output=file, **usual), [b])] == told
     assert Path(file).read_text() == "B\n"
-    assert [*learn._write_nodl(options(output=str(tmp_path / "f"), **usual), [a, b])] == told
+    assert [*snapshot._write_nodl(options(output=str(tmp_path / "f"), **usual), [a, b])] == told
     assert (tmp_path / "f" / "a.nodl.yaml").read_text() == "A\n"
     assert (tmp_path / "f" / "r" / "b.nodl.yaml").read_text() == "B\n"
     for output in (None, "-", file):
         with pytest.raises(UsageError) as caught:
-            [*learn._write_nodl(options(output=output, **usual), [a, b])]
+            [*snapshot._write_nodl(options(output=output, **usual), [a, b])]
         hint = "name one with --node, or a folder with -o"
         assert str(caught.value) == f"a NoDL file is for one node, here are 2; {hint}"
 
@@ -375,11 +380,11 @@ def test_the_stage_of_a_rehearsal_is_this_machine_alone(monkeypatch: pytest.Monk
     for name in away:
         monkeypatch.setenv(name, "x")
     monkeypatch.setenv("KEPT", "y")
-    monkeypatch.setattr(staged.os, "getpid", lambda: 1234)
-    found = staged.stage(None)
+    monkeypatch.setattr(rehearsal.os, "getpid", lambda: 1234)
+    found = rehearsal.stage(None)
     assert (found["ROS_DOMAIN_ID"], found["ROS_AUTOMATIC_DISCOVERY_RANGE"]) == ("35", "LOCALHOST")
     assert found["KEPT"] == "y" and not {*away} & found.keys()
-    assert staged.stage(7)["ROS_DOMAIN_ID"] == "7" and staged.stage(0)["ROS_DOMAIN_ID"] == "0"
+    assert rehearsal.stage(7)["ROS_DOMAIN_ID"] == "7" and rehearsal.stage(0)["ROS_DOMAIN_ID"] == "0"
 
 
 def test_what_stubs_do_not_send_is_not_kept() -> None:

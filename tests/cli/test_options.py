@@ -23,7 +23,7 @@ from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared import shared
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.fleet import PLAN_FORMS
-from multibot_rewrite.cli.options import Command
+from multibot_rewrite.cli.declared.shared import Command
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.usage import check_xacro, policy, robots, separators, xacro_args

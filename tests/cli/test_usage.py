@@ -16,7 +16,7 @@ from refusals import said
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.cli import check, learn, live, output, pictures, snapshot, usage, walk, why
+from multibot_rewrite.cli import check, live, output, pictures, snapshot, usage, walk, why
 from multibot_rewrite.cli.report import counted_findings
 from multibot_rewrite.system.records import Parameter, System
 
@@ -184,7 +184,7 @@ def test_only_notes_are_called_notes(levels: tuple[str, ...], text: str) -> None
 def test_the_name_or_the_form_says_that_it_is_nodl(
     target: str | None, form: str | None, nodl: bool
 ) -> None:
-    assert learn.is_nodl(options(output=target, form=form)) is nodl
+    assert snapshot.is_nodl(options(output=target, form=form)) is nodl
 
 
 def test_what_a_snapshot_does_not_take_together() -> None:
@@ -207,7 +207,7 @@ def test_what_a_snapshot_does_not_take_together() -> None:
         lonely = options(**{**usual, "form": None, name: given})
         hint = f"--{name} is for a description of nodes: add --form nodes"
         assert said(snapshot._check_use, lonely) == hint
-    assert said(learn.is_nodl, options(output="a.nodl.yaml", form="nodes")) == (
+    assert said(snapshot.is_nodl, options(output="a.nodl.yaml", form="nodes")) == (
         "a.nodl.yaml is the name of a NoDL file; leave out --form nodes"
     )
 

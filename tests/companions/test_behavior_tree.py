@@ -14,8 +14,7 @@ from companion_calls import (
     make_naming,
     stack_of,
 )
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding

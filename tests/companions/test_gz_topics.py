@@ -8,8 +8,7 @@ from made_params import L2, L4, setting
 
 from multibot_rewrite.companions.bridge import gz_topic
 from multibot_rewrite.companions.bridge_entry import MODEL_SLOT
-from multibot_rewrite.companions.template import NAMESPACE_SLOT as SPACE
-from multibot_rewrite.companions.template import TAG_SLOT as TAG
+from multibot_rewrite.companions.context import NAMESPACE_SLOT as SPACE, TAG_SLOT as TAG
 
 CLOUD = "gz.msgs.PointCloudPacked"
 

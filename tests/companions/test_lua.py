@@ -6,8 +6,7 @@ from __future__ import annotations
 import pytest
 from beside import findings_of
 from companion_calls import NEWEST_LTS, Context, fill_template, make_context, make_naming
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.lua import OWN_FILES, rewrite_lua, tokens_of

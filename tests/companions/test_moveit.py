@@ -6,19 +6,21 @@ from __future__ import annotations
 import pytest
 import yaml
 from beside import findings_of
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.moveit.file_kind import file_kind, find_kind, parameter_above
-from multibot_rewrite.companions.moveit.name_sites import kinds
+from multibot_rewrite.companions.context import Context, fill_template, make_context
+from multibot_rewrite.companions.moveit.file_kind import (
+    file_kind,
+    find_kind,
+    kinds,
+    parameter_above,
+)
 from multibot_rewrite.companions.moveit.rewrite import node_of, rewrite_moveit
 from multibot_rewrite.companions.names.rename_map import with_srdf
-from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.parameters import built_in_nodes

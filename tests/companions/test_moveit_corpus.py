@@ -20,10 +20,9 @@ from paths import CORPUS, FIXTURES
 from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.context import Context, fill_template, make_context
 from multibot_rewrite.companions.moveit.file_kind import file_kind
 from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
-from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import collect

@@ -8,13 +8,13 @@ from lxml import etree
 from made_params import L2, made, section
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.behavior_tree.ports import node_name
+from multibot_rewrite.companions.behavior_tree.rewrite import node_name
+from multibot_rewrite.companions.context import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.engine import splices_of
-from multibot_rewrite.companions.params.lacking_sections import takes_sections
 from multibot_rewrite.companions.params.sections import raw_sections
+from multibot_rewrite.companions.params.shared_defaults import takes_sections
 from multibot_rewrite.companions.rviz.read_config import every, read_config
 from multibot_rewrite.companions.sites import AS_IS, UNCLEAR, XML, Site, Slot
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, read_yaml
 
 TO_DO = "put each node's parameters below ros__parameters:"

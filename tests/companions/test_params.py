@@ -29,8 +29,7 @@ from companion_calls import (
     rewrite_params,
     stack_of,
 )
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from made_params import (
     DECLARED,
     JOINTS,
@@ -655,6 +654,8 @@ def test_all_that_is_said_of_a_file(policy: tuple[str, str], source: str, found:
         (L2, section("amcl", 'odom_frame_id: "odom "'), 'odom_frame_id: "odom "', "MB865"),
         (L2, section("amcl", 'base_frame_id: "base link"'), 'base_frame_id: "base link"', "MB865"),
         (L2, section("amcl", "scan_topic: 1st/scan"), "scan_topic: 1st/scan", "MB312"),
+        (L2, section("amcl", "scan_topic: a//scan"), "scan_topic: a//scan", "MB312"),
+        (L2, section("amcl", f"scan_topic: {'s' * 999}"), f"scan_topic: {'s' * 999}", "MB312"),
         (L4, section("camera", "camera_name: front"), "camera_name: front", "MB422"),
         (L2, section(POSITION, "mav_frame: LOCAL_NED"), "mav_frame: LOCAL_NED", ""),
         # As rcl_yaml_param_parser reads it: the node is /amcl.

@@ -8,8 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from rviz_robots import robots_of
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -17,8 +16,7 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.names.robot_topics import robot_topic
-from multibot_rewrite.companions.rviz.colours import palette, read_colour
-from multibot_rewrite.companions.rviz.read_config import rviz_data
+from multibot_rewrite.companions.rviz.read_config import palette, read_colour, rviz_data
 from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz, start_command
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.rules.files.judge import judged_once

@@ -9,7 +9,12 @@ import pytest
 from made_params import DECLARED, L1, L2, L3, L4, setting
 
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.context import (
+    NAMESPACE_SLOT as SPACE,
+    TAG_SLOT as TAG,
+    Context,
+    make_context,
+)
 from multibot_rewrite.companions.names import by_kind
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
 from multibot_rewrite.companions.names.node_topics import TopicText, spell_topic
@@ -17,8 +22,6 @@ from multibot_rewrite.companions.names.rename_map import companion_names, with_s
 from multibot_rewrite.companions.names.robot_topics import is_topic, robot_topic
 from multibot_rewrite.companions.params.shared_defaults import missing_defaults
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL
-from multibot_rewrite.companions.template import NAMESPACE_SLOT as SPACE
-from multibot_rewrite.companions.template import TAG_SLOT as TAG
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, Param
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 

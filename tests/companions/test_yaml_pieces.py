@@ -9,32 +9,36 @@ import pytest
 import yaml
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions import kinds
-from multibot_rewrite.companions.bridge_entry import below as below_of
-from multibot_rewrite.companions.bridge_entry import faults, model_of, models, row_of, text_in
-from multibot_rewrite.companions.template import (
+from multibot_rewrite.companions import named_file
+from multibot_rewrite.companions.bridge_entry import (
+    below as below_of,
+    faults,
+    model_of,
+    models,
+    row_of,
+    text_in,
+)
+from multibot_rewrite.companions.context import (
     NAMESPACE_SLOT,
     TAG_SLOT,
     check_no_slots,
     fill_template,
     make_template,
 )
-from multibot_rewrite.companions.yaml_blocks import (
-    as_item,
-    blocks,
-    cut_out,
-    is_block,
-    lines_of,
-    moved,
-    newline,
-)
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
     anchors,
+    as_item,
+    blocks,
+    cut_out,
+    is_block,
     is_text,
     items,
     line_of,
+    lines_of,
+    moved,
+    newline,
     pairs,
     quoted,
     read_yaml,
@@ -270,8 +274,8 @@ PARAMS, TREE = (
      ("a.XML", False), ("a.urdf", False), ("yaml", False)],
 )  # fmt: skip
 def test_files_that_are_called_as_those_beside_a_description(name: str, is_one: bool) -> None:
-    assert kinds.is_named_beside(name) is is_one
-    assert kinds.is_beside(name) is is_one
+    assert named_file.is_named_beside(name) is is_one
+    assert named_file.is_beside(name) is is_one
 
 
 def test_xml_is_beside_a_description_where_it_is_a_tree(tmp_path: Path) -> None:
@@ -279,10 +283,18 @@ def test_xml_is_beside_a_description_where_it_is_a_tree(tmp_path: Path) -> None:
     tree.write_text(TREE)
     other.write_text('<robot name="r"/>')
     gone = str(tmp_path / "gone.xml")
-    assert [kinds.is_beside(it) for it in (str(tree), str(other), gone)] == [True, False, False]
-    assert [kinds.is_linted(it) for it in (str(tree), str(other), gone)] == [True, False, False]
+    assert [named_file.is_beside(it) for it in (str(tree), str(other), gone)] == [
+        True,
+        False,
+        False,
+    ]
+    assert [named_file.is_linted(it) for it in (str(tree), str(other), gone)] == [
+        True,
+        False,
+        False,
+    ]
     texts = (TREE.encode(), b"\xef\xbb\xbf \n" + TREE.encode(), b"<robot/>", b"a: 1", b"")
-    assert [kinds.is_beside(it) for it in texts] == [True, True, False, True, True]
+    assert [named_file.is_beside(it) for it in texts] == [True, True, False, True, True]
 
 
 def test_of_yaml_in_a_folder_what_is_known_is_linted(tmp_path: Path) -> None:
@@ -291,8 +303,11 @@ def test_of_yaml_in_a_folder_what_is_known_is_linted(tmp_path: Path) -> None:
     other.write_text("a: 1\n")
     found = (str(known), str(other), str(tmp_path / "gone.yaml"), str(tmp_path / "a.urdf"))
     # What cannot be read is reported where it is read.
-    assert [kinds.is_linted(it) for it in found] == [True, False, True, True]
-    assert (kinds.kind_of(PARAMS.encode()), kinds.kind_of(b"a: 1")) == (kinds.PARAMS, "")
+    assert [named_file.is_linted(it) for it in found] == [True, False, True, True]
+    assert (named_file.kind_of(PARAMS.encode()), named_file.kind_of(b"a: 1")) == (
+        named_file.PARAMS,
+        "",
+    )
 
 
 @pytest.mark.parametrize("end", ["\r", "\r\n", "\x85", "\u2028"])

@@ -21,8 +21,7 @@ from typing import Any
 import pytest
 import yaml
 from fleet_folder import SMALL, fleet_folder, mixed
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from lxml import etree
 from plans import PlannedRobot, from_plugin, planned, planned_end
 

@@ -27,8 +27,10 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.bridge_outputs import fill_bridge, merge_bridges
 from multibot_rewrite.fleet.robots import start_poses
-from multibot_rewrite.spelling.bridged_topics import BridgedTopic
-from multibot_rewrite.spelling.bridged_topics import bridged_topics as generated_bridge
+from multibot_rewrite.spelling.bridged_topics import (
+    BridgedTopic,
+    bridged_topics as generated_bridge,
+)
 from multibot_rewrite.spelling.start import shell_line
 
 LAYOUTS = ("L1", "L2", "L3", "L4")

@@ -18,8 +18,7 @@ from told_nodes import nodes_of, words_of
 
 from multibot_rewrite import launch, load_fleet
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.live.rehearsal import with_substitutes
-from multibot_rewrite.live.staged import stage, staged
+from multibot_rewrite.live.rehearsal import stage, staged, with_substitutes
 from multibot_rewrite.producers.launch.performed import Launching, performed
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import read_plan

@@ -7,9 +7,9 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.knowledge.by_release import in_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.stacks import in_release
 
 NOTHING = NodeLibrary({}, {}, {})
 DOCK = """

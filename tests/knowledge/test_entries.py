@@ -10,8 +10,16 @@ import pytest
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge import declared
-from multibot_rewrite.knowledge.by_release import in_release
-from multibot_rewrite.knowledge.declared import Declared, declared_by, is_known
+from multibot_rewrite.knowledge.declared import (
+    Base,
+    Declared,
+    _base,
+    canonical,
+    declared_by,
+    is_known,
+    packages,
+    plugin_bases,
+)
 from multibot_rewrite.knowledge.node_library import (
     NodeLibrary,
     Stack,
@@ -29,7 +37,6 @@ from multibot_rewrite.knowledge.parameters import (
     is_called,
     load_known_nodes,
 )
-from multibot_rewrite.knowledge.plugin_classes import Base, _base, canonical, packages, plugin_bases
 from multibot_rewrite.knowledge.programs import (
     NAV2,
     Program,
@@ -48,7 +55,7 @@ from multibot_rewrite.knowledge.records import (
     Param,
     SentTransform,
 )
-from multibot_rewrite.knowledge.stacks import is_apart
+from multibot_rewrite.knowledge.stacks import in_release, is_apart
 from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SYSTEMS
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 

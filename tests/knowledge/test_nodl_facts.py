@@ -10,8 +10,17 @@ import pytest
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.nodl.document import Parameter
-from multibot_rewrite.knowledge.nodl.facts import NOT_IN_NODL, NodeKnowledge, _frames, nodes_of
-from multibot_rewrite.knowledge.nodl.lookup import INDEX, NONE, Identity, find_interfaces, load
+from multibot_rewrite.knowledge.nodl.lookup import (
+    INDEX,
+    NONE,
+    NOT_IN_NODL,
+    Identity,
+    NodeKnowledge,
+    _frames,
+    find_interfaces,
+    load,
+    nodes_of,
+)
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES

@@ -15,8 +15,8 @@ from paths import ROOT
 from multibot_rewrite.base import editors
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.node_library import extend
-from multibot_rewrite.knowledge.schema import schema
 from multibot_rewrite.knowledge.stacks import built_in
+from tools.schemas.nodes import schema
 
 PACKAGE = files("multibot_rewrite.knowledge")
 OURS = sorted(Path(str(PACKAGE)).joinpath("nodes").glob("*.yaml"))
@@ -30,7 +30,7 @@ def wrong(text: str) -> list[str]:
 
 def test_the_file_is_what_the_reader_takes() -> None:
     text = (files("multibot_rewrite") / editors.NODES).read_text()
-    command = "python -m multibot_rewrite.knowledge.schema > multibot_rewrite/" + editors.NODES
+    command = "python -m tools.schemas.nodes > multibot_rewrite/" + editors.NODES
     assert json.loads(text) == schema(), command
 
 

@@ -27,8 +27,7 @@ from launched_programs import EXAMPLE, launched
 from paths import FIXTURES, ROOT
 
 from multibot_rewrite import Finding, InputError, UsageError, launch, load_fleet
-from multibot_rewrite.launch import context as launch_context
-from multibot_rewrite.launch import later, substitutions
+from multibot_rewrite.launch import context as launch_context, later, substitutions
 from multibot_rewrite.producers.launch.stand_in import contents, standing_in
 
 REAL = not launch.missing()

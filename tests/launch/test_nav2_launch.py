@@ -28,7 +28,7 @@ from multibot_rewrite import launch
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2, known_program
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.live.staged import stage
+from multibot_rewrite.live.rehearsal import stage
 
 REASON = f"not tried in the real launch, which is not here: {launch.missing()}"
 in_launch = pytest.mark.skipif(bool(launch.missing()), reason=REASON)

@@ -13,7 +13,7 @@ import pytest
 from paths import FIXTURES, ROBOTS
 
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS, RVIZ, is_linted, kind_of
+from multibot_rewrite.companions.named_file import BRIDGE, MOVEIT, PARAMS, RVIZ, is_linted, kind_of
 from multibot_rewrite.knowledge.declared import FILE, is_known
 from multibot_rewrite.knowledge.nodl.lookup import INDEX
 from multibot_rewrite.lint.check import lint_data, lint_file

@@ -22,7 +22,7 @@ from no_workers import lint_in_this_process
 
 from multibot_rewrite.base.findings import formats
 from multibot_rewrite.base.findings.finding import ERROR, LEVELS, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.formats import FORMATS, Report, text
+from multibot_rewrite.base.findings.formats import FORMATS, Report, plain
 from multibot_rewrite.base.model import Edit
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -153,9 +153,7 @@ def test_only_the_module_of_a_format_is_loaded() -> None:
     command = [sys.executable, "-c", code]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     loaded = {name: {*modules} for name, *modules in map(str.split, printed.splitlines())}
-    expected = {name: {module, "shared"} for name, module in FORMATS.items()}
-    # A failure in JUnit holds the finding as text.
-    expected["junit"].add("text")
+    expected = {name: {module, "plain"} for name, module in FORMATS.items()}
     assert loaded == expected
 
 
@@ -179,7 +177,7 @@ def test_text_is_what_was_found(nasty: Linted) -> None:
     for it in nasty.findings:
         line = next(lines)
         assert line.startswith(
-            f"{text.one_line(it.file)}:{it.line}:{it.column}: {it.level}: {it.code} "
+            f"{plain.one_line(it.file)}:{it.line}:{it.column}: {it.level}: {it.code} "
         )
         assert it.message in line
         for call in it.calls:
@@ -458,7 +456,7 @@ def test_github_reads_back_every_finding(linted: Linted) -> None:
         assert name == {ERROR: "error", WARNING: "warning", NOTE: "notice"}[finding.level]
         assert message.split("\n")[0].startswith(finding.message)
         assert len(message.split("\n")) == 1 + len(finding.calls)
-        assert properties.pop("file") in (finding.file, text.one_line(finding.file))
+        assert properties.pop("file") in (finding.file, plain.one_line(finding.file))
         assert properties == {
             "line": str(finding.line),
             "col": str(finding.column),
@@ -494,7 +492,7 @@ def test_gitlab_is_a_code_quality_report(linted: Linted) -> None:
 def test_junit_cases_hold_the_whole_text(nasty: Linted) -> None:
     root = etree.fromstring(rendered("junit", *nasty).encode())
     reported = [it.text for it in root.iter("failure", "system-out")]
-    assert sorted(reported) == sorted("\n".join(text.lines(it)) for it in nasty.findings)
+    assert sorted(reported) == sorted("\n".join(plain.lines_of(it)) for it in nasty.findings)
     kinds = Counter(it.get("type") for it in root.iter("failure"))
     assert kinds == Counter(it.level for it in nasty.findings if it.level != NOTE)
 
@@ -527,10 +525,10 @@ def test_markdown_shows_what_was_found(nasty: Linted) -> None:
     reported = Counter(tuple(row) for row in cells(rendered("markdown", *nasty)))
     expected = Counter()
     for it in nasty.findings:
-        _, *calls = text.lines(it)
+        _, *calls = plain.lines_of(it)
         hint = f" ({it.hint})" if it.hint else ""
         given = f" [with {it.arguments}]" if it.arguments else ""
-        first = text.one_line(f"{it.message}{hint}{given}")
+        first = plain.one_line(f"{it.message}{hint}{given}")
         what = "<br>".join([first, *(line.strip() for line in calls)])
         expected[(str(it.line), it.level, f"{it.code} {RULES[it.code].name}", what)] += 1
     assert reported == expected
@@ -540,7 +538,7 @@ def test_markdown_has_a_heading_a_file_with_findings(nasty: Linted) -> None:
     tokens = MarkdownIt().parse(rendered("markdown", *nasty))
     heads = [tokens[at + 1].children for at, it in enumerate(tokens) if it.type == "heading_open"]
     shown = ["".join(it.content for it in head or ()) for head in heads]
-    assert shown == [text.one_line(file) for file in nasty.files if file != "clean.urdf"]
+    assert shown == [plain.one_line(file) for file in nasty.files if file != "clean.urdf"]
 
 
 # Codes that no rule has

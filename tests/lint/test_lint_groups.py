@@ -15,9 +15,8 @@ from multibot_rewrite.base.findings.rule import URDF, Rule
 from multibot_rewrite.lint.files.subjects import read_subjects
 from multibot_rewrite.lint.groups import GROUPS, active_rules, rules_of
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.rules import description as rules
-from multibot_rewrite.rules import files
-from multibot_rewrite.rules.description.meshes.shared import used_files
+from multibot_rewrite.rules import description as rules, files
+from multibot_rewrite.rules.description.meshes.paths import used_files
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Subject
 

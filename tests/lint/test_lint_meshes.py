@@ -15,7 +15,7 @@ import pytest
 from lint_calls import Settings, lint_file
 
 from multibot_rewrite.description.sources import packages
-from multibot_rewrite.rules.description.meshes.boxes import mesh_box
+from multibot_rewrite.rules.description.meshes.lookup import mesh_box
 
 
 def manifest(folder: Path, name: str) -> Path:
@@ -422,14 +422,14 @@ def test_a_collada_file_over_the_limit_is_not_read(
 ) -> None:
     file = tmp_path / "a.dae"
     file.write_bytes(collada())
-    monkeypatch.setattr("multibot_rewrite.rules.description.meshes.boxes.MOST_BYTES", 100)
+    monkeypatch.setattr("multibot_rewrite.rules.description.meshes.lookup.MOST_BYTES", 100)
     assert mesh_box(str(file), whole=False) is None
 
 
 def test_a_large_mesh_is_read_in_part_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("multibot_rewrite.rules.description.meshes.boxes.MOST_BYTES", 100)
+    monkeypatch.setattr("multibot_rewrite.rules.description.meshes.lookup.MOST_BYTES", 100)
     file = tmp_path / "a.stl"
     file.write_bytes(binary_stl(*SIDES))
     assert mesh_box(str(file)) is None

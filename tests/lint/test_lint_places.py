@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where findings are: ``lint/places.py`` gives a problem its file, line and column, in places of the
+"""Where findings are: ``lint/check.py`` gives a problem its file, line and column, in places of the
 source that was read, through xacro, too."""
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.lint.check import FEW, numbered, placed
 from multibot_rewrite.lint.files.subjects import make_subject, read_subjects
-from multibot_rewrite.lint.places import FEW, numbered, placed
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Subject

@@ -28,7 +28,7 @@ from urdfdom_cases import (
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.description.checks.rotation import (
+from multibot_rewrite.description.checks.poses import (
     matrix_of_quaternion,
     quaternion_of_rpy,
     rpy_of,

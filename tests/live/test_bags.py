@@ -15,8 +15,8 @@ pytest.importorskip("rosbags")
 from made_bags import ROBOTS, SCAN, TEXT, TF, TWIST, Made, healthy, plan, write
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.producers.bags.read import read_bag
-from multibot_rewrite.producers.bags.recording import RecordedTopic, Recording, as_snapshot, counted
+from multibot_rewrite.producers.bags.read import RecordedTopic, Recording, read_bag
+from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 
 Topics = dict[str, Made]
 

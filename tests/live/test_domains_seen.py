@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.live.diagnose import diagnose, diagnose_domains
-from multibot_rewrite.rules.domains import check_domains
+from multibot_rewrite.rules.check import check_domains
 from multibot_rewrite.spelling.domain_bridge import with_bridges
 from multibot_rewrite.spelling.plan_file import to_yaml
 from multibot_rewrite.system.domains import by_domain, named, side_by_side, unnamed

@@ -7,10 +7,8 @@ from typing import NamedTuple
 
 import pytest
 from graph_cases import as_planned, environment, qos, sent
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from plans import PlannedRobot, planned, planned_end
-from plans import own as nodes_of
+from hypothesis import given, settings, strategies as st
+from plans import PlannedRobot, own as nodes_of, planned, planned_end
 
 from multibot_rewrite.base.naming import Naming, affix, make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS

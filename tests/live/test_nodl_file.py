@@ -18,7 +18,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.learning.learn import learn
-from multibot_rewrite.live.learning.nodl_file import to_nodl
+from multibot_rewrite.live.learning.nodes_file import to_nodl
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import End, Node, Qos, System
 

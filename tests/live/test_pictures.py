@@ -17,8 +17,7 @@ import nav2_graphs
 import pytest
 from counted_steps import growth
 from graph_calls import to_json, to_yaml
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from lxml import html
 from page_calls import (
     CLASH,
@@ -39,7 +38,7 @@ from page_calls import (
 from plans import own as nodes_of
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.pages.layout import NODE_ROW, ROW, lay_out
+from multibot_rewrite.pages.svg import NODE_ROW, ROW, lay_out
 from multibot_rewrite.system.records import Edge, Node, System, surely
 
 # What a page is made of.

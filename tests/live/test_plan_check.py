@@ -8,8 +8,7 @@ import re
 from pathlib import Path
 
 import pytest
-from graph_cases import as_planned as planned_graph
-from graph_cases import environment, moved, without_node
+from graph_cases import as_planned as planned_graph, environment, moved, without_node
 from paths import FIXTURES
 from plans import optional, places
 

@@ -22,7 +22,7 @@ from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.live import staged
+from multibot_rewrite.live import rehearsal
 from multibot_rewrite.live.rehearsal import (
     PROCESSES,
     Stub,
@@ -293,23 +293,27 @@ def test_a_stage_is_a_domain_of_this_machine_where_nobody_is(
 ) -> None:
     """A hundred domains are given away; of what leads elsewhere nothing is left."""
     busy: set[int] = set()
-    monkeypatch.setattr(staged, "participants_here", lambda domain: int(domain in busy))
-    monkeypatch.setattr(staged.os, "getpid", lambda: 499)
+    monkeypatch.setattr(rehearsal, "participants_here", lambda domain: int(domain in busy))
+    monkeypatch.setattr(rehearsal.os, "getpid", lambda: 499)
     elsewhere = (
         *("ROS_STATIC_PEERS", "ROS_DISCOVERY_SERVER", "ROS_SUPER_CLIENT", "ROS_LOCALHOST_ONLY"),
     )
     given = {"HOME": "/h", **dict.fromkeys(elsewhere, "1")}
-    monkeypatch.setattr(staged.os, "environ", given)
+    monkeypatch.setattr(rehearsal.os, "environ", given)
     alone = {"HOME": "/h", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-    assert staged.stage(None) == {**alone, "ROS_DOMAIN_ID": "100"}
+    assert rehearsal.stage(None) == {**alone, "ROS_DOMAIN_ID": "100"}
     given["ROS_DOMAIN_ID"] = "0"
-    assert domains([staged.stage(None), staged.stage(5), staged.stage(0)]) == ["0", "5", "0"]
+    assert domains([rehearsal.stage(None), rehearsal.stage(5), rehearsal.stage(0)]) == [
+        "0",
+        "5",
+        "0",
+    ]
     busy |= {0, 100, 1, 2}
-    assert domains([staged.stage(None)]) == ["100"]
-    assert domains(staged.stages(None, 3)) == ["100", "3", "4"]
-    assert domains(staged.stages(99, 2)) == ["99", "3"]
+    assert domains([rehearsal.stage(None)]) == ["100"]
+    assert domains(rehearsal.stages(None, 3)) == ["100", "3", "4"]
+    assert domains(rehearsal.stages(99, 2)) == ["99", "3"]
     busy.clear()
-    assert staged.stages(98, 4) == [
+    assert rehearsal.stages(98, 4) == [
         {**alone, "ROS_DOMAIN_ID": it} for it in ("98", "99", "100", "1")
     ]
 
@@ -340,11 +344,11 @@ def test_a_look_without_all_that_the_stubs_have_is_taken_again(
 ) -> None:
     full = _graph("healthy.json")
     ends = frozenset((end.node, end.role, end.name) for end in full.ends)
-    started = staged.Started({"a": "b"}, ends, frozenset(edge.child for edge in full.edges))
+    started = rehearsal.Started({"a": "b"}, ends, frozenset(edge.child for edge in full.edges))
     seen = [full, first(full)]
-    monkeypatch.setattr(staged, "observe", lambda *_: seen.pop())
-    monkeypatch.setattr(staged, "_started", lambda *_: nullcontext(started))
-    graph, replaced = staged.staged([], {}, 1.0)
+    monkeypatch.setattr(rehearsal, "observe", lambda *_: seen.pop())
+    monkeypatch.setattr(rehearsal, "_started", lambda *_: nullcontext(started))
+    graph, replaced = rehearsal.staged([], {}, 1.0)
     assert (len(seen), replaced) == (2 - looks, {"a": "b"})
     assert graph == (full if looks == 2 else first(full))
 

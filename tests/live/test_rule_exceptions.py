@@ -6,10 +6,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import pytest
-from graph_cases import CASES, Case, as_planned, environment, read_plan, sent, with_node
-from graph_cases import healthy as planned
-from plans import PlannedRobot, planned_end
-from plans import planned as as_plan
+from graph_cases import (
+    CASES,
+    Case,
+    as_planned,
+    environment,
+    healthy as planned,
+    read_plan,
+    sent,
+    with_node,
+)
+from plans import PlannedRobot, planned as as_plan, planned_end
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING
 from multibot_rewrite.live.watching import Verdict, WatchState, with_found

@@ -11,8 +11,7 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from paths import ROOT
 
 from multibot_rewrite.base.model import InputError, UsageError

@@ -13,8 +13,7 @@ from threading import Thread
 
 import pytest
 import yaml
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from parsed import sources
 
 from multibot_rewrite import knowledge
@@ -29,8 +28,7 @@ from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines
 from multibot_rewrite.lint.config.baseline import read_baseline
-from multibot_rewrite.system.json import from_json, from_yaml
-from multibot_rewrite.system.json import from_json as from_json_plan
+from multibot_rewrite.system.json import from_json, from_json as from_json_plan, from_yaml
 
 NODES = Path(knowledge.__file__).parent / "nodes"
 
@@ -295,10 +293,10 @@ def test_the_parsers_are_called_in_one_place() -> None:
     parsers |= {f"yaml.{name}" for name in ("compose", "parse", "safe_load", "load_all")}
     found = {path for path, tree in sources().items() if calls(tree) & parsers}
     # What these read is written by the tool: its schema, and messages between its processes.
-    own = {"fleet/file/fleet_data.py", "live/staged.py", "producers/ros/request.py"}
+    own = {"fleet/file/fleet_data.py", "live/rehearsal.py", "producers/ros/request.py"}
     own |= {"producers/launch/records.py", "producers/ros/ask.py", "producers/ros/child.py"}
     own |= {"system/parameters.py"}
-    own |= {"description/sources/child/asking.py", "description/sources/child/serve.py"}
+    own |= {"description/sources/child/frames.py", "description/sources/child/serve.py"}
     assert found == {"base/bounded.py", "live/stub_nodes.py", *own}
 
 

@@ -35,12 +35,12 @@ from multibot_rewrite.producers.launch import bridges, parameter_texts
 from multibot_rewrite.producers.snapshot_file import read_snapshot
 from multibot_rewrite.rules.check import RULES, check, judge
 from multibot_rewrite.rules.settings import Settings
-from multibot_rewrite.rules.system import slips
+from multibot_rewrite.rules.system import causes
 
 SMALL, LARGE = 100, 400
 REMEMBERED = (
     nearest._nearest,
-    slips._letters,
+    causes._letters,
     parameter_files._sections,
     parameter_texts.document_of,
     parameter_texts.has_sections,

@@ -13,7 +13,7 @@ from paths import ROOT
 
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.options import Command
+from multibot_rewrite.cli.declared.shared import Command
 from multibot_rewrite.cli.parser import make_parser
 
 PAGES = sorted((*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")))

@@ -22,8 +22,7 @@ from expected_names import (
     slots,
     spelled,
 )
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 from lxml import etree
 from random_robots import LAYOUTS, PARAMETERS, SEPARATORS, Robot, random_robots, robot_names
 

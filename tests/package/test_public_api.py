@@ -27,8 +27,7 @@ from multibot_rewrite import (
     strip,
 )
 from multibot_rewrite.base.arguments import checked
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.naming import Policy, make_naming
 from multibot_rewrite.fleet.robots.node_names import NodeNames
 
 CALLS = (rewrite, rewrite_all, explain, strip)

@@ -29,8 +29,8 @@ from page_calls import (
     tree_svg,
 )
 
-from multibot_rewrite.pages.drawings import graphs, trees
 from multibot_rewrite.pages.overview import Tile, overview
+from multibot_rewrite.pages.page import graphs, trees
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Environment
 
 

@@ -15,7 +15,7 @@ from page_calls import (
     DrawnNode,
 )
 
-from multibot_rewrite.pages.layout import lay_out
+from multibot_rewrite.pages.svg import lay_out
 from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 Column = list[tuple[str, float]]

@@ -18,8 +18,7 @@ from multibot_rewrite.pages.finding_list import (
     with_code,
 )
 from multibot_rewrite.pages.page import Framed, source_hash, to_html
-from multibot_rewrite.pages.page_sections import make_ids, make_sections
-from multibot_rewrite.pages.robot_cards import robot_cards
+from multibot_rewrite.pages.page_sections import make_ids, make_sections, robot_cards
 from multibot_rewrite.pages.scene import DrawnGroup, DrawnNode, FindingRow, Scene
 from multibot_rewrite.pages.states import MISSING, OK, Targets
 from multibot_rewrite.system.coverage import SEEN, Coverage, Covered

@@ -21,12 +21,12 @@ from multibot_rewrite.producers.ros.look import complete_view
 from multibot_rewrite.producers.ros.observe import _ChangeTimes, _pause_after
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
-from multibot_rewrite.system.parameters import Answer
-from multibot_rewrite.system.questions import (
+from multibot_rewrite.system.parameters import (
     GET_PARAMETERS,
     GET_STATE,
     LIST_CONTROLLERS,
     LIST_PARAMETERS,
+    Answer,
     Question,
 )
 from multibot_rewrite.system.records import (

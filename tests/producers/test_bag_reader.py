@@ -18,7 +18,7 @@ import pytest
 
 from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.producers.bags import read
-from multibot_rewrite.producers.bags.recording import RECORDER, RecordedTopic, Recording
+from multibot_rewrite.producers.bags.read import RECORDER, RecordedTopic, Recording
 from multibot_rewrite.system.records import Caveat, Edge, Qos
 
 IMAGE, STRING = "sensor_msgs/msg/Image", "std_msgs/msg/String"

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES, ROOT
 
-from multibot_rewrite.description.sources.child import landlock
+from multibot_rewrite.description.sources.child import fences
 from multibot_rewrite.producers.launch.child import read_launch_files
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 
@@ -93,7 +93,7 @@ def read(file: Path, trust: bool = False) -> LaunchGraph:
 
 def test_what_a_launch_file_may_do(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """All that is refused leaves everything as it was; all else is done."""
-    if not landlock.version():
+    if not fences.version():
         pytest.skip("this kernel has no Landlock")
     monkeypatch.setenv("A_SECRET", "x")
     lines = (*ALLOWED, *REFUSED)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from multibot_rewrite.producers.ros import ears, look, observe, ros
+from multibot_rewrite.producers.ros import look, observe, ros
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.system.records import EXPECTED, PUBLISHES, TOPIC, Caveat, End
 
@@ -198,14 +198,14 @@ def test_what_is_subscribed_to(clock: Clock, monkeypatch: pytest.MonkeyPatch) ->
         lambda type_: ("", "no type") if "tf" in type_ and "x" in type_ else (f"raw {type_}", ""),
     )  # fmt: skip
     made, call = session(clock), lambda *_: None
-    assert ears._subscribe_to_headers(made, "/cmd", "std_msgs/msg/String", False, call) is None
-    assert ears._subscribe_to_headers(made, "/i", "sensor_msgs/msg/Image", True, call)
-    assert ears._subscribe_to_headers(made, "/clock", "rosgraph_msgs/msg/Clock", False, call)
+    assert look._subscribe_to_headers(made, "/cmd", "std_msgs/msg/String", False, call) is None
+    assert look._subscribe_to_headers(made, "/i", "sensor_msgs/msg/Image", True, call)
+    assert look._subscribe_to_headers(made, "/clock", "rosgraph_msgs/msg/Clock", False, call)
     tf = "tf2_msgs/msg/TFMessage"
-    assert callable(ears._subscribe(made, "/tf", tf, False, call))
-    said = ears._subscribe(made, "/twice", tf, True, call)
+    assert callable(look._subscribe(made, "/tf", tf, False, call))
+    said = look._subscribe(made, "/twice", tf, True, call)
     assert said == "they have two types, and the other is read already"
-    said = ears._subscribe(made, "/tf", "tf2_msgs/msg/x", False, call)
+    said = look._subscribe(made, "/tf", "tf2_msgs/msg/x", False, call)
     assert said == "no type; install tf2_msgs or source ROS 2"
     assert asked == [
         ("raw sensor_msgs/msg/Image", "/i", True, {"depth": 1}),
@@ -218,7 +218,7 @@ def test_what_is_subscribed_to(clock: Clock, monkeypatch: pytest.MonkeyPatch) ->
 def test_ears_are_those_of_transforms_and_of_headers_where_they_are_asked_for(
     headers: bool, clock: Clock
 ) -> None:
-    made: Any = ears.Ears(session(clock, Request(1.0, headers=headers)))
+    made: Any = look.Ears(session(clock, Request(1.0, headers=headers)))
     updated: list[Any] = []
     made.tf = SimpleNamespace(update=lambda *it: updated.append(it), silent=lambda: ["/tf", "/a"])
     made.headers = SimpleNamespace(

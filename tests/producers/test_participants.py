@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from multibot_rewrite.live.staged import stage
+from multibot_rewrite.live.rehearsal import stage
 from multibot_rewrite.producers.ros import assemble, observe
 from multibot_rewrite.producers.ros.participants import (
     lost_here,

@@ -21,7 +21,7 @@ from graph_cases import qos
 from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.producers.ros.assemble import TF_TYPES
 from multibot_rewrite.producers.ros.request import Request
-from multibot_rewrite.producers.zenoh import observe, tf
+from multibot_rewrite.producers.zenoh import observe
 from multibot_rewrite.producers.zenoh.observe import Router, look, watch
 from multibot_rewrite.producers.zenoh.session import NoRouter, RouterSession, opened
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Caveat, End, Node, System
@@ -86,10 +86,9 @@ def opens(monkeypatch: pytest.MonkeyPatch) -> Callable[[Session], RouterSession]
         monkeypatch.setattr(observe, "opened", opened)
         return own
 
-    for module in (observe, tf):
-        monkeypatch.setattr(module, "POLL_SECONDS", 0.001)
-    monkeypatch.setattr(tf, "TF_SECONDS", 0.002)
-    monkeypatch.setattr(tf, "TF_LONGEST_SECONDS", 0.004)
+    monkeypatch.setattr(observe, "POLL_SECONDS", 0.001)
+    monkeypatch.setattr(observe, "TF_SECONDS", 0.002)
+    monkeypatch.setattr(observe, "TF_LONGEST_SECONDS", 0.004)
     return given
 
 
@@ -249,7 +248,7 @@ def test_a_silent_publisher_of_tf_is_waited_for_longer(
     heard: bool, passed: float, seconds: float, waits: bool
 ) -> None:
     session = Session(())
-    listener = tf.ZenohTf(RouterSession(ZENOH, session, deque(), []), 2)
+    listener = observe.ZenohTf(RouterSession(ZENOH, session, deque(), []), 2)
     ends = [End(TOPIC, PUBLISHES, "/tf", TF_TYPES[0], "", it, qos(), "") for it in ("/a", "/b")]
     other = ends[0]._replace(name="/other", type="std_msgs/msg/String")
     listener.update([*ends, other, ends[0]._replace(role=SUBSCRIBES, name="/read")])
@@ -260,7 +259,7 @@ def test_a_silent_publisher_of_tf_is_waited_for_longer(
 
 @pytest.mark.parametrize(("spoken", "deaf"), [((), True), (("/a/tf",), False)])
 def test_nobody_heard_at_all_makes_a_view_incomplete(spoken: tuple[str, ...], deaf: bool) -> None:
-    listener = tf.ZenohTf(RouterSession(ZENOH, Session(()), deque(), []), 2)
+    listener = observe.ZenohTf(RouterSession(ZENOH, Session(()), deque(), []), 2)
     names = ("/b/tf", "/a/tf")
     listener.update(End(TOPIC, PUBLISHES, it, TF_TYPES[0], "", "/n", None, "") for it in names)
     for it in spoken:

@@ -22,8 +22,7 @@ from multibot_rewrite.knowledge.records import (
 )
 from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
 from multibot_rewrite.producers.ends import bridge_ends, run_alone
-from multibot_rewrite.producers.evidence.hardware import Exported
-from multibot_rewrite.producers.interfaces import control_system
+from multibot_rewrite.producers.evidence.hardware import Exported, control_system
 from multibot_rewrite.producers.launch.known_node import guessed_name, known_node, own_name
 from multibot_rewrite.producers.launch.launched import file_of
 from multibot_rewrite.producers.launch.models import Model, Models

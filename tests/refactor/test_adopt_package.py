@@ -11,8 +11,8 @@ from multibot_rewrite import adopt
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.producers.launch.door import missing
+from multibot_rewrite.refactor.launches import fillable
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
-from multibot_rewrite.refactor.parameters import fillable
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ROBOT = f'<robot name="r" {SPACE}>\n  <link name="base"/>\n  <link name="arm"/>\n{{}}</robot>\n'

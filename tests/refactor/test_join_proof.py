@@ -9,8 +9,7 @@ from lxml import etree
 from multibot_rewrite import ProofError
 from multibot_rewrite.description.joining.join import GivenPart, join_texts
 from multibot_rewrite.description.joining.part import Part
-from multibot_rewrite.description.joining.proof import prove
-from multibot_rewrite.description.joining.second_reading import check_read
+from multibot_rewrite.description.joining.second_reading import check_read, prove
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 
 BASE = """<robot name="base">

@@ -11,7 +11,7 @@ from lxml import etree
 
 from multibot_rewrite import Joined, Part, ProofError, join, split
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.description.joining import systems
+from multibot_rewrite.description.joining import blocks
 
 SYSTEM = """\
   <ros2_control name="driver" type="system">
@@ -101,8 +101,8 @@ def test_the_proof_sees_a_joint_that_is_lost(monkeypatch: pytest.MonkeyPatch) ->
     def one_lost(system: etree._Element) -> list[etree._Element]:
         return [it for it in system.iterchildren("*") if it.tag != "hardware"][:1]
 
-    wrong = {**vars(systems), "driven": one_lost}
-    faulty = FunctionType(systems.one_system.__code__, wrong)
+    wrong = {**vars(blocks), "driven": one_lost}
+    faulty = FunctionType(blocks.one_system.__code__, wrong)
     monkeypatch.setattr("multibot_rewrite.description.joining.join.one_system", faulty)
     with pytest.raises(ProofError, match="<ros2_control> 'r_driver' is not what it was"):
         two()

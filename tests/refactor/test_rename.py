@@ -9,7 +9,7 @@ import pytest
 
 from multibot_rewrite import InputError, UsageError, rename_symbol
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.description.sources.pieces import Piece
+from multibot_rewrite.description.sources.trace import Piece
 from multibot_rewrite.refactor import source_edits
 from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, edited, first_difference
 

@@ -10,7 +10,7 @@ import pytest
 
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.rules.convert import spans
+from multibot_rewrite.rules import convert
 from multibot_rewrite.rules.settings import Settings
 
 A, LASER = '<link name="a"/>', '<link name="laser"/>'
@@ -288,4 +288,4 @@ def test_the_inertia_of_a_link_of_a_model(
 def test_where_an_element_ends(text: str, rest: str) -> None:
     document = read_document(text.encode(), "a.urdf")
     link = document.root[0]
-    assert text[spans.end_of(spans.text_of(document), link) :] == rest
+    assert text[convert.end_of(convert.text_of(document), link) :] == rest

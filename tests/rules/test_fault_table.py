@@ -31,7 +31,8 @@ from vendor_graphs import RELEASES, VENDORS
 
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.producers.bags.recording import RecordedTopic, as_snapshot
+from multibot_rewrite.producers.bags.read import RecordedTopic
+from multibot_rewrite.producers.bags.recording import as_snapshot
 
 NAMED = {it.name: it for it in FAULTS}
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.rules.files.bounds import beyond, polygon_of
-from multibot_rewrite.rules.files.costmaps import _inscribed
+from multibot_rewrite.rules.files.wheels import _inscribed_radius
 
 
 @pytest.mark.parametrize(
@@ -137,4 +137,4 @@ def test_how_near_to_the_middle_an_edge_is(
     points: list[tuple[float, float]], nearest: float
 ) -> None:
     """calculateMinAndMaxDistances of nav2_costmap_2d."""
-    assert _inscribed(points) == nearest
+    assert _inscribed_radius(points) == nearest

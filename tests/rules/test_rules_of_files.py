@@ -21,7 +21,8 @@ from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.rules.files.judge import SHARED, THEMES
+from multibot_rewrite.rules.declaration import rules_in
+from multibot_rewrite.rules.files.judge import SHARED
 from multibot_rewrite.rules.settings import Settings
 
 DESCRIPTION = """\
@@ -165,7 +166,7 @@ def by_both(
     return places(linted, file, rules), places(list(built), file, rules)
 
 
-EVERY = [it for theme in THEMES for it in vars(theme).values() if isinstance(it, Rule)]
+EVERY = rules_in("files")
 IN_BOTH = [it for it in EVERY if BUILT not in it.options]
 CODES = {it.code for it in (*EVERY, *SHARED)}
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.rules.system.slips import Spelled, alike
+from multibot_rewrite.rules.system.causes import Spelled, alike
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import shlex
 import pytest
 from paths import ROBOTS
 
-from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table_formats import FORMS

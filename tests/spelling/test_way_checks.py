@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.fleet.fleet import make_fleet, merge
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Run, Table

@@ -8,8 +8,13 @@ from __future__ import annotations
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.params.lacking_sections import all_sections
+from multibot_rewrite.companions.context import (
+    NAMESPACE_SLOT,
+    Context,
+    fill_template,
+    make_context,
+    make_template,
+)
 from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
@@ -18,7 +23,7 @@ from multibot_rewrite.companions.params.sections import (
     is_for,
     raw_sections,
 )
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template, make_template
+from multibot_rewrite.companions.params.shared_defaults import all_sections
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, quoted, read_yaml
 from multibot_rewrite.knowledge.node_library import extend, stack_of
 from multibot_rewrite.knowledge.parameters import built_in_nodes, load_known_nodes

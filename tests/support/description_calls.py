@@ -6,8 +6,7 @@ Where each of them stands in the package is known here alone.
 
 from __future__ import annotations
 
-from multibot_rewrite.base.naming import LAYOUTS, make_naming, spelled
-from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.naming import LAYOUTS, Policy, make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.description.readback.meeting import (
     LostRule,

@@ -19,8 +19,7 @@ import pytest
 import yaml
 from drawn_fleets import Data, DrawnFleet, causes_of, drawn, simulated
 from drawn_spellings import FILE, SITE
-from hypothesis import HealthCheck, Phase, given, seed, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, Phase, given, seed, settings, strategies as st
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.naming import make_naming

@@ -26,12 +26,8 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     SentTransform,
 )
-from multibot_rewrite.producers.bags.recording import (
-    RECORDER,
-    RecordedTopic,
-    Recording,
-    as_snapshot,
-)
+from multibot_rewrite.producers.bags.read import RECORDER, RecordedTopic, Recording
+from multibot_rewrite.producers.bags.recording import as_snapshot
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched as read_launch

@@ -14,8 +14,7 @@ from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_g
 from multibot_rewrite.system.index import Index, beside, index
 from multibot_rewrite.system.json import from_json, from_yaml, to_json
 from multibot_rewrite.system.ownership import ALONE, Whose, name_ownership, whose_by_plan
-from multibot_rewrite.system.parameters import with_answers
-from multibot_rewrite.system.questions import questions
+from multibot_rewrite.system.parameters import questions, with_answers
 
 __all__ = [
     "ABSENCE",

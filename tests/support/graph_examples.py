@@ -39,8 +39,7 @@ from collections.abc import Iterable, Iterator
 
 from graph_cases import environment, qos
 from node_answers import told
-from plans import PlannedRobot, planned, planned_end
-from plans import told as planned_told
+from plans import PlannedRobot, planned, planned_end, told as planned_told
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE
 from multibot_rewrite.system.guess import GuessedRobot, whose_by_guess, with_frames

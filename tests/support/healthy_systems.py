@@ -12,8 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from graph_cases import moved, robot_edges, sent, unspelled
-from nav2_graphs import EVERYDAY, ROVER
-from nav2_graphs import healthy as as_planned
+from nav2_graphs import EVERYDAY, ROVER, healthy as as_planned
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.system.json import from_yaml

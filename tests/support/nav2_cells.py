@@ -33,14 +33,12 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.outputs.built_states import with_built
 from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.live.rehearsal import with_substitutes
-from multibot_rewrite.live.staged import stage
+from multibot_rewrite.live.rehearsal import stage, with_substitutes
 from multibot_rewrite.producers.ros.child import ask, observe, running
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import read_plan
-from multibot_rewrite.system.parameters import Answer, with_answers
-from multibot_rewrite.system.questions import questions
+from multibot_rewrite.system.parameters import Answer, questions, with_answers
 from multibot_rewrite.system.records import SIM_TIME, System
 
 HERE = Path(__file__).parent

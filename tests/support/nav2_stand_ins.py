@@ -23,7 +23,7 @@ from rclpy.parameter import Parameter
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.live import stub_nodes
 from multibot_rewrite.live.rehearsal import TF, substitute_type
-from multibot_rewrite.producers.ros.worker import Send, run_worker
+from multibot_rewrite.producers.ros.request import Send, run_worker
 from multibot_rewrite.system.records import TOPIC, edge_of
 
 SECONDS = 0.1

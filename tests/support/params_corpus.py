@@ -21,9 +21,8 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import make_context
+from multibot_rewrite.companions.context import fill_template, make_context
 from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.knowledge.stacks import load_stack
 

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from paths import ROOT
 
-from multibot_rewrite.base.wildcards import with_gaps
+from multibot_rewrite.base.lazy import with_gaps
 
 PACKAGE = ROOT / "multibot_rewrite"
 _LOCAL = (ast.FunctionDef, ast.Lambda, ast.DictComp, ast.GeneratorExp, ast.ListComp)

@@ -16,7 +16,7 @@ from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO, Rule
 from multibot_rewrite.base.findings.selection import grouped
-from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.fleet import known_nodes, make_fleet

@@ -25,7 +25,7 @@ from launched_programs import launched
 from told_nodes import nodes_of, words_of
 
 from multibot_rewrite import load_fleet
-from multibot_rewrite.live.staged import stage, staged
+from multibot_rewrite.live.rehearsal import stage, staged
 from multibot_rewrite.system.json import to_json
 
 REPOSITORY = "nav2_minimal_turtlebot_simulation"

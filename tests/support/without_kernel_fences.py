@@ -14,7 +14,7 @@ import runpy
 import struct
 import sys
 
-from multibot_rewrite.description.sources.child.landlock import CREATE_RULESET, RESTRICT_SELF
+from multibot_rewrite.description.sources.child.fences import CREATE_RULESET, RESTRICT_SELF
 from multibot_rewrite.description.sources.child.seccomp import MACHINES
 from multibot_rewrite.description.sources.child.system import control, no_new_privileges
 

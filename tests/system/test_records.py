@@ -8,10 +8,16 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.system import records
+from multibot_rewrite.system.environment import hidden_from_here, machines, why_not_seen
 from multibot_rewrite.system.merging import Look, merged
-from multibot_rewrite.system.parameters import Answer, parameter_text, parameter_value, with_answers
-from multibot_rewrite.system.questions import Question, questions
-from multibot_rewrite.system.reach import hidden_from_here, machines, why_not_seen
+from multibot_rewrite.system.parameters import (
+    Answer,
+    Question,
+    parameter_text,
+    parameter_value,
+    questions,
+    with_answers,
+)
 from multibot_rewrite.system.record_values import FARTHEST, WrongValue, read_transform, shown
 from multibot_rewrite.system.records import (
     MAY,

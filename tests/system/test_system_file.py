@@ -30,7 +30,7 @@ from multibot_rewrite.system.records import (
     Robot,
     System,
 )
-from multibot_rewrite.system.schema import schema
+from tools.schemas.system import schema
 
 TEXT = files("multibot_rewrite.system").joinpath("system.schema.json").read_text()
 VALID = Draft202012Validator(json.loads(TEXT))
@@ -48,7 +48,7 @@ ALL = System(
 
 def test_the_published_schema_is_that_of_the_records() -> None:
     assert f"{json.dumps(schema(), indent=1)}\n" == TEXT, (
-        "python -m multibot_rewrite.system.schema > ...schema.json"
+        "python -m tools.schemas.system > multibot_rewrite/system/system.schema.json"
     )
 
 

@@ -31,8 +31,8 @@ from tools.survey import (
     report,
     share,
     survey,
+    surveyed as surveyed_files,
 )
-from tools.survey import surveyed as surveyed_files
 
 UNCLAIMED = ROOT / "fixtures" / "unclaimed.tsv"
 # Percent of the occurrences over the corpus.

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.options import Command, Option
+from multibot_rewrite.cli.declared.shared import Command, Option
 from tools.pages.markdown import ESCAPED
 
 HEAD = """\

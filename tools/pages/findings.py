@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import groupby
 
 from multibot_rewrite.base.findings.codes import examples, listed
 from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.lint.catalogue import HOMES, declared
+from multibot_rewrite.lint.catalogue import declared
 from multibot_rewrite.lint.groups import GROUPS
 from multibot_rewrite.lint.registry import RULES
 from tools.pages.markdown import plain
@@ -102,8 +103,8 @@ def pages() -> dict[str, str]:
         for it in GROUPS
     }
     others = {
-        it.start: (TITLES[it.start], sorted(declared(it), key=lambda rule: rule.code))
-        for it in HOMES
+        start: (TITLES[start], list(rules))
+        for start, rules in groupby(declared(), key=lambda rule: rule.code[:3])
     }
     parts = [HEAD, LINT, *(_group(title, rules) for title, rules in linted.items()), OTHERS]
     parts += [

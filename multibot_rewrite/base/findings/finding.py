@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Annotated
 
 from multibot_rewrite.base.model import Edit, MultibotError
 from multibot_rewrite.base.record import NamedTuple
@@ -62,7 +63,7 @@ class Finding(NamedTuple):
     """
 
     code: str
-    level: str
+    level: Annotated[str, LEVELS]
     message: str
     hint: str = ""
     file: str = ""

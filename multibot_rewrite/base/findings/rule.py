@@ -1,14 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A rule: its code, level and check. Its words and examples are its page, ``rules/pages/CODE.md``."""
+"""A rule: its code, level and check. Its words and examples are its page, ``rules/pages/CODE.md``.
+
+A page says what is found, why that hurts, the fix, and has examples. Below the title are three
+paragraphs, the second begins with ``**Why.**``, the third with ``**Fix.**``. Then come fenced blocks,
+each below its title: ``Bad``, ``Fixed`` (what ``--fix`` makes), ``Good``, and ``Beside it, `NAME` ``
+for each other file. ``Bad (line N)`` says where the finding is.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import partial
+import os
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache, partial
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule_page import RulePage, rule_page
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
 
 URDF, SRDF, XACRO = "urdf", "srdf", "xacro"
@@ -115,3 +123,67 @@ def declare(
 def rule(code: str, name: str, level: str, **about: Any) -> Callable[[_Check], Rule]:
     """Make the function that looks for a fault a ``Rule``; ``about`` is as for ``declare``."""
     return partial(declare, code, name, level, **about)
+
+
+FOLDER = os.path.join(os.path.dirname(__file__), "..", "..", "rules", "pages")
+_WHY, _FIX = "**Why.** ", "**Fix.** "
+_BESIDE = "Beside it, "
+_TITLE = lazy_compile(r"(Bad|Fixed|Good|Beside it, `[^`]+`)(?: \(line ([0-9]+)\))?:")
+
+
+class RulePage(NamedTuple):
+    """The words and examples of a rule."""
+
+    what: str = ""
+    why: str = ""
+    fix: str = ""
+    bad: str = ""
+    good: str = ""
+    fixed: str = ""
+    line: int = 1
+    beside: Mapping[str, str] = MappingProxyType({})
+
+
+@cache
+def rule_page(name: str) -> RulePage:
+    """Return the page ``name`` of the rules; raises FileNotFoundError where there is none."""
+    with open(os.path.join(FOLDER, f"{name}.md"), encoding="utf-8", newline="") as file:
+        return read_page(file.read())
+
+
+def read_page(text: str) -> RulePage:
+    """Return what a page says. An example of one line has no line end, a longer one has."""
+    prose, examples, line = [], {}, 1
+    lines = iter(text.split("\n"))
+    paragraph: list[str] = []
+    title = ""
+    for each in lines:
+        found = _TITLE.fullmatch(each)
+        if found:
+            title, line = found[1], int(found[2] or line)
+        elif title and each.startswith("```"):
+            examples[title] = _example(each[: len(each) - len(each.lstrip("`"))], lines)
+        elif each.strip() and not each.startswith("#"):
+            paragraph.append(each)
+        elif paragraph:
+            prose.append(" ".join(paragraph))
+            paragraph = []
+    what, why, fix = prose or ("", _WHY, _FIX)
+    beside = {
+        it.removeprefix(_BESIDE).strip("`"): own
+        for it, own in examples.items()
+        if it.startswith(_BESIDE)
+    }
+    why, fix = why.removeprefix(_WHY), fix.removeprefix(_FIX)
+    bad, good, fixed = (examples.get(it, "") for it in ("Bad", "Good", "Fixed"))
+    return RulePage(what, why, fix, bad, good, fixed, line, beside)
+
+
+def _example(fence: str, lines: Iterator[str]) -> str:
+    """Return the block up to the closing fence."""
+    block = []
+    for line in lines:
+        if line == fence:
+            break
+        block.append(line)
+    return block[0] if len(block) == 1 else "".join(f"{it}\n" for it in block)

@@ -48,6 +48,11 @@ def check_topic_name(name: str) -> NameFault | None:
     return _ends(name) or _braces_and_letters(name) or _first_letters(name)
 
 
+def check_name_in_code(name: str) -> NameFault | None:
+    """What is wrong with a topic or service name as code gives it, or with what it expands to."""
+    return check_topic_name(name) or check_full_name(expand(name, "/", "node"))
+
+
 def check_full_name(name: str) -> NameFault | None:
     """What is wrong with a fully qualified topic or service name."""
     return _full_form(name) or _too_long(name, MAX_TOPIC)

@@ -23,8 +23,6 @@ from multibot_rewrite.cli.declared.shared import (
     ROOTS,
     TRUST,
     VOCABULARY,
-)
-from multibot_rewrite.cli.options import (
     Command,
     Example,
     Option,

@@ -18,8 +18,6 @@ from multibot_rewrite.cli.declared.shared import (
     ROOTS,
     SOURCE,
     TRUST,
-)
-from multibot_rewrite.cli.options import (
     Command,
     Example,
     OptionGroup,

@@ -1,17 +1,237 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which kind of MoveIt file a YAML file is: by its content, else by its name."""
+"""Which kind of MoveIt file a YAML file is, by its content, else by its name; and where it holds
+names: read from ``moveit.yaml``, which explains its own form.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from typing import Any
 
 import yaml
 
-from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.moveit.name_sites import MoveitKind, entries, kinds
+from multibot_rewrite.base.bounded import load_own_yaml
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.names.placeholders import without_robot
+from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames, is_declared
 from multibot_rewrite.companions.params.sections import PARAMETERS
-from multibot_rewrite.companions.yaml_text import YamlText, line_of
+from multibot_rewrite.companions.sites import Site, site_at, slot_of
+from multibot_rewrite.companions.yaml_text import YamlText, is_text, pairs, refused
+
+KEEP = "keep"
+# The kind of name that a value is, or keys with the shape below each.
+Shape = Any
+Shapes = Mapping[str, Shape]
+_MERGE = "<<"
+# What OMPL projects on: joints(a, b).
+_EVALUATOR = lazy_compile(r"\s*(?P<kind>joint|link)s?\s*\((?P<names>[^()]*)\)\s*")
+_NAME = lazy_compile(r"[^\s,](?:[^,]*[^\s,])?")
+
+
+class MoveitKind(NamedTuple):
+    """A kind of file: keys that identify it, words in its file name, and the shape of its names."""
+
+    name: str
+    marks: tuple[str, ...]
+    files: tuple[str, ...]
+    names: Shapes
+
+
+class _Walk(NamedTuple):
+    names: CompanionNames
+    found: list[Site]
+    claimed: set[int]
+    seen: set[tuple[int, int]]
+
+
+# The names in a key, and the shape of what is below it.
+_Match = tuple[tuple[tuple[int, str, str], ...], Shape]
+
+
+@cache
+def kinds() -> tuple[MoveitKind, ...]:
+    """All kinds of files, in the order in which they are tried."""
+    data = load_own_yaml(__file__, "moveit.yaml")
+    return tuple(
+        MoveitKind(name, tuple(it["marks"]), tuple(it["files"]), {**data["common"], **it["names"]})
+        for name, it in data["kinds"].items()
+    )
+
+
+def find_names(
+    root: yaml.Node | None, rules: Shapes, names: CompanionNames
+) -> tuple[list[Site], list[Site], list[Site]]:
+    """Every name below ``root``, the texts of unknown use, and repeated keys; an aliased value counts
+    once for every shape that reaches it."""
+    walk = _Walk(names, [], set(), set())
+    if root is not None:
+        _below(root, rules, walk)
+    free = (it for it in _scalars(root) if id(it) not in walk.claimed and is_text(it))
+    others = [site_at(it, "", str(it.value)) for it in free]
+    return walk.found, others, [site_at(it, "", str(it.value)) for it in _twice(root)]
+
+
+def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
+    """Keys and values of a map, merged ones included."""
+    for key, value in pairs(node):
+        if not is_merge(key):
+            yield key, value
+            continue
+        for merged in value.value if isinstance(value, yaml.SequenceNode) else [value]:
+            if merged is not node:
+                yield from pairs(merged)
+
+
+def is_merge(key: yaml.Node) -> bool:
+    """Is this YAML's merge key ``<<``?"""
+    return isinstance(key, yaml.ScalarNode) and key.value == _MERGE and not key.style
+
+
+def _below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
+    if (id(node), id(rule)) in walk.seen:
+        return
+    walk.seen.add((id(node), id(rule)))
+    if rule == KEEP:
+        walk.claimed.update(id(it) for it in _scalars(node))
+    elif isinstance(node, yaml.SequenceNode):
+        for item in node.value:
+            _below(item, rule, walk)
+    elif isinstance(node, yaml.ScalarNode):
+        _value(node, rule, walk)
+    elif isinstance(rule, Mapping):
+        for key, value in entries(node):
+            _entry(key, value, rule, walk)
+
+
+def _value(node: yaml.ScalarNode, rule: Shape, walk: _Walk) -> None:
+    if isinstance(rule, str) and is_text(node):
+        walk.claimed.add(id(node))
+        walk.found.extend(_named(node, rule))
+
+
+def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
+    """The names in a value: those in ``joints(a, b)``, else its text."""
+    slot = slot_of(node)
+    found = _EVALUATOR.fullmatch(slot.value) if kind == "words" else None
+    if found is None:
+        yield Site(kind, without_robot(slot.value), "", slot)
+        return
+    for it in _NAME.finditer(slot.value, *found.span("names")):
+        yield Site(found["kind"], without_robot(it[0]), "", slot, it.start(), len(it[0]))
+
+
+def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Shapes, walk: _Walk) -> None:
+    match = _resolved(str(key.value), 0, value, rules, walk.names)
+    if match is None:
+        return
+    marks, rule = match
+    walk.claimed.add(id(key))
+    slot = slot_of(key)
+    walk.found.extend(
+        Site(kind, without_robot(text), "", slot, at, len(text)) for at, text, kind in marks
+    )
+    _below(value, rule, walk)
+
+
+def _resolved(
+    word: str, at: int, value: yaml.Node, rules: Shapes, names: CompanionNames
+) -> _Match | None:
+    """The names in a key: nested maps and keys with dots are the same parameter."""
+    found = _exact(word, at, value, rules, names)
+    if found:
+        return found
+    for dot in (at_ for at_, letter in enumerate(word) if letter == "."):
+        head = _exact(word[:dot], at, None, rules, names) or _open(word[:dot], at, None, rules)
+        below = _rest(head, word[dot + 1 :], at + dot + 1, value, names) if head else None
+        if below:
+            return below
+    return _open(word, at, value, rules)
+
+
+def _rest(
+    head: _Match, word: str, at: int, value: yaml.Node, names: CompanionNames
+) -> _Match | None:
+    marks, rule = head
+    if rule == KEEP:
+        known = all(_declared(names, kind, text) for _, text, kind in marks if kind in KINDS)
+        return head if known else None
+    below = _resolved(word, at, value, rule, names) if isinstance(rule, Mapping) else None
+    return ((*marks, *below[0]), below[1]) if below else None
+
+
+def _exact(
+    word: str, at: int, value: yaml.Node | None, rules: Shapes, names: CompanionNames
+) -> _Match | None:
+    """A literal key, a declared name, or a name by what is below it."""
+    if word in rules and word[:1] not in ("<", "*"):
+        return (), rules[word]
+    for kind, telling, rule in _wild(rules):
+        if kind in KINDS and _declared(names, kind, word):
+            return ((at, word, kind),), rule
+        if telling and value is not None and _tells(value, telling):
+            return ((at, word, kind),), rule
+    return None
+
+
+def _declared(names: CompanionNames, kind: str, word: str) -> bool:
+    """Does the description declare it, without what a launch file puts in front (``$(var prefix)``)?"""
+    return is_declared(names, kind, without_robot(word))
+
+
+def _open(word: str, at: int, value: yaml.Node | None, rules: Shapes) -> _Match | None:
+    """A key that may be any name."""
+    for kind, telling, rule in _wild(rules):
+        if not telling or (value is None and "declared" not in telling):
+            return ((at, word, kind),), rule
+    return ((), rules["*"]) if "*" in rules else None
+
+
+def _wild(rules: Shapes) -> Iterator[tuple[str, tuple[str, ...], Shape]]:
+    for key, rule in rules.items():
+        if key.startswith("<"):
+            kind, _, telling = key[1:-1].partition(" if ")
+            yield kind, tuple(telling.split()), rule
+
+
+def _tells(value: yaml.Node, telling: Iterable[str]) -> bool:
+    if "map" in telling:
+        return isinstance(value, yaml.MappingNode) or value.tag == "tag:yaml.org,2002:null"
+    return not {str(key.value) for key, _ in entries(value)}.isdisjoint(telling)
+
+
+def _scalars(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
+    """Every scalar once, keys included."""
+    for node in _nodes(root):
+        if isinstance(node, yaml.ScalarNode) and not is_merge(node):
+            yield node
+
+
+def _nodes(root: yaml.Node | None) -> Iterator[yaml.Node]:
+    seen: set[int] = set()
+    waiting = [root] if root is not None else []
+    while waiting:
+        node = waiting.pop()
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        yield node
+        if isinstance(node, yaml.MappingNode):
+            waiting += [it for pair in node.value for it in pair]
+        elif isinstance(node, yaml.SequenceNode):
+            waiting += node.value
+
+
+def _twice(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
+    for node in _nodes(root):
+        seen: set[str] = set()
+        for key, _ in pairs(node):
+            if key.value in seen and not is_merge(key):
+                yield key
+            seen.add(key.value)
+
 
 EMPTY = "empty"
 OF_SERVO, PLANNING, SIMPLE = "servo", "planning", "moveit_simple_controller_manager"
@@ -44,18 +264,16 @@ def find_kind(document: YamlText) -> MoveitKind | None:
     if root is None or root.tag == "tag:yaml.org,2002:null":
         return None
     if not isinstance(root, yaml.MappingNode):
-        place = f"{document.file}:{line_of(root)}"
-        raise InputError(f"{place}: not a MoveIt file: it is not a map of keys and values")
+        what = "not a MoveIt file: it is not a map of keys and values"
+        raise refused(document, root, what)
     _refuse_params(document, root, _DEPTH)
     paths = set(_paths(root))
     known = (kind for kind in kinds() if not paths.isdisjoint(kind.marks))
     if kind := next(known, None) or _by_values(root) or _by_name(document.file):
         return kind
     words = ", ".join(str(key.value) for key, _ in list(entries(root))[:4])
-    raise InputError(
-        f"{document.file}:{line_of(root)}: not a known kind of MoveIt file: it starts with"
-        f" {words or 'nothing'}; leave it out, or list a parameter file under params"
-    )
+    what = f"not a known kind of MoveIt file: it starts with {words or 'nothing'}; leave it out,"
+    raise refused(document, root, f"{what} or list a parameter file under params")
 
 
 def pipeline_of(path: str) -> str:
@@ -79,10 +297,8 @@ def parameter_above(kind: MoveitKind, document: YamlText) -> str:
 def _refuse_params(document: YamlText, node: yaml.Node, depth: int) -> None:
     for key, value in entries(node) if depth else ():
         if key.value == PARAMETERS:
-            place = f"{document.file}:{line_of(key)}"
-            raise InputError(
-                f"{place}: {PARAMETERS} makes it a parameter file; list it under params"
-            )
+            what = f"{PARAMETERS} makes it a parameter file; list it under params"
+            raise refused(document, key, what)
         _refuse_params(document, value, depth - 1)
 
 

@@ -13,26 +13,23 @@ from collections.abc import Iterable, Mapping, Sequence
 import yaml
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.naming import PREFIX, make_naming
+from multibot_rewrite.base.naming import PREFIX
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.alone import rewrite_alone
-from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.kinds import MOVEIT
 from multibot_rewrite.companions.moveit.file_kind import (
     ABOVE,
     NAMES,
     OF_SERVO,
     PLANNING,
     SIMPLE,
+    entries,
     file_kind,
 )
-from multibot_rewrite.companions.moveit.name_sites import entries
-from multibot_rewrite.companions.names.rename_map import companion_names, with_srdf
-from multibot_rewrite.companions.params.joined import added
+from multibot_rewrite.companions.named_file import MOVEIT
+from multibot_rewrite.companions.names.rename_map import with_srdf
+from multibot_rewrite.companions.params.joined import added, prefixed
 from multibot_rewrite.companions.yaml_text import YamlText, joined_text, read_yaml
-from multibot_rewrite.description.joining.part import PREFIXED
+from multibot_rewrite.description.joining.part import PREFIXED, prefixing
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.steps.collect import Inventory
 
 # What a kind is called in MoveIt's packages, where that is not the kind.
@@ -57,17 +54,15 @@ class JoinedMoveit(NamedTuple):
 def part_moveit(data: bytes, file: str, part: Inventory, said: Declared, prefix: str) -> PartMoveit:
     """A file with the prefix of its part, whose SRDF declares what is ``said``; raises InputError for
     one that is not MoveIt's, UsageError where a part without an SRDF has groups in it."""
-    kind = file_kind(read_yaml(data, file))
+    document = read_yaml(data, file)
+    kind = file_kind(document)
     if prefix and kind == "kinematics" and not said.get("group"):
         raise UsageError(f"{file}: groups of the part get its prefix; name its SRDF, too")
     if prefix:
-        named = make_naming("frames-per-robot", PREFIX, topics=PREFIX)
-        naming = named._replace(separators=dict.fromkeys((*PREFIXED, "node", "group"), ""))
-        names = companion_names(with_srdf(part.declared, said), naming, "", {})
-        words = words_of(part.claims)
-        context = make_context(names.declared, naming, (), part.release, names.own, words)
-        data = rewrite_alone(MOVEIT, data, file, context, prefix, 0).text.encode()
-    return PartMoveit(file, kind, read_yaml(data, file))
+        naming = prefixing((*PREFIXED, "node", "group"), PREFIX)
+        declared = with_srdf(part.declared, said)
+        document = prefixed(MOVEIT, data, file, part, declared, naming, prefix)
+    return PartMoveit(file, kind, document)
 
 
 def joined_moveit(files: Iterable[PartMoveit]) -> JoinedMoveit:

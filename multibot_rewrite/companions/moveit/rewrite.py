@@ -8,22 +8,23 @@ no sections of nodes, anchors are legal, and of a repeated key the last value co
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from functools import partial
 
 import yaml
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.engine import name_splices, text_of
-from multibot_rewrite.companions.kinds import MOVEIT
-from multibot_rewrite.companions.moveit.file_kind import OF_SERVO, find_kind
-from multibot_rewrite.companions.moveit.name_sites import MoveitKind, entries, find_names
-from multibot_rewrite.companions.named_file import Companion, NamedFile
+from multibot_rewrite.companions.engine import with_slots
+from multibot_rewrite.companions.moveit.file_kind import (
+    OF_SERVO,
+    MoveitKind,
+    entries,
+    find_kind,
+    find_names,
+)
+from multibot_rewrite.companions.named_file import MOVEIT, Companion, NamedFile
 from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.names.node_topics import facts_by_name
-from multibot_rewrite.companions.template import check_no_slots, make_template
-from multibot_rewrite.companions.yaml_blocks import newline
-from multibot_rewrite.companions.yaml_text import Splice, YamlText
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, newline
 from multibot_rewrite.knowledge.records import NodeFacts
 
 
@@ -37,17 +38,13 @@ def rewrite_moveit(
     for an alias whose value would need two new names.
     """
     try:
-        check_no_slots(document.text, document.file)
         file = read_moveit(document, context)
     except RecursionError:
-        raise InputError(
-            f"{document.file}:1: the YAML is nested too deeply for a MoveIt file"
-        ) from None
-    speller = partial(text_of, context, facts_by_name(facts, context.distro))
-    splices = [*name_splices(file, speller), *inserted_namespace(document, context)]
+        what = "the YAML is nested too deeply for a MoveIt file"
+        raise InputError(f"{document.file}:1: {what}") from None
     shift = [Splice(0, 0, document.bom)] if document.bom else []
-    template = make_template(document.text, [*shift, *splices])
-    return Companion(template, file)
+    more = (*shift, *inserted_namespace(document, context))
+    return with_slots(file, facts_by_name(facts, context.distro), more)
 
 
 # moveit_ros_control_interface looks for the manager below the root unless the namespace is set.

@@ -8,9 +8,8 @@ from collections.abc import Callable, Mapping
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
-from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.context import NAMESPACE_SLOT, TAG_SLOT, Context, number_slot
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, number_slot
 from multibot_rewrite.knowledge.stacks import is_apart
 
 Speller = Callable[[Context, str], str]

@@ -12,12 +12,11 @@ from functools import lru_cache
 
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import bind, check_topic_name, expand, resolve_bound
-from multibot_rewrite.companions.context import Context
+from multibot_rewrite.base.rosnames import bind, check_name_in_code, expand, resolve_bound
+from multibot_rewrite.companions.context import NAMESPACE_SLOT, Context
 from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL
-from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, is_apart
 from multibot_rewrite.spelling.of_runs import parsed
@@ -57,7 +56,7 @@ def spell_topic(
     context: Context, node: str, kind: str, value: str, reach: str, facts: Facts
 ) -> TopicText:
     """What a topic or service named by a parameter of ``node`` (the stack's name) becomes."""
-    if not is_plain(value) or value.startswith("~") or check_topic_name(value):
+    if not is_plain(value) or value.startswith("~") or check_name_in_code(value):
         return TopicText(value)
     outside = _is_outside(context, node, reach, facts)
     meant = _in_full(node, value, reach) if outside else value

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN
-from multibot_rewrite.base.rosnames import check_topic_name, expand
+from multibot_rewrite.base.rosnames import check_name_in_code, expand
 from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.spelling.records import Table
@@ -20,7 +20,7 @@ def is_topic(value: str) -> bool:
     """Is it a topic name: not empty, not private, without placeholders?"""
     if not value or value.startswith("~") or not NOT_PLAIN.isdisjoint(value):
         return False
-    return "//" not in value and check_topic_name(value) is None
+    return check_name_in_code(value) is None
 
 
 def robot_topic(names: CompanionNames, value: str, known: Mapping[str, str] = NOTHING) -> str:

@@ -15,11 +15,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import yaml
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.naming import PREFIX, Naming, make_naming
+from multibot_rewrite.base.naming import PREFIX, Naming
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.alone import rewrite_alone
 from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.formats import rewrite_alone
+from multibot_rewrite.companions.named_file import PARAMS
 from multibot_rewrite.companions.names.rename_map import NO_OWN, companion_names
 from multibot_rewrite.companions.params.sections import (
     MANAGER,
@@ -28,8 +28,9 @@ from multibot_rewrite.companions.params.sections import (
     controller_types,
     raw_sections,
 )
-from multibot_rewrite.companions.yaml_text import joined_text, pairs, read_yaml
-from multibot_rewrite.description.joining.part import PREFIXED
+from multibot_rewrite.companions.yaml_text import YamlText, joined_text, pairs, read_yaml
+from multibot_rewrite.description.joining.part import PREFIXED, prefixing
+from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.steps.collect import Inventory
 
@@ -59,12 +60,9 @@ def part_file(data: bytes, file: str, part: Inventory, prefix: str) -> PartFile:
     shared = frozenset(_shared(before))
     if not prefix:
         return PartFile(file, tuple(before), shared)
-    naming = _naming(shared)
-    names = companion_names(part.declared, naming, "", NO_OWN)
-    words = words_of(part.claims)
-    context = make_context(names.declared, naming, (), part.release, names.own, words)
-    text = rewrite_alone(PARAMS, data, file, context, prefix, 0).text
-    made = raw_sections(read_yaml(text.encode(), file))
+    naming = prefixing((*PREFIXED, "node"), PREFIX)
+    naming = naming._replace(own={("node", it): None for it in shared})
+    made = raw_sections(prefixed(PARAMS, data, file, part, part.declared, naming, prefix))
     return PartFile(file, tuple(_kept(made, before, shared)), shared)
 
 
@@ -81,10 +79,20 @@ def _kept(
             yield it
 
 
-def _naming(shared: frozenset[str]) -> Naming:
-    named = make_naming("frames-per-robot", PREFIX, topics=PREFIX)
-    own = {("node", it): None for it in shared}
-    return named._replace(separators=dict.fromkeys((*PREFIXED, "node"), ""), own=own)
+def prefixed(
+    kind: str,
+    data: bytes,
+    file: str,
+    part: Inventory,
+    declared: Declared,
+    naming: Naming,
+    prefix: str,
+) -> YamlText:
+    """Return a file of a part as its prefix spells it, by what is ``declared`` without."""
+    names = companion_names(declared, naming, "", NO_OWN)
+    words = words_of(part.claims)
+    context = make_context(names.declared, naming, (), part.release, names.own, words)
+    return read_yaml(rewrite_alone(kind, data, file, context, prefix, 0).text.encode(), file)
 
 
 def _node(section: RawSection) -> str:

@@ -6,20 +6,14 @@ from __future__ import annotations
 import yaml
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
-from multibot_rewrite.companions.params.sections import ParamSection
+from multibot_rewrite.companions.params.sections import NO_NAME, ParamSection
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL, Site, slot_of
-from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, names_below
+from multibot_rewrite.companions.yaml_text import YamlText, items, names_below, refused
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PREFIX_KINDS
-from multibot_rewrite.knowledge.parameters import (
-    KnownNodes,
-    guess,
-    is_absolute,
-    is_below_costmap,
-)
+from multibot_rewrite.knowledge.parameters import KnownNodes, guess, is_absolute, is_below_costmap
 from multibot_rewrite.knowledge.records import Branch, NodeParameters, Param
 
 STRING = "tag:yaml.org,2002:str"
@@ -98,8 +92,7 @@ def _walk(job: _Job, body: yaml.MappingNode, states: list[_State]) -> None:
     seen = set()
     for key, value in body.value:
         if not isinstance(key, yaml.ScalarNode):
-            place = f"{job.document.file}:{line_of(key)}"
-            raise InputError(f"{place}: a key is a mapping or a list; use a name as key")
+            raise refused(job.document, key, NO_NAME)
         if key.value in seen:
             job.names.twice.append(key)
         seen.add(key.value)

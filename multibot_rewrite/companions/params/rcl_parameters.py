@@ -14,9 +14,8 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.params.sections import is_for, raw_sections
-from multibot_rewrite.companions.yaml_text import YamlText, line_of, names_below, pairs
+from multibot_rewrite.companions.params.sections import is_for, raw_sections, settings
+from multibot_rewrite.companions.yaml_text import YamlText, refused
 from multibot_rewrite.system.parameters import Scalar, Value
 
 # rcl compares these words, in these capitalisations only.
@@ -52,14 +51,14 @@ def node_parameters(document: YamlText, full: str) -> dict[str, Value]:
     sections: dict[str, dict[str, Value]] = {}
     for found in raw_sections(document):
         if is_for(found.path, full):
-            sections.setdefault(found.path, {}).update(_flat(document, found.body, ""))
+            sections.setdefault(found.path, {}).update(_flat(document, found.body))
     return {name: value for section in sections.values() for name, value in section.items()}
 
 
 def check_values(document: YamlText) -> None:
     """Read every value of a parameter file; InputError for one that rcl rejects."""
     for found in raw_sections(document):
-        for _ in _flat(document, found.body, ""):
+        for _ in _flat(document, found.body):
             pass
 
 
@@ -69,27 +68,21 @@ def exact_nodes(document: YamlText) -> list[str]:
     return [f"/{path}" for path in paths if "*" not in path]
 
 
-def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Value]]:
-    for key, node in pairs(body):
-        name = f"{above}{key.value}"
-        if below := names_below(node):
-            yield from _flat(document, below, f"{name}.")
-        else:
-            yield name, value_of(document, node)
+def _flat(document: YamlText, body: yaml.Node) -> Iterator[tuple[str, Value]]:
+    return ((name, value_of(document, node)) for name, _, node in settings(body))
 
 
 def value_of(document: YamlText, node: yaml.Node) -> Value:
     if isinstance(node, yaml.ScalarNode):
         return _scalar(document, node)
     assert isinstance(node, yaml.SequenceNode)
-    place = f"{document.file}:{line_of(node)}"
     if not all(isinstance(item, yaml.ScalarNode) for item in node.value):
-        raise InputError(f"{place}: a list holds a list or a map; rcl takes single values only")
+        what = "a list holds a list or a map; rcl takes single values only"
+        raise refused(document, node, what)
     items = [_scalar(document, item) for item in node.value]
     if len({type(item) for item in items}) > 1:
-        raise InputError(
-            f"{place}: the list mixes types, which rcl rejects; write all as floats, or quote all"
-        )
+        what = "the list mixes types, which rcl rejects; write all as floats, or quote all"
+        raise refused(document, node, what)
     return items
 
 
@@ -98,9 +91,7 @@ def _scalar(document: YamlText, node: yaml.ScalarNode) -> Scalar:
     if tagged or node.style in ("'", '"'):
         return str(node.value)
     if not node.value:
-        raise InputError(
-            f'{document.file}:{line_of(node)}: the value is missing; write "" for an empty string'
-        )
+        raise refused(document, node, 'the value is missing; write "" for an empty string')
     return typed(node.value)
 
 

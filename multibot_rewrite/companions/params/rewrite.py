@@ -16,18 +16,18 @@ import yaml
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.gc_pause import gc_paused
-from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.kinds import PARAMS
-from multibot_rewrite.companions.named_file import Companion, NamedFile
+from multibot_rewrite.companions.context import (
+    NAMESPACE_SLOT,
+    TAG_SLOT,
+    Context,
+    FileTemplate,
+    check_no_slots,
+    make_template,
+)
+from multibot_rewrite.companions.named_file import PARAMS, Companion, NamedFile
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.names.placeholders import without_robot
-from multibot_rewrite.companions.params.lacking_sections import lacking_sections
-from multibot_rewrite.companions.params.name_sites import (
-    NO_NAMES,
-    Page,
-    SectionNames,
-    find_names,
-)
+from multibot_rewrite.companions.params.name_sites import NO_NAMES, Page, SectionNames, find_names
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
@@ -35,18 +35,9 @@ from multibot_rewrite.companions.params.sections import (
     raw_sections,
     without_own,
 )
-from multibot_rewrite.companions.params.shared_defaults import (
-    default_lines,
-)
+from multibot_rewrite.companions.params.shared_defaults import default_lines, lacking_sections
 from multibot_rewrite.companions.params.values import ParamsJob, clock_splices, name_splices
 from multibot_rewrite.companions.sites import SECTION, Site, site_at
-from multibot_rewrite.companions.template import (
-    NAMESPACE_SLOT,
-    TAG_SLOT,
-    FileTemplate,
-    check_no_slots,
-    make_template,
-)
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, replaced
 from multibot_rewrite.knowledge.parameters import KnownNodes, built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts

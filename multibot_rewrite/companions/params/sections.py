@@ -16,16 +16,9 @@ from multibot_rewrite.base.conventions import PLACEHOLDER, WORLD_NODES
 from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.naming import spelled
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.context import Context, full_name
+from multibot_rewrite.companions.context import NAMESPACE_SLOT, Context, full_name
 from multibot_rewrite.companions.names.placeholders import without_robot
-from multibot_rewrite.companions.template import NAMESPACE_SLOT
-from multibot_rewrite.companions.yaml_text import (
-    YamlText,
-    anchors,
-    line_of,
-    names_below,
-    pairs,
-)
+from multibot_rewrite.companions.yaml_text import YamlText, anchors, names_below, pairs, refused
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters
 from multibot_rewrite.knowledge.stacks import apart_nodes, is_apart
@@ -35,6 +28,7 @@ MANAGER = "controller_manager"
 ANY = ("*", "**")
 _TO_DO = f"put each node's parameters below {PARAMETERS}:"
 _MARK = re.compile(r"[&*][^\s*\[\]{},/:]")
+NO_NAME = "a key is a mapping or a list; use a name as key"
 # Helper nodes of old releases: they have sections, but no names of their own.
 INNER = ("_rclcpp_node", "_client")
 # A key that only one kind of file has -> what that file is.
@@ -150,18 +144,15 @@ def _below(
             yield from _below(document, value, (*above, key))
             continue
         if not above:
-            place = f"{document.file}:{line_of(key)}"
-            raise InputError(
-                f"{place}: {PARAMETERS} has no node name above it; write /**: above it"
-            )
+            what = f"{PARAMETERS} has no node name above it; write /**: above it"
+            raise refused(document, key, what)
         if isinstance(value, yaml.MappingNode):
             # rcl takes / alone above a node for the root namespace.
             names = above[1:] if above[0].value == "/" and len(above) > 1 else above
             whole = "/".join(it.value.strip("/") for it in names)
             yield RawSection(above, without_robot(whole), value)
         elif not (isinstance(value, yaml.ScalarNode) and not value.value):
-            place = f"{document.file}:{line_of(value)}"
-            raise InputError(f"{place}: {PARAMETERS} must hold names and values")
+            raise refused(document, value, f"{PARAMETERS} must hold names and values")
 
 
 def _check_keys(document: YamlText, node: yaml.Node | None) -> None:
@@ -169,8 +160,7 @@ def _check_keys(document: YamlText, node: yaml.Node | None) -> None:
         return
     for key, _ in node.value:
         if not isinstance(key, yaml.ScalarNode):
-            place = f"{document.file}:{line_of(key)}"
-            raise InputError(f"{place}: a key is a mapping or a list; use a name as key")
+            raise refused(document, key, NO_NAME)
 
 
 def identify_sections(
@@ -288,17 +278,23 @@ def _skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
     return filled
 
 
-def flattened(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.ScalarNode]]:
-    """Every parameter by its dotted name, with its key; nested and dotted keys are the same."""
+def settings(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.ScalarNode, yaml.Node]]:
+    """Every parameter by its dotted name, with its key and value; nested and dotted keys are the same.
+    ``above`` stands before all names."""
     for key, value in pairs(node):
-        name = f"{above}.{key.value}" if above else key.value
+        name = f"{above}{key.value}"
         if below := names_below(value):
-            yield from flattened(below, name)
+            yield from settings(below, f"{name}.")
         else:
-            yield name, key
+            yield name, key, value
 
 
-def scalars(node: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, yaml.ScalarNode]]:
+def flattened(node: yaml.Node) -> Iterator[tuple[str, yaml.ScalarNode]]:
+    """Every parameter by its dotted name, with its key."""
+    return ((name, key) for name, key, _ in settings(node))
+
+
+def scalars(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.ScalarNode]]:
     """Every key with a single value, and that value."""
     for key, value in pairs(node):
         if isinstance(value, yaml.ScalarNode):

@@ -12,22 +12,53 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.context import NAMESPACE_SLOT, TAG_SLOT, Context
 from multibot_rewrite.companions.engine import GRAPH, spell_site, splices_of, written
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_component, is_plain
 from multibot_rewrite.companions.names.node_topics import Facts, TopicText
 from multibot_rewrite.companions.names.placeholders import filled, is_robot
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared
-from multibot_rewrite.companions.params.guessed import in_doubt
-from multibot_rewrite.companions.params.guessed import stays as guessed_stays
-from multibot_rewrite.companions.params.name_sites import SectionNames
+from multibot_rewrite.companions.params.name_sites import SectionNames, name_in
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.sites import Site, found_in
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, replaced
 from multibot_rewrite.knowledge.parameter_entries import GRAPH_NAME_KINDS, RUN_TIME, SWITCH_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_absolute
 from multibot_rewrite.knowledge.records import Param
+
+# Frames and links are one tree; the odometry's frame is in it, and in no description.
+FRAMES = ("frame", "link")
+ODOM = "odom"
+
+
+def is_guessed(section: ParamSection) -> bool:
+    """Is it for one node, of which nothing is known?"""
+    return section.node is None and not section.wild
+
+
+def in_doubt(
+    context: Context, section: ParamSection, names: SectionNames
+) -> dict[str, yaml.ScalarNode]:
+    """The kinds of names that stay in a section, each with a value that may be one of them."""
+    found: dict[str, yaml.ScalarNode] = {}
+    if is_guessed(section) and names.sites:
+        for scalar in names.unclaimed:
+            for kind in _kinds_of(context, name_in(scalar), names):
+                found.setdefault(kind, scalar)
+    return found
+
+
+def _kinds_of(context: Context, text: str, names: SectionNames) -> tuple[str, ...]:
+    bare = text.removeprefix("/")
+    if is_declared(context.names, "frame", bare) or (bare == ODOM and _has_frame(names)):
+        return FRAMES
+    return ("joint",) if is_declared(context.names, "joint", text) else ()
+
+
+def _has_frame(names: SectionNames) -> bool:
+    """``odom`` alone may be a topic."""
+    return any(it.kind in FRAMES for it in names.sites)
+
 
 # Controllers make an empty prefix of it; an empty parameter may stand for the namespace.
 NO_PREFIX = "/"
@@ -72,7 +103,7 @@ def name_splices(
     """A splice for every name of a section that changes, and a finding where that is not possible."""
     stay = frames_stay(job, section)
     doubt = in_doubt(job.context, section, names)
-    found = [it for it in names.sites if not guessed_stays(it, doubt)]
+    found = [it for it in names.sites if it.kind not in doubt]
     sites = [it for it in found if it.in_key or is_filled(it) or it.kind in _SPELLED]
     made = [(it, _spelled(job, it, stay)) for it in sites]
     document = job.document

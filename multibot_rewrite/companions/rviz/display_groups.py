@@ -10,7 +10,6 @@ import yaml
 
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import robot_topic
-from multibot_rewrite.companions.rviz.colours import Colour
 from multibot_rewrite.companions.rviz.read_config import (
     ABSOLUTE,
     DOCK,
@@ -18,6 +17,7 @@ from multibot_rewrite.companions.rviz.read_config import (
     GROUP,
     PROCESS,
     SHARED,
+    Colour,
     RvizConfig,
     RvizItem,
     rviz_data,
@@ -30,8 +30,10 @@ from multibot_rewrite.companions.rviz.values import (
     item_splices,
     robot_value,
 )
-from multibot_rewrite.companions.yaml_blocks import (
+from multibot_rewrite.companions.yaml_text import (
     Block,
+    Splice,
+    YamlText,
     blocks,
     cut_out,
     end_of,
@@ -39,8 +41,10 @@ from multibot_rewrite.companions.yaml_blocks import (
     is_block,
     moved,
     newline,
+    pairs,
+    quoted,
+    replaced,
 )
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, quoted, replaced
 
 Robots = Sequence[RvizRobot]
 Wanted = Callable[[RvizItem], bool]

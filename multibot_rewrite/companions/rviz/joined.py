@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.base.naming import PREFIX, make_naming
+from multibot_rewrite.base.naming import PREFIX
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import companion_names
 from multibot_rewrite.companions.rviz.display_groups import group_text, leaves
@@ -25,9 +25,8 @@ from multibot_rewrite.companions.rviz.read_config import (
 )
 from multibot_rewrite.companions.rviz.rewrite import frame_splices
 from multibot_rewrite.companions.rviz.values import RvizRobot, item_splices
-from multibot_rewrite.companions.yaml_blocks import cut_out, inserted, moved
-from multibot_rewrite.companions.yaml_text import read_yaml, spliced
-from multibot_rewrite.description.joining.part import PREFIXED
+from multibot_rewrite.companions.yaml_text import cut_out, inserted, moved, read_yaml, spliced
+from multibot_rewrite.description.joining.part import PREFIXED, prefixing
 from multibot_rewrite.description.steps.collect import Inventory
 
 
@@ -50,8 +49,7 @@ def part_rviz(data: bytes, file: str, part: Inventory, name: str, prefix: str) -
     """A config with the prefix of its part; ``part`` is its description without. Raises InputError for
     one that is not for RViz 2."""
     config = read_config(read_yaml(data, file))
-    naming = make_naming("frames-per-robot", PREFIX, topics=PREFIX)
-    naming = naming._replace(separators=dict.fromkeys((*PREFIXED, "group"), ""))
+    naming = prefixing((*PREFIXED, "group"), PREFIX)
     names = companion_names(part.declared, naming, prefix, {})
     robot = RvizRobot(name, names, names)
     document = config.document

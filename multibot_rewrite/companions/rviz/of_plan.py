@@ -14,9 +14,8 @@ from typing import Any
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
 from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, make_naming
-from multibot_rewrite.companions.rviz.colours import palette
 from multibot_rewrite.companions.rviz.display_groups import leaves
-from multibot_rewrite.companions.rviz.read_config import TOPIC, RvizItem, read_config
+from multibot_rewrite.companions.rviz.read_config import TOPIC, RvizItem, palette, read_config
 from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import TF_PREFIX, RvizRobot
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, quoted

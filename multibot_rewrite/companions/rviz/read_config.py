@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from colorsys import hls_to_rgb
 from functools import lru_cache
 from typing import Any
 
@@ -11,11 +12,19 @@ import yaml
 
 from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.model import FOR_ROS_1, InputError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.sites import Site, site_at
-from multibot_rewrite.companions.yaml_blocks import Block, blocks, is_block
-from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs, refuse_anchors
+from multibot_rewrite.companions.yaml_text import (
+    Block,
+    YamlText,
+    blocks,
+    is_block,
+    pairs,
+    refuse_anchors,
+    refused,
+)
 
 MANAGER = "Visualization Manager"
 GROUP = "rviz_common/Group"
@@ -81,11 +90,8 @@ def _refuse(document: YamlText) -> None:
     for node in _maps(document.root):
         cls = text_of(node, "Class")
         if cls.startswith(ROS1):
-            place = f"{document.file}:{line_of(node)}"
-            raise InputError(
-                f"{place}: this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2",
-                FOR_ROS_1,
-            )
+            what = f"this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2"
+            raise refused(document, node, what, FOR_ROS_1)
     refuse_anchors(document)
 
 
@@ -100,10 +106,8 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
     if not isinstance(node, yaml.SequenceNode) or not node.value:
         return
     if not is_block(node):
-        place = f"{document.file}:{line_of(node)}"
-        raise InputError(
-            f"{place}: {what} are in brackets, which cannot be copied; save the file with rviz2"
-        )
+        hint = "which cannot be copied; save the file with rviz2"
+        raise refused(document, node, f"{what} are in brackets, {hint}")
     data = rviz_data()
     for block, item in zip(blocks(document, node), node.value, strict=True):
         cls = text_of(item, "Class")
@@ -176,3 +180,41 @@ def targets(config: RvizConfig) -> Iterator[yaml.Node]:
         target = value(view, "Target Frame")
         if isinstance(target, yaml.ScalarNode):
             yield target
+
+
+Colour = tuple[int, int, int]
+# Steps of the golden angle never repeat a hue.
+_STEP = 0.618034
+
+
+def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
+    """A colour from a name, ``#rrggbb`` or three numbers; InputError for anything else."""
+    if not isinstance(given, str):
+        red, green, blue = given
+        return red, green, blue
+    known = rviz_data()["colours"]
+    if given.lower() in known:
+        red, green, blue = known[given.lower()]
+        return red, green, blue
+    digits = given[1:] if given.startswith("#") else ""
+    try:
+        if len(digits) == 6:
+            red, green, blue = bytes.fromhex(digits)
+            return red, green, blue
+    except ValueError:
+        pass
+    hint = did_you_mean_one_of(given, known) or "write #rrggbb or [r, g, b]"
+    place = f"robot {robot!r}: " if robot else ""
+    raise InputError(f"{place}colour {given!r} is not known; {hint}")
+
+
+def palette(at: int) -> Colour:
+    """The colour of the robot at this place, different from all others."""
+    first = rviz_data()["palette"]
+    if at < len(first):
+        red, green, blue = first[at]
+        return red, green, blue
+    turns = at - len(first)
+    lightness = (0.45, 0.6, 0.75)[turns % 3]
+    red, green, blue = hls_to_rgb(turns * _STEP % 1, lightness, 0.85)
+    return round(red * 255), round(green * 255), round(blue * 255)

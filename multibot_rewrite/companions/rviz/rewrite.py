@@ -14,10 +14,8 @@ from multibot_rewrite.base.model import InputError, ProofError, UsageError
 from multibot_rewrite.base.naming import TF_TOPICS, Naming
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.kinds import RVIZ
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import RVIZ, NamedFile
 from multibot_rewrite.companions.names.placeholders import without_robot
-from multibot_rewrite.companions.rviz.colours import Colour, palette, read_colour
 from multibot_rewrite.companions.rviz.display_groups import (
     has_own_windows,
     leaves,
@@ -33,9 +31,12 @@ from multibot_rewrite.companions.rviz.read_config import (
     ABSOLUTE,
     FRAME,
     PROCESS,
+    Colour,
     RvizConfig,
     RvizItem,
     fixed_frame,
+    palette,
+    read_colour,
     read_config,
     targets,
     value,
@@ -44,18 +45,16 @@ from multibot_rewrite.companions.rviz.read_config import (
 from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, is_name, item_splices
 from multibot_rewrite.companions.rviz.window_checks import config_findings
 from multibot_rewrite.companions.sites import Site, site_at
-from multibot_rewrite.companions.yaml_blocks import (
+from multibot_rewrite.companions.yaml_text import (
+    Splice,
+    YamlText,
     as_item,
     blocks,
     cut_out,
     inserted,
     is_block,
-    newline,
-)
-from multibot_rewrite.companions.yaml_text import (
-    Splice,
-    YamlText,
     is_text,
+    newline,
     pairs,
     replaced,
     spliced,

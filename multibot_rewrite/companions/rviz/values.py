@@ -13,11 +13,11 @@ from multibot_rewrite.companions.engine import splices_of
 from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.names.rename_map import CompanionNames, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
-from multibot_rewrite.companions.rviz.colours import Colour
 from multibot_rewrite.companions.rviz.read_config import (
     FRAME,
     GRAPH_NAMESPACE,
     TOPIC,
+    Colour,
     RvizItem,
     text_of,
 )

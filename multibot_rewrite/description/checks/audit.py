@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, locate
+from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.loose_xml import DASHES, DEFAULT, LATE, slips
-from multibot_rewrite.base.markup import without_comments
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.releases import releases_with
-from multibot_rewrite.description.checks.hazards import hazards
-from multibot_rewrite.description.checks.model_namespaces import ignored_namespaces, used_namespaces
+from multibot_rewrite.description.checks.hazards import hazards, ignored_namespaces, used_namespaces
 from multibot_rewrite.description.checks.problem import Problem, to_findings
 from multibot_rewrite.description.checks.references import (
     ambiguous,

@@ -15,8 +15,15 @@ from lxml.etree import _Element
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import numbers
-from multibot_rewrite.description.checks.poses import HERE, Pose, minus, placed, sdf_pose
-from multibot_rewrite.description.checks.rotation import inverse, matrix_of_quaternion
+from multibot_rewrite.description.checks.poses import (
+    HERE,
+    Pose,
+    inverse,
+    matrix_of_quaternion,
+    minus,
+    placed,
+    sdf_pose,
+)
 
 MODEL = "__model__"
 _FRAMES = ("link", "joint", "frame", "model")

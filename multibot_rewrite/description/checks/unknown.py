@@ -12,10 +12,10 @@ from multibot_rewrite.description.readback.active import (
     HARDWARE,
     INCLUDE,
     PLUGIN,
+    ROS_1,
     ActivePart,
     active_parts,
 )
-from multibot_rewrite.description.readback.sections import ROS_1
 from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
 from multibot_rewrite.description.steps.collect import SRDF, Inventory

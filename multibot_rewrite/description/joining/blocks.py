@@ -1,22 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``<gazebo>`` blocks of the whole robot: what two parts both say is said once.
+"""What two parts both say is said once: ``<gazebo>`` blocks of the whole robot, a
+``<ros2_control>`` for parts that one driver serves, materials of one name.
 
-A plugin that makes a controller manager is there once for all parts, with the parameter files of all
-(gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp read each ``<parameters>``). The first
-part's other settings count.
+A plugin that makes a controller manager is there once for all parts, with the parameter files of
+all (gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp read each ``<parameters>``). The
+first part's other settings count. Joints, sensors and gpios of a part's system go into an earlier
+one with the same type and ``<hardware>``.
+
+Sources: ros2_control component_parser.cpp (``parse_resource_from_xml``): a system has one hardware,
+and any number of joints, sensors, gpios and transmissions; urdfdom model.cpp (``parseURDF``: a
+material below ``<robot>`` that is there twice is an error; ``assignMaterial``: of a name that the
+model has, whatever stands in the visual is not read).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.joining.kept import left_out, was
+from multibot_rewrite.description.joining.part import ReadPart
 from multibot_rewrite.description.readback.xml import plain, text_of
+from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.description.steps.document import Document, read_document, value_slot
 from multibot_rewrite.description.steps.spans import Spans
 
 _FILES = "parameters"
@@ -115,3 +126,131 @@ def _of_the_whole(block: _Element, gone: Iterable[_Element], part: Inventory) ->
     for it in _inside(block):
         if it.tag not in _THINGS and it not in gone:
             yield f"{part.document.file}:{it.sourceline}: <{it.tag}> is now said of the whole robot"
+
+
+_SYSTEM, _HARDWARE = "ros2_control", "hardware"
+
+
+class OneSystem(NamedTuple):
+    """The edits of a part, whose systems are left out, and of what is before it; ``notes`` are about
+    systems that stay."""
+
+    part: tuple[Edit, ...] = ()
+    joined: tuple[Edit, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def one_system(joined: Inventory, part: Inventory) -> OneSystem:
+    """A part's systems put into earlier ones; one that has no like stays."""
+    spans, before = Spans(part.document), Spans(joined.document)
+    gone: list[Edit] = []
+    more: list[Edit] = []
+    notes: list[str] = []
+    others = list(joined.document.root.iterchildren(_SYSTEM))
+    for it in part.document.root.iterchildren(_SYSTEM):
+        first = next(like(it, joined.document.root), None)
+        if first is None or not len(first):
+            where, name = f"{part.document.file}:{it.sourceline}", it.get("name", "")
+            what = f"ros2_control {name!r} stays: no part before it has one of its hardware"
+            notes += [f"{where}: {what}"] if others else []
+            continue
+        gone.append(left_out(spans, it))
+        end = before.end_of(list(first.iterchildren("*"))[-1])
+        texts = (spans.text_of(one) for one in driven(it))
+        more += [was(end, end, b"", b"\n    " + text) for text in texts]
+    return OneSystem(tuple(gone), tuple(more), tuple(notes))
+
+
+def like(system: _Element, root: _Element) -> Iterator[_Element]:
+    """The systems with the type and hardware of another one."""
+    wanted = _hardware(system)
+    yield from (it for it in root.iterchildren(_SYSTEM) if _hardware(it) == wanted)
+
+
+def driven(system: _Element) -> Sequence[_Element]:
+    """What a system has besides its hardware."""
+    return [it for it in system.iterchildren("*") if it.tag != _HARDWARE]
+
+
+def has_all(system: _Element, others: Iterable[_Element]) -> bool:
+    """Has one of some systems all that another one drives?"""
+    wanted = [plain(it) for it in driven(system)]
+    return any(
+        all(it in [plain(one) for one in driven(other)] for it in wanted) for other in others
+    )
+
+
+def _hardware(system: _Element) -> tuple[object, ...]:
+    found = [plain(it) for it in system.iterchildren(_HARDWARE)]
+    return system.get("type", ""), tuple(sorted(found, key=repr))
+
+
+# Colour and texture.
+_Look = tuple[tuple[float, ...], str]
+_TAG = "material"
+
+
+def looks(root: _Element) -> dict[str, _Look]:
+    """What each material that is described anywhere looks like; those below the root count first."""
+    found: dict[str, _Look] = {}
+    below = root.iterfind(f"link/visual/{_TAG}")
+    for it in (*root.iterchildren(_TAG), *below):
+        look = _look(it)
+        if look is not None:
+            found.setdefault(it.get("name", ""), look)
+    found.pop("", None)
+    return found
+
+
+def _look(material: _Element) -> _Look | None:
+    colour, texture = material.find("color"), material.find("texture")
+    if colour is None and texture is None:
+        return None
+    rgba = colour.get("rgba", "") if colour is not None else ""
+    return numbers(rgba) or (), "" if texture is None else texture.get("filename", "")
+
+
+def other_looks(joined: _Element, part: ReadPart) -> tuple[str, ...]:
+    """The materials of a part that look otherwise before it."""
+    known, own = looks(joined), looks(part.inventory.document.root)
+    # One without a look below the root is another one, too.
+    bare_names = {it.get("name", "") for it in joined.iterchildren(_TAG)} - known.keys()
+    met = known.keys() | bare_names
+    return tuple(name for name, look in own.items() if name in met and known.get(name) != look)
+
+
+def word_of(name: str, prefix: str) -> str:
+    """What goes before materials of a part: its prefix, else its name."""
+    return prefix or f"{name}_"
+
+
+def prefixed(text: bytes, file: str, prefix: str, names: Collection[str]) -> bytes:
+    """The text with a prefix before these materials."""
+    starts = _starts(read_document(text, file), names)
+    return b"".join(cut(text, (Edit(it, it, prefix.encode(), None) for it in starts)))
+
+
+def bare(text: bytes, file: str, prefix: str, names: Collection[str]) -> bytes:
+    """The text with the prefix taken off these materials."""
+    starts = _starts(read_document(text, file), [prefix + it for it in names])
+    return b"".join(cut(text, (Edit(it, it + len(prefix), b"", None) for it in starts)))
+
+
+def _starts(document: Document, names: Collection[str]) -> Iterator[int]:
+    """Where these names begin; in a block a material is one of Gazebo's."""
+    for element, start in zip(document.elements, document.starts, strict=True):
+        above = element.getparent()
+        if element.tag != _TAG or above is None or above.tag == "gazebo":
+            continue
+        name = element.get("name", "")
+        slot = value_slot(document.source, start, "name", name) if name in names else None
+        if slot is not None:
+            yield slot[0]
+
+
+def repeated(joined: _Element, spans: Spans) -> Iterator[Edit]:
+    """Materials below the root that are there already, taken out."""
+    names = {it.get("name") for it in joined.iterchildren(_TAG)}
+    for it in spans.document.root.iterchildren(_TAG):
+        if it.get("name") in names:
+            yield left_out(spans, it)

@@ -15,16 +15,32 @@ from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError, UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
-from multibot_rewrite.description.joining import materials
-from multibot_rewrite.description.joining.blocks import said_once
-from multibot_rewrite.description.joining.fixing import fixed
+from multibot_rewrite.description.checks.links_and_joints import WORLD, Joint, Robot, read_robot
+from multibot_rewrite.description.checks.poses import (
+    HERE,
+    Pose,
+    placed as pose_in_parent,
+    pose_of,
+    pose_of_six,
+    rpy_of,
+)
+from multibot_rewrite.description.joining.blocks import (
+    OneSystem,
+    one_system,
+    other_looks,
+    prefixed,
+    repeated,
+    said_once,
+    word_of,
+)
 from multibot_rewrite.description.joining.kept import (
     KeptText,
     is_joined_whole,
+    left_out,
     placed,
     section,
     sections,
@@ -38,14 +54,99 @@ from multibot_rewrite.description.joining.part import (
     read_part,
     with_names,
 )
-from multibot_rewrite.description.joining.proof import prove
-from multibot_rewrite.description.joining.second_reading import Mounted
-from multibot_rewrite.description.joining.systems import OneSystem, one_system
+from multibot_rewrite.description.joining.second_reading import Mounted, prove
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.collect import collect
-from multibot_rewrite.description.steps.document import Document, read_document, tag_end
+from multibot_rewrite.description.steps.document import Document, read_document, tag_end, value_slot
 from multibot_rewrite.description.steps.spans import Spans
+
+_FREE = ("floating", "planar")
+_MOUNT = """
+  <joint name="{name}" type="fixed">
+    {origin}
+    <parent link="{parent}"/>
+    <child link="{child}"/>
+  </joint>"""
+
+
+class Fixed(NamedTuple):
+    """The edits that fix a part, the joint that they make, and what a person should know."""
+
+    edits: tuple[Edit, ...]
+    joint: str
+    notes: tuple[str, ...] = ()
+
+
+def fixed(part: ReadPart, spec: Part, spans: Spans) -> Fixed:
+    """A part fixed to ``spec.at``; raises InputError for one that its link ``world`` prevents."""
+    robot = read_robot(spans.document.root)
+    if part.root != WORLD:
+        name = f"{part.name}_mount"
+        origin = _origin(pose_of_six(spec.pose), spec.pose)
+        names = (it.translate(ESCAPES) for it in (spec.at, part.root))
+        words = dict(zip(("parent", "child"), names, strict=True))
+        at, _ = spans.inside(spans.document.root)
+        text = _MOUNT.format(name=name, origin=origin, **words)
+        return Fixed((was(at, at, b"", text.encode()),), name)
+    return _without_world(part, spec, spans, robot.below.get(WORLD, ()))
+
+
+def _without_world(part: ReadPart, spec: Part, spans: Spans, joints: Sequence[Joint]) -> Fixed:
+    root = spans.document.root
+    link = next(it for it in root.iterchildren("link") if it.get("name") == WORLD)
+    if len(link) or not joints:
+        what = "has shapes of its own" if len(link) else "is all it has"
+        raise InputError(f"{part.file}: its link {WORLD!r} {what}; give that another name")
+    free = next((it for it in joints if it.type in _FREE), None)
+    if free is not None:
+        raise InputError(f"{part.file}: joint {free.name!r} is {free.type}: nothing fixes the part")
+    blocks = [it for it in root.iterchildren("gazebo") if it.get("reference") == WORLD]
+    gone = (left_out(spans, it) for it in (link, *blocks))
+    notes = (f"{part.file}:{it.sourceline}: left out: it is about {WORLD!r}" for it in blocks)
+    moved = (_moved(part, it, spec, spans) for it in joints)
+    return Fixed((*gone, *moved), "", tuple(notes))
+
+
+def _moved(part: ReadPart, joint: Joint, spec: Part, spans: Spans) -> Edit:
+    """A joint on the world, on the part's link in its place."""
+    element = joint.element
+    start, end = spans.start_of(element), spans.end_of(element)
+    parent = joint.parts["parent"]
+    source = spans.document.source
+    slot = value_slot(source, spans.start_of(parent), "link", joint.parent)
+    if slot is None:
+        raise InputError(f"{part.file}: <parent> of {joint.name!r}: write its link as plain text")
+    edits = [Edit(*slot, spec.at.translate(ESCAPES).encode(), None)]
+    edits += _turned(part, joint, spec.pose, spans)
+    new = b"".join(cut(source[:end], sorted(edits, key=lambda it: it.start)))[start:]
+    return was(start, end, source[start:end], new)
+
+
+def _turned(part: ReadPart, joint: Joint, pose: Sequence[float], spans: Spans) -> Iterator[Edit]:
+    """The origin of a joint as it is from the part's link."""
+    if tuple(pose) == ZERO:
+        return
+    old = joint.parts.get("origin")
+    inner = pose_of(old)
+    if inner is None:
+        raise InputError(f"{part.file}: the origin of {joint.name!r} is no six numbers")
+    outer = pose_of_six(pose)
+    text = _origin(outer, pose) if inner == HERE else _origin(pose_in_parent(outer, inner))
+    start = spans.start_of(joint.element if old is None else old)
+    if old is None:
+        start = end = tag_end(spans.document.source, start)
+    else:
+        end = spans.end_of(old)
+    yield Edit(start, end, text.encode(), None)
+
+
+def _origin(pose: Pose, given: Sequence[float] = ()) -> str:
+    """``<origin>``, in the numbers that were given where they are."""
+    six = given or [round(it, 15) for it in (*pose.at, *rpy_of(pose.matrix))]
+    words = [repr(float(it) + 0.0).removesuffix(".0") for it in six]
+    return f'<origin xyz="{" ".join(words[:3])}" rpy="{" ".join(words[3:])}"/>'
+
 
 JOINED = "the joined description"
 _START = attrgetter("start")
@@ -117,9 +218,9 @@ def _added(
     joined = collect(read_document(data, JOINED), tree)
     robot = read_robot(joined.document.root)
     _check_link(spec.at, part, robot)
-    names = materials.other_looks(joined.document.root, part)
-    word = materials.word_of(part.name, part.prefix)
-    text = materials.prefixed(part.text, part.file, word, names)
+    names = other_looks(joined.document.root, part)
+    word = word_of(part.name, part.prefix)
+    text = prefixed(part.text, part.file, word, names)
     part = part._replace(inventory=collect(read_document(text, part.file), tree))
     root, spans = part.inventory.document.root, Spans(part.inventory.document)
     start, end = spans.inside(root)
@@ -128,8 +229,8 @@ def _added(
         what = f"joint {mount.joint!r} is there already; name the part otherwise"
         raise InputError(f"{part.file}: {what}")
     system = one_system(joined, part.inventory) if spec.one_system else OneSystem()
-    repeated = materials.repeated(joined.document.root, spans)
-    edits = [*mount.edits, *repeated, *once.part, *system.part]
+    twice = repeated(joined.document.root, spans)
+    edits = [*mount.edits, *twice, *once.part, *system.part]
     made = _edited(text, [*edits, *own_spaces(joined.document, spans, edits)])
     more = section(
         KeptText(part.name, part.prefix, names, made), start, end + len(made) - len(text)

@@ -101,9 +101,10 @@ class ReadPart(NamedTuple):
         return roots(self.robot)[0].name
 
 
-def prefixing(kinds: Iterable[str] = PREFIXED) -> Naming:
+def prefixing(kinds: Iterable[str] = PREFIXED, topics: str | None = None) -> Naming:
     """The naming that puts a prefix, as it is written, before names of these kinds."""
-    return make_naming("frames-per-robot", PREFIX)._replace(separators=dict.fromkeys(kinds, ""))
+    named = make_naming("frames-per-robot", PREFIX, topics)
+    return named._replace(separators=dict.fromkeys(kinds, ""))
 
 
 @contextmanager

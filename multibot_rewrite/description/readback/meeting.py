@@ -27,12 +27,7 @@ from multibot_rewrite.description.readback.nodes import (
     full_name,
     itself,
 )
-from multibot_rewrite.description.readback.reading import (
-    FRAME,
-    IN_CODE,
-    NODE,
-    Reading,
-)
+from multibot_rewrite.description.readback.reading import FRAME, IN_CODE, NODE, Reading
 
 TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
 FRAMES, LOOKUP, NOT_TAKEN = "MG402", "MB425", "MR105"

@@ -16,7 +16,7 @@ from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.readback.xml import child_text, is_on, values_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT
-from multibot_rewrite.description.rewriters.vocabulary.wired import WiredTopic, is_type
+from multibot_rewrite.description.rewriters.vocabulary.values import WiredTopic, is_type
 
 MODEL = "{model}/"
 

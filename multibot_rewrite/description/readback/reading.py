@@ -9,7 +9,12 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.readback.active import opened
+from multibot_rewrite.description.readback.active import (
+    hardware_section,
+    opened,
+    plugin_section,
+    sensor_sections,
+)
 from multibot_rewrite.description.readback.nodes import (
     BELOW,
     TOPIC,
@@ -25,11 +30,6 @@ from multibot_rewrite.description.readback.parameters import (
     default_of,
     is_nested,
     values_of,
-)
-from multibot_rewrite.description.readback.sections import (
-    hardware_section,
-    plugin_section,
-    sensor_sections,
 )
 from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection

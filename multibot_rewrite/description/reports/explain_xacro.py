@@ -13,8 +13,8 @@ from multibot_rewrite.description.reports.explain import Explanation
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced
 from multibot_rewrite.description.sources.included_by import whole_robots
-from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, LITERAL, Piece
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.trace import EXPRESSION, GIVEN, LITERAL, Piece
 from multibot_rewrite.description.steps.document import Document, tag_end
 
 # What is on a line of a document.

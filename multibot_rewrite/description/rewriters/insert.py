@@ -30,7 +30,7 @@ from multibot_rewrite.description.rewriters.vocabulary import (
     split_path,
     split_step,
 )
-from multibot_rewrite.description.rewriters.vocabulary.wired import WiredTopic
+from multibot_rewrite.description.rewriters.vocabulary.values import WiredTopic
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 

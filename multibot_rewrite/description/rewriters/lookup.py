@@ -9,7 +9,7 @@ from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.nearest import nearest_few
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.wired import ROLES, WiredTopic
+from multibot_rewrite.description.rewriters.vocabulary.values import ROLES, WiredTopic
 
 
 def look_up(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[VocabularySection]:

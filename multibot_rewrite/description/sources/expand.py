@@ -27,8 +27,7 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import BOUNDED, Access, Find, Reach, check_file
 from multibot_rewrite.description.sources.child.frames import KERNEL
 from multibot_rewrite.description.sources.conversation import Failure, Result, Sources, converse
-from multibot_rewrite.description.sources.pieces import Pieces
-from multibot_rewrite.description.sources.trace import Origins, Trace, alike
+from multibot_rewrite.description.sources.trace import Origins, Pieces, Trace, alike
 from multibot_rewrite.description.steps.document import start_offsets, tag_end
 
 __all__ = ["Expanded", "Expansion", "Find", "Reach", "expand", "expand_traced", "expand_whole"]

@@ -9,11 +9,9 @@ from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 
 from multibot_rewrite.base.bounded import read_bytes
-from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.lazy import FILLED_IN, lazy_compile, with_gaps
 from multibot_rewrite.base.left_out import source_folders
-from multibot_rewrite.base.markup import FILLED_IN
 from multibot_rewrite.base.outside import outside
-from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import XACRO, has_xacro
 

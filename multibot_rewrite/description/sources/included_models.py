@@ -20,8 +20,7 @@ from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.bounded import MAX_BYTES, read_bytes
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import COMMENT
+from multibot_rewrite.base.lazy import COMMENT, lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file, outside, real_path, variable
 from multibot_rewrite.description.rewriters.text import text_at

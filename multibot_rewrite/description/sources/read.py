@@ -9,8 +9,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.bounded import MAX_BYTES, read_bytes
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import without_comments
+from multibot_rewrite.base.lazy import lazy_compile, without_comments
 from multibot_rewrite.base.model import UNREADABLE, InputError, UsageError
 from multibot_rewrite.base.record import NamedTuple
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 
-from multibot_rewrite.base.bounded import load_json, read_bytes
+from multibot_rewrite.base.bounded import bytes_if_read, load_json
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import outside
 from multibot_rewrite.base.record import NamedTuple
@@ -67,7 +67,7 @@ def release_of_all(told: str, files: Iterable[str]) -> SaidRelease:
         return SaidRelease(told)
     said: dict[str, SaidRelease] = {}
     for path in files:
-        it = release_said("", _bytes_of(path), path, os.path.basename(path))
+        it = release_said("", bytes_if_read(path), path, os.path.basename(path))
         if it.why:
             said.setdefault(it.release, it)
     return said.popitem()[1] if len(said) == 1 else SaidRelease(NEWEST_LTS)
@@ -87,7 +87,7 @@ def _release_of_build(file: str) -> str:
 
 def _manifest(path: str) -> dict[str, object]:
     try:
-        found = load_json(_bytes_of(path))
+        found = load_json(bytes_if_read(path))
     except ValueError:
         return {}
     return found if isinstance(found, dict) else {}
@@ -109,7 +109,7 @@ def release_in_repository(file: str) -> str:
         release, path = next(iter(named.items()))
         return f"{release} {os.path.relpath(path, top)} names it"
     package = next((it for it in folders if os.path.exists(os.path.join(it, "package.xml"))), "")
-    text = _bytes_of(os.path.join(package, "package.xml")) if package and not named else b""
+    text = bytes_if_read(os.path.join(package, "package.xml")) if package and not named else b""
     found = None if _NEW_PACKAGE.search(text) else _PACKAGE.search(text)
     return f"{OF_OLD} package.xml depends on {found[1].decode()}" if found else ""
 
@@ -127,13 +127,6 @@ def _ci_files(top: str) -> tuple[str, ...]:
 
 
 def _releases_in(path: str) -> set[str]:
-    lines = _LINE.findall(_bytes_of(path))
+    lines = _LINE.findall(bytes_if_read(path))
     found = {it.decode().lower() for line in lines for it in _RELEASE.findall(line)}
     return {ENDED.get(it, it) for it in found}
-
-
-def _bytes_of(path: str) -> bytes:
-    try:
-        return read_bytes(path)
-    except OSError:
-        return b""

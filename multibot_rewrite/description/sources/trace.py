@@ -1,21 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where in the xacro files each element of an expansion was written, and through which macro calls.
+"""Where in the xacro files each element of an expansion, and each piece of a value, was written,
+and through which macro calls.
 
-A child tells numbers (``child/marks.py``); what they stand for is looked up in the files as they were
-read here, so a number that is wrong leads nowhere else.
+A child tells numbers (``child/run_xacro.py``, ``child/pieces.py``); what they stand for is looked
+up in the files as they were read here, so a number that is wrong leads nowhere else. A piece counts
+as written there only where the bytes read back as it.
 """
 
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.steps.document import start_offsets
+from multibot_rewrite.description.steps.document import attribute_slots, start_offsets, tag_end
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.sources.conversation import Result, Sources
+
 
 NOWHERE = -1
 # No macro is called from so deep: Python's recursion ends before.
@@ -99,3 +104,99 @@ def alike(path: str, given: str) -> str:
 
 def _climbs(path: str) -> int:
     return path.split(os.sep).count(os.pardir)
+
+
+EIGHT = 8
+TEXT_NODE, FIRST_TEXT = "#", "#0"
+LITERAL, EXPRESSION, GIVEN, YAML = "literal", "expression", "given argument", "YAML"
+# What wrote a piece, by the element that it stands in; any other one of xacro's is a macro call.
+_KINDS = {"xacro:property": "property", "xacro:arg": "argument", "xacro:macro": "default"}
+
+
+class Piece(NamedTuple):
+    """``text`` is a part of a value. It stands in ``file`` from byte ``start`` to ``end``, or what
+    makes it does: an expression. ``kind`` says what wrote it: literal, property, argument, default,
+    parameter, YAML, expression, given argument (no file)."""
+
+    text: str
+    kind: str
+    file: str = ""
+    start: int = 0
+    end: int = 0
+
+
+class Pieces:
+    """The pieces of the values of one expansion."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+
+    def of(self, element: int, attribute: str, value: str) -> tuple[Piece, ...]:
+        """Those of an attribute of an element of the result, or of its text where ``attribute`` is
+        empty; () where nothing is known. Numbers of elements are in the order of the document."""
+        found, at = [], 0
+        for row in self._rows.get((element, attribute or TEXT_NODE), ()):
+            length = row[0]
+            found.append(self._piece(value[at : at + length], row))
+            at += length
+        return tuple(found) if at == len(value) else ()
+
+    @cached_property
+    def _rows(self) -> dict[tuple[int, str], list[tuple[int, ...]]]:
+        numbers, words = self.trace.result.pieces, self.trace.result.words
+        rows: dict[tuple[int, str], list[tuple[int, ...]]] = defaultdict(list)
+        for at in range(0, len(numbers), EIGHT):
+            element, attribute, *row = numbers[at : at + EIGHT]
+            if 0 <= attribute < len(words):
+                rows[element, words[attribute]].append(tuple(row))
+        return rows
+
+    def _piece(self, text: str, row: tuple[int, ...]) -> Piece:
+        _, file, element, word, offset, whole = row
+        words, names = self.trace.result.words, self.trace.names
+        attribute = words[word] if 0 <= word < len(words) else ""
+        if not 0 <= file < len(names):
+            return Piece(text, GIVEN if attribute else EXPRESSION, attribute)
+        name = names[file]
+        source = self.trace.sources.get(name, b"")
+        length = whole or len(text)
+        if not self.trace.result.files[file][1]:
+            return _in_yaml(source, name, text, offset)
+        start = self._start(file, element)
+        slot = None if start is None else _slot(source, start, attribute)
+        if start is None or slot is None:
+            return Piece(text, EXPRESSION, name)
+        begin, end = (_byte(source, slot, it) for it in (offset, offset + length))
+        as_is = not whole and source[begin:end] == text.encode()
+        kind = _kind(source, start) if as_is else EXPRESSION
+        return Piece(text, kind, name, begin, end)
+
+    def _start(self, file: int, element: int) -> int | None:
+        place = self.trace.place(file, element)
+        return place[1] if place else None
+
+
+def _kind(source: bytes, start: int) -> str:
+    name = source[start + 1 : tag_end(source, start)].split(None, 1)[0].rstrip(b"/>").decode()
+    return _KINDS.get(name, "parameter" if name.startswith("xacro:") else LITERAL)
+
+
+def _in_yaml(source: bytes, name: str, text: str, at: int) -> Piece:
+    start = len(source.decode("utf-8", "replace")[:at].encode())
+    end = start + len(text.encode())
+    kind = YAML if source[start:end] == text.encode() else EXPRESSION
+    return Piece(text, kind, name, start, end)
+
+
+def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
+    """Where a value is: of an attribute, or the text before anything else in an element."""
+    if not attribute.startswith(TEXT_NODE):
+        return attribute_slots(source, start).get(attribute.encode())
+    begin = tag_end(source, start)
+    return (begin, source.find(b"<", begin)) if attribute == FIRST_TEXT else None
+
+
+def _byte(source: bytes, slot: tuple[int, int], at: int) -> int:
+    """The offset of character ``at`` of a value, where nothing before it is escaped."""
+    begin, end = slot
+    return min(end, begin + len(source[begin:end].decode("utf-8", "replace")[:at].encode()))

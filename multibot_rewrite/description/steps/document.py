@@ -18,9 +18,8 @@ from lxml import etree
 
 from multibot_rewrite.base.bounded import MAX_BYTES
 from multibot_rewrite.base.findings.finding import Finding, locate
-from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.lazy import ATTRIBUTES, SILENT, lazy_compile
 from multibot_rewrite.base.loose_xml import Mended, is_loose, well_formed
-from multibot_rewrite.base.markup import ATTRIBUTES, SILENT
 from multibot_rewrite.base.model import NOT_UTF8, REFUSED, Edit, InputError
 from multibot_rewrite.base.record import NamedTuple
 

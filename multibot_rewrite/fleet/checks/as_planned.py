@@ -13,12 +13,10 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
-from multibot_rewrite.rules.check import ABSENCE, absences
-from multibot_rewrite.rules.domains import check_view
+from multibot_rewrite.rules.check import ABSENCE, absences, check_view
 from multibot_rewrite.rules.launch.judge import CLAIMS
 from multibot_rewrite.rules.system import (
     clocks,
-    demands,
     localized,
     matching,
     names,
@@ -34,7 +32,7 @@ from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.spelling.ways import HOST, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.questions import LIST_CONTROLLERS
+from multibot_rewrite.system.parameters import LIST_CONTROLLERS
 from multibot_rewrite.system.records import (
     RUNS,
     SERVES,
@@ -134,7 +132,7 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
         return ""
     if it.code == tf_pieces.tf_tree_in_pieces.code:
         return NOTE if _sender_left(it, planned, started) else "" if doubts(seen) else WARNING
-    if it.code == demands.bridged_topic_missing.code:
+    if it.code == planned_nodes.bridged_topic_missing.code:
         return ERROR if _is_read(seen) else ""
     sure = it.code not in ABSENCE or not doubts(seen)
     return ERROR if sure or _is_of_a_lack(it, planned, seen, started) else ""

@@ -45,7 +45,7 @@ def _linted(
     from multibot_rewrite.lint.check import lint_subject, unsuppressed
     from multibot_rewrite.lint.described import in_use, is_of_simulator, may_stop
     from multibot_rewrite.lint.files.subjects import make_subject
-    from multibot_rewrite.rules.description.names.links_and_joints import reserved_name
+    from multibot_rewrite.rules.description.names import reserved_name
 
     found = lint_subject(make_subject(document, settings), may_stop)
     asked = unsuppressed(found, {document.file: document.source}, settings)

@@ -32,7 +32,7 @@ from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.rules.check import judge
-from multibot_rewrite.rules.files.robot_words import in_description
+from multibot_rewrite.rules.files.ros_names import in_description
 from multibot_rewrite.rules.launch.models import in_each_other
 from multibot_rewrite.rules.system.sharing import one_device
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER

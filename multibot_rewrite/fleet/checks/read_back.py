@@ -32,7 +32,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.outputs.commands_file import COMMANDS
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
-from multibot_rewrite.knowledge.nodl.facts import declared
+from multibot_rewrite.knowledge.nodl.lookup import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.launch.findings import NOT_WHOLE
 from multibot_rewrite.producers.launch.launched import Launched

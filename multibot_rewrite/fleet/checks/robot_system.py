@@ -40,12 +40,15 @@ from multibot_rewrite.producers.ends import (
     either_way,
     run_alone,
 )
-from multibot_rewrite.producers.evidence.hardware import Exported, exported
-from multibot_rewrite.producers.evidence.moveit import planning_system
+from multibot_rewrite.producers.evidence.hardware import Exported, control_system, exported
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics, semantics
-from multibot_rewrite.producers.interfaces import control_system
+from multibot_rewrite.producers.evidence.semantics import (
+    FIXED,
+    Semantics,
+    planning_system,
+    semantics,
+)
 from multibot_rewrite.producers.launch.spawners import active
 from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.producers.transforms import (

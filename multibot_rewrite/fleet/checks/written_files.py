@@ -9,9 +9,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.kinds import BRIDGE, MOVEIT, PARAMS
 from multibot_rewrite.companions.moveit.file_kind import SIMPLE
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import BRIDGE, MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -25,8 +24,8 @@ from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.rules.files.bridges import GzTopic, GzTopics, no_gz_topic
 from multibot_rewrite.rules.files.controllers import undeclared_controller
-from multibot_rewrite.rules.files.given import Beside
 from multibot_rewrite.rules.files.judge import codes, judged, judged_once
+from multibot_rewrite.rules.files.section_facts import Beside
 from multibot_rewrite.rules.files.wheels import with_description
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.records import NOWHERE, Place

@@ -11,8 +11,8 @@ from typing import Any
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import NAMESPACE, Naming
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.kinds import PARAMS
-from multibot_rewrite.companions.rviz.colours import read_colour
+from multibot_rewrite.companions.named_file import PARAMS
+from multibot_rewrite.companions.rviz.read_config import read_colour
 from multibot_rewrite.description.joining.from_file import part_of, parts_of
 from multibot_rewrite.description.joining.part import Part, files_of
 from multibot_rewrite.description.sources.own_names import filled, name_robot

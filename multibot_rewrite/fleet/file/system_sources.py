@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.file_kinds import PLAN, recognised
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.releases import release_here, release_told
 from multibot_rewrite.description.sources.read import Source, read_file
 from multibot_rewrite.description.sources.release_said import release_of_launch
@@ -28,8 +28,7 @@ from multibot_rewrite.producers.snapshot_file import read_snapshots
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan_file import read_plan
 from multibot_rewrite.system.environment import settings
-from multibot_rewrite.system.parameters import with_answers
-from multibot_rewrite.system.questions import ANSWER_SECONDS, questions
+from multibot_rewrite.system.parameters import ANSWER_SECONDS, questions, with_answers
 from multibot_rewrite.system.records import Caveat, System
 
 if TYPE_CHECKING:

@@ -8,19 +8,18 @@ from collections.abc import Iterable, Iterator, Mapping
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
-from multibot_rewrite.companions.formats import made_for_any
-from multibot_rewrite.companions.kinds import LUA, MOVEIT, PARAMS, TREE
-from multibot_rewrite.companions.named_file import Companion, NamedFile
-from multibot_rewrite.companions.params.lacking_sections import all_sections
-from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.sites import found_in
-from multibot_rewrite.companions.template import (
+from multibot_rewrite.companions.context import (
     NAMESPACE_SLOT,
     NUMBER_STEP,
     TAG_SLOT,
     fill_template,
     make_template,
 )
+from multibot_rewrite.companions.formats import made_for_any
+from multibot_rewrite.companions.named_file import LUA, MOVEIT, PARAMS, TREE, Companion, NamedFile
+from multibot_rewrite.companions.params.rewrite import rewrite_params
+from multibot_rewrite.companions.params.shared_defaults import all_sections
+from multibot_rewrite.companions.sites import found_in
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.description.own_ports import said_of_numbers
 from multibot_rewrite.fleet.checks.written_files import wrong_in_file

@@ -13,7 +13,7 @@ from lxml import etree
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.base.markup import without_comments
+from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic

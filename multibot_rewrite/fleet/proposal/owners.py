@@ -10,7 +10,7 @@ from contextlib import suppress
 from functools import lru_cache
 
 from multibot_rewrite.base.conventions import SENT_FRAMES
-from multibot_rewrite.base.markup import FILLED_IN
+from multibot_rewrite.base.lazy import FILLED_IN
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import BOUNDED

@@ -18,7 +18,7 @@ from multibot_rewrite.base.rosnames import numbered_names
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.formats import read_named
-from multibot_rewrite.companions.kinds import PARAMS
+from multibot_rewrite.companions.named_file import PARAMS
 from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.read import read_file

@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, by_place
-from multibot_rewrite.base.findings.formats.shared import said
+from multibot_rewrite.base.findings.formats.plain import said
 from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS

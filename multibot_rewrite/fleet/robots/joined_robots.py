@@ -18,7 +18,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.join import Joined, join_plain
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS, RVIZ
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, RVIZ
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import Part, ReadPart

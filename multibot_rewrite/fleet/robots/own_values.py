@@ -14,8 +14,8 @@ from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.expand import Expansion, expand, expand_traced
-from multibot_rewrite.description.sources.pieces import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.sources.read import is_xacro, read_file
+from multibot_rewrite.description.sources.trace import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.steps.document import attribute_slots, read_document
 from multibot_rewrite.fleet.robots.member import Member
 

@@ -39,7 +39,7 @@ from multibot_rewrite.fleet.robots.fitting.transforms import (
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.nodl.facts import declared
+from multibot_rewrite.knowledge.nodl.lookup import declared
 from multibot_rewrite.knowledge.parameters import (
     KnownNodes,
     is_absolute,
@@ -214,10 +214,13 @@ def _is_mounted(root: _Element) -> bool:
 
 
 def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
-    """A plugin's node runs where a simulator loads the plugin of the description, the robot's own
-    bridge where there is something to bridge."""
+    """A plugin's node runs where a simulator loads the plugin of the description, a controller manager
+    of its own where no such plugin makes one, the robot's own bridge where there is something to
+    bridge."""
     if it.plugin and spec.simulator == REAL:
         return False
+    if it.name == MANAGER and not it.plugin and spec.simulator != REAL:
+        return not any(one.manager for one in member.reading.nodes)
     if it.plugin:
         # On Humble it has the name of Ignition, too.
         loaded = {name.replace("ign_", "gz_", 1) for name in plugin_libraries(member.inventory)}

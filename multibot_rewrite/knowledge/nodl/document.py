@@ -12,7 +12,7 @@ from functools import lru_cache
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.rosnames import check_full_name, check_topic_name, expand
+from multibot_rewrite.base.rosnames import check_name_in_code
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
@@ -183,7 +183,7 @@ def _checked_name(item: YamlItem) -> str:
     if not _NAME.fullmatch(name):
         hint = "write letters, digits, _ and /, a letter, / or ~ first"
         wrong(item, f"name {name!r} is not a name in NoDL; {hint}")
-    fault = check_topic_name(name) or check_full_name(expand(name, "/", "node"))
+    fault = check_name_in_code(name)
     if fault:
         wrong(item, f"name {name!r}: {fault.reason}")
     return name

@@ -7,8 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.findings.selection import is_on, level_of
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import ATTRIBUTES
+from multibot_rewrite.base.lazy import ATTRIBUTES, lazy_compile
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.config.directives import (

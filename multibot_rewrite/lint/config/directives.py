@@ -13,8 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate
 
 from multibot_rewrite.base.findings.codes import names_to_codes
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import ATTRIBUTES, SILENT
+from multibot_rewrite.base.lazy import ATTRIBUTES, SILENT, lazy_compile
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.registry import RULES

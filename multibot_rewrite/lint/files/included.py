@@ -7,8 +7,7 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import without_comments
+from multibot_rewrite.base.lazy import lazy_compile, without_comments
 from multibot_rewrite.base.outside import is_file, real_path
 from multibot_rewrite.description.sources.known_arguments import KnownArguments, known_arguments
 from multibot_rewrite.description.sources.packages import package_folder, package_of

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.kinds import is_beside
+from multibot_rewrite.companions.named_file import is_beside
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import builtin_tree

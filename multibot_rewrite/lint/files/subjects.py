@@ -17,10 +17,8 @@ from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.packages import package_folder
-from multibot_rewrite.description.sources.read import JOIN, has_xacro
-from multibot_rewrite.description.sources.read import XACRO as ENDING
-from multibot_rewrite.description.steps.collect import NOTHING, collect
-from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION
+from multibot_rewrite.description.sources.read import JOIN, XACRO as ENDING, has_xacro
+from multibot_rewrite.description.steps.collect import NOTHING, SRDF as SRDF_SECTION, collect
 from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.lint.files.named import SRDF_MARK
 from multibot_rewrite.rules.settings import ArgumentSet, Settings, matches

@@ -12,25 +12,23 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import CLOCK
+from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.base.wildcards import with_gaps
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.live.learning.choosing import (
-    Helpers,
-    check_seen_name,
-    helpers_of,
-    namespace_prefix,
-)
-from multibot_rewrite.live.learning.folding import (
     EndpointId,
+    Helpers,
     Seen,
+    check_seen_name,
     fold_actions,
     fold_images,
     fold_parts,
+    helpers_of,
+    namespace_prefix,
 )
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.system.records import (

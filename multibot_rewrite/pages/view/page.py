@@ -13,9 +13,8 @@ from typing import Any
 from multibot_rewrite.base.wording import one_line, plural
 from multibot_rewrite.base.workers import limit_time, worker_pool
 from multibot_rewrite.pages.page import Framed, source_hash
-from multibot_rewrite.pages.view.heard import DEGREES, METRES
 from multibot_rewrite.pages.view.models import Mesh, Model, Shape, load_mesh, prepare_meshes, three
-from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot
+from multibot_rewrite.pages.view.scene import DEGREES, METRES, ShownScene, ViewedRobot
 
 MESH_SECONDS = 10.0
 # Meshes by their files, or why one cannot be shown.

@@ -11,8 +11,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
-from multibot_rewrite.description.checks.poses import HERE, Pose, placed
-from multibot_rewrite.description.checks.rotation import inverse, turned
+from multibot_rewrite.description.checks.poses import HERE, Pose, inverse, placed, turned
 from multibot_rewrite.description.checks.sdf_frames import (
     MODEL,
     Frames,

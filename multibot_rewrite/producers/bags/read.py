@@ -12,7 +12,7 @@ import re
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import partial
-from itertools import islice
+from itertools import chain, islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -160,7 +160,8 @@ def _topic(reader: Reader, name: str, connections: list[Connection]) -> Recorded
         pose = max((pose_in(type_, it) for it in read), key=lambda it: inf in it, default=())
     elif type_ == CLOCK_TYPE:
         back = _back(_first(reader, connections, TRANSFORMS))
-    qos = tuple(_qos(it) for own in connections for it in _profiles(own))
+    offered = (getattr(it.ext, "offered_qos_profiles", ()) for it in connections)
+    qos = tuple(map(_qos, chain.from_iterable(offered)))
     return RecordedTopic(name, type_, count, qos, tuple(frames), tuple(joints), back, pose)
 
 
@@ -205,10 +206,6 @@ def _paced(
 ) -> Collection[Edge]:
     """The transforms with how often each came."""
     return [it if it.static else it._replace(rate=paces[key].rate()) for key, it in found.items()]
-
-
-def _profiles(connection: Connection) -> Iterable[Any]:
-    return getattr(connection.ext, "offered_qos_profiles", ())
 
 
 def _qos(given: Any) -> Qos:

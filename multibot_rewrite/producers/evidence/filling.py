@@ -10,9 +10,9 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 
+from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.rosnames import check_topic_name
-from multibot_rewrite.base.wildcards import with_gaps
+from multibot_rewrite.base.rosnames import check_name_in_code
 from multibot_rewrite.knowledge.conditions import ALSO, Values, chosen_type, holds, verdict
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.spelling.records import Given, Run
@@ -119,7 +119,7 @@ def _sure(endpoint: Endpoint, is_there: bool | None) -> Endpoint:
 
 def _checked(endpoint: Endpoint, listed: Given | None) -> Endpoint:
     """The endpoint, unless a word of a list makes a name that rcl rejects: the node does not start."""
-    fault = check_topic_name(endpoint.name) if listed else None
+    fault = check_name_in_code(endpoint.name) if listed else None
     if listed and fault:
         other = f", or set {endpoint.parameter}" if endpoint.parameter else ""
         made = f"topic {endpoint.name!r} is made of a word of this list: {fault.reason}"
@@ -258,7 +258,7 @@ def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[st
 
 def _topics(name: str, given: Given) -> Iterator[tuple[str, str]]:
     words = _words(given) if isinstance(given.value, list) else [str(given.value)]
-    yield from ((name, it) for it in words if not it or not check_topic_name(it))
+    yield from ((name, it) for it in words if not it or not check_name_in_code(it))
 
 
 def _called(parameter: str, values: Mapping[str, Given]) -> list[str]:

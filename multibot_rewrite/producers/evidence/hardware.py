@@ -1,29 +1,51 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A description -> the interfaces that its ros2_control systems export, and the nodes of its hardware.
+"""A description -> the interfaces that its ros2_control systems export and its controllers claim, and
+the nodes of its hardware.
 
 Sources: ros2_control hardware_interface component_parser.cpp (``<joint>``, ``<sensor>`` and ``<gpio>``
 of a ``<ros2_control>``; an interface is called ``OWNER/INTERFACE``). What the code of a plugin exports
 besides, and the nodes that it makes, are in ``hardware.yaml``.
+
+What a controller claims is a template in its node's table: a name with parameters in <>.
+``<joints>/<command_interfaces>`` stands for every joint with every interface. ``<a|b>`` is the first of
+them that is set, ``<a=x>`` is ``x`` where it is not, ``<a+_>`` is its value and ``_``. ``[0..17]``
+counts, ``[x,y]`` is each word. ``{a}`` in the name of a parameter, or in the condition, is what stands
+for ``<a>``. A parameter that is not set and has no default makes no name. ``<type>`` is the type of the
+controller.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.knowledge.fact_words import SOURCE_KEY
+from multibot_rewrite.knowledge.conditions import Values, holds
 from multibot_rewrite.knowledge.node_entries import read_claims
 from multibot_rewrite.knowledge.records import MANAGER, Claim, NodeFacts
-from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines, table, table_of, word
-from multibot_rewrite.producers.evidence.claims import claimed
-from multibot_rewrite.spelling.records import Given
-from multibot_rewrite.system.records import Origin, Place
+from multibot_rewrite.knowledge.yaml_with_lines import (
+    SOURCE_KEY,
+    read_yaml_with_lines,
+    table,
+    table_of,
+    word,
+)
+from multibot_rewrite.spelling.records import Given, Run
+from multibot_rewrite.system.records import (
+    CLAIMS,
+    EXPORTS,
+    STATE,
+    Controller,
+    Interface,
+    Origin,
+    Place,
+    System,
+)
 
-COMMAND, STATE = "command", "state"
 OWNERS = ("joint", "sensor", "gpio")
 _TABLE = "hardware.yaml"
 
@@ -114,3 +136,141 @@ def _plugins() -> Mapping[str, _Plugin]:
         )
         for name, keys in found.items()
     }
+
+
+ACTIVE = "active"
+
+
+def control_system(
+    given: Sequence[Run],
+    known: Mapping[str, NodeFacts],
+    exports: Iterable[Exported],
+    active: Collection[str] = (),
+) -> System:
+    """The controllers that files declare, and all interfaces; ``active`` are those that launch files
+    start so."""
+    declared = [it for it in given if it.host_name]
+    own = [Interface(it.kind, it.name, f"/{MANAGER}", EXPORTS, it.place) for it in exports]
+    for it in declared:
+        own += (_claim(claim, it) for claim in _claims(it, known))
+    return System(
+        controllers=tuple(_controller(it, known, active) for it in declared),
+        interfaces=tuple(own),
+    )
+
+
+def _controller(it: Run, known: Mapping[str, NodeFacts], active: Collection[str]) -> Controller:
+    claims = (claim.name for claim in _claims(it, known) if claim.kind == COMMAND)
+    is_active = it.node in active
+    name = it.node.rpartition("/")[2]
+    return Controller(
+        f"/{it.host_name}", name, ACTIVE if is_active else "", tuple(claims) * is_active
+    )
+
+
+def _claims(it: Run, known: Mapping[str, NodeFacts]) -> Iterator[Claimed]:
+    """What a controller claims, and once more what two of its parameters name."""
+    node = known.get(it.fact.known)
+    if node is not None:
+        yield from claims_of(node.claims, it)
+        yield from (claim for claim, _ in claimed_twice(node.claims, it))
+
+
+def _claim(claim: Claimed, it: Run) -> Interface:
+    return Interface(claim.kind, claim.name, f"/{it.node}", CLAIMS, claim.place or it.place)
+
+
+TYPE, COMMAND = "type", "command"
+_PART = re.compile(
+    r"<(?P<names>[^<>=+]+)(?:\+(?P<after>[^<>=]*))?(?P<default>=[^<>]*)?>"
+    r"|\[(?P<first>\d+)\.\.(?P<last>\d+)\]|\[(?P<words>[^\[\]]+)\]"
+)
+
+
+class Claimed(NamedTuple):
+    """An interface that a controller claims: ``kind`` is command or state; ``place`` is where the
+    parameters name it, None where only defaults do."""
+
+    kind: str
+    name: str
+    place: Place | None
+
+
+class _Made(NamedTuple):
+    """The beginning of a name, the condition with what was chosen, and where that is written."""
+
+    text: str
+    condition: str
+    place: Place | None
+
+
+def claims_of(claims: Iterable[Claim], node: Run) -> Iterator[Claimed]:
+    """The interfaces that a controller claims with its parameters, each once."""
+    yield from claimed(claims, {**node.values, TYPE: Given(node.program, node.place)})
+
+
+def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Claimed]:
+    """The interfaces that these claims make with these parameters, each once."""
+    found: dict[tuple[str, str], Claimed] = {}
+    for claim in claims:
+        for made in _names(claim.template, _Made("", claim.condition, None), values):
+            if made.text and holds(made.condition, _lookup(values)):
+                found.setdefault(
+                    (claim.kind, made.text), Claimed(claim.kind, made.text, made.place)
+                )
+    yield from found.values()
+
+
+def claimed_twice(claims: Iterable[Claim], node: Run) -> Iterator[tuple[Claimed, Place]]:
+    """Command interfaces that two parameters of a controller name; the second with the place of the
+    first."""
+    values, first = {**node.values, TYPE: Given(node.program, node.place)}, dict[str, Place]()
+    for claim in (it for it in claims if it.kind == COMMAND):
+        for made in _names(claim.template, _Made("", claim.condition, None), values):
+            if made.place and holds(made.condition, _lookup(values)):
+                other = first.setdefault(made.text, made.place)
+                if other != made.place:
+                    yield Claimed(claim.kind, made.text, made.place), other
+
+
+def _lookup(values: Mapping[str, Given]) -> Values:
+    return lambda name: values[name].value if name in values else None
+
+
+def _names(template: str, made: _Made, values: Mapping[str, Given]) -> Iterator[_Made]:
+    part = _PART.search(template)
+    if part is None:
+        yield made._replace(text=made.text + template)
+        return
+    slot, before, rest = f"{{{part['names']}}}", template[: part.start()], template[part.end() :]
+    for chosen, place in _choices(part, values):
+        text = f"{made.text}{before}{chosen}{(part['after'] or '') if chosen else ''}"
+        found = _Made(text, made.condition.replace(slot, chosen), made.place or place)
+        yield from _names(rest.replace(slot, chosen), found, values)
+
+
+def _choices(
+    part: re.Match[str], values: Mapping[str, Given]
+) -> Iterator[tuple[str, Place | None]]:
+    if not part["names"]:
+        yield from ((it, None) for it in _counted(part))
+        return
+    given = next((values[it] for it in part["names"].split("|") if _is_set(values.get(it))), None)
+    if given is not None:
+        many = given.value if isinstance(given.value, list) else [given.value]
+        yield from ((str(it), given.place) for it in many)
+    elif part["default"] is not None:
+        empty = next((values[it] for it in part["names"].split("|") if it in values), None)
+        # An empty text in a file is the value; an empty list makes no name.
+        words = part["default"][1:].split(",") if empty is None else [""] * (empty.value == "")
+        yield from ((it, None) for it in words)
+
+
+def _counted(part: re.Match[str]) -> list[str]:
+    if part["words"]:
+        return part["words"].split(",")
+    return [str(it) for it in range(int(part["first"]), int(part["last"]) + 1)]
+
+
+def _is_set(given: Given | None) -> bool:
+    return given is not None and given.value not in ("", [])

@@ -1,23 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An SRDF beside its URDF -> what MoveIt makes of it: groups, passive and virtual joints.
+"""What MoveIt makes of an SRDF beside its URDF (groups, passive and virtual joints), and which joints
+its controllers move.
 
 Sources: srdfdom model.cpp; moveit2 robot_model.cpp (fixed and mimic joints are no variables of a
 group), current_state_monitor.cpp (passive joints need no state; a virtual joint that moves is looked up
 in tf), trajectory_execution_manager.cpp (a trajectory's controllers have to move all its joints).
+
+moveit_simple_controller_manager_plugin.cpp has ``controller_names``, and of each a map.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+import yaml
 from lxml.etree import _Element
 
 from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.companions.moveit.file_kind import NAMES, SIMPLE
+from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.description.checks.planning_groups import groups_of, joints_of, text_of
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.knowledge.records import MOVE_GROUP
+from multibot_rewrite.system.records import CLAIMS, EXPORTS, JOINT, Interface, Place, System
 
 FIXED = "fixed"
+JOINTS = "joints"
 
 
 class PlanningGroup(NamedTuple):
@@ -79,3 +87,45 @@ def _virtual(joint: _Element, file: str) -> VirtualJoint:
 def _place(element: _Element, file: str) -> Place:
     line: int = element.sourceline or 1  # type: ignore[assignment]
     return Place(file, line)
+
+
+def managers(node: yaml.Node | None) -> Iterator[yaml.Node]:
+    """The manager's map, at the top of a file or below a node's parameters."""
+    for key, value in pairs(node):
+        if key.value == SIMPLE:
+            yield value
+        elif isinstance(value, yaml.MappingNode):
+            yield from managers(value)
+
+
+def controllers_of(manager: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
+    """The listed controllers that have a map: its key and the map."""
+    below = {key.value: (key, value) for key, value in pairs(manager)}
+    yield from (below[str(it.value)] for it in listed(manager, NAMES) if it.value in below)
+
+
+def listed(holder: yaml.Node, key: str) -> list[yaml.ScalarNode]:
+    """The names that a map lists under a key: a manager's controllers, the joints of one."""
+    value = next((value for name, value in pairs(holder) if name.value == key), None)
+    return [it for it in items(value) if isinstance(it, yaml.ScalarNode)]
+
+
+def planning_system(documents: Iterable[YamlText], semantics: Semantics) -> System:
+    """The joints that controllers of MoveIt move, and those that groups of the SRDF are planned for."""
+    moved = (
+        Interface(JOINT, str(joint.value), f"/{key.value}", EXPORTS, _place_in(document, joint))
+        for document in documents
+        for manager in managers(document.root)
+        for key, body in controllers_of(manager)
+        for joint in listed(body, JOINTS)
+    )
+    planned = (
+        Interface(JOINT, joint, f"/{MOVE_GROUP}", CLAIMS, group.place)
+        for group in semantics.groups
+        for joint in group.joints
+    )
+    return System(interfaces=(*moved, *planned))
+
+
+def _place_in(document: YamlText, node: yaml.Node) -> Place:
+    return Place(document.file, line_of(node))

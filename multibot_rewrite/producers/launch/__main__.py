@@ -22,11 +22,11 @@ from typing import Any
 from multibot_rewrite.base.bounded import load_json
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources import conversation
-from multibot_rewrite.description.sources.child.asking import asking
 from multibot_rewrite.description.sources.child.frames import (
     QUESTION,
     REPORT,
     GarbageError,
+    asking,
     framed,
     received,
 )

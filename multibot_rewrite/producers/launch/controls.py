@@ -9,8 +9,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.knowledge.records import MANAGER
-from multibot_rewrite.producers.evidence.claims import claims_of
-from multibot_rewrite.producers.evidence.hardware import exported
+from multibot_rewrite.producers.evidence.hardware import claims_of, exported
 from multibot_rewrite.producers.launch.launched import file_of
 from multibot_rewrite.producers.launch.records import LaunchGraph
 from multibot_rewrite.spelling.records import Run

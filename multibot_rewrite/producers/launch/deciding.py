@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import pairwise
 
-from multibot_rewrite.base.markup import COMMENT
+from multibot_rewrite.base.lazy import COMMENT
 from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.conditions import ALSO, HEARD, PROGRAM, Condition, settled, words_in

@@ -13,14 +13,15 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager
 
 from multibot_rewrite.base.bounded import load_json
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.description.sources.child.asking import Ask, RefusedError
 from multibot_rewrite.description.sources.child.frames import (
     FENCES,
     HEAD,
     REFUSAL,
     REQUEST,
     VALUE,
+    Ask,
     GarbageError,
+    RefusedError,
     framed,
 )
 from multibot_rewrite.description.sources.processes import XacroChild, child

@@ -17,9 +17,15 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from multibot_rewrite.producers.ros import ros
-from multibot_rewrite.producers.ros.worker import Send, run_worker
-from multibot_rewrite.system.parameters import Answer, parameter_text
-from multibot_rewrite.system.questions import GET_PARAMETERS, GET_STATE, LIST_PARAMETERS, Question
+from multibot_rewrite.producers.ros.request import Send, run_worker
+from multibot_rewrite.system.parameters import (
+    GET_PARAMETERS,
+    GET_STATE,
+    LIST_PARAMETERS,
+    Answer,
+    Question,
+    parameter_text,
+)
 from multibot_rewrite.system.record_values import plain_value
 from multibot_rewrite.system.records import Controller, Parameter
 

@@ -28,8 +28,7 @@ from multibot_rewrite.producers.ros.request import (
     to_text,
 )
 from multibot_rewrite.system.json import from_json
-from multibot_rewrite.system.parameters import Answer
-from multibot_rewrite.system.questions import Question
+from multibot_rewrite.system.parameters import Answer, Question
 from multibot_rewrite.system.record_values import record_from
 from multibot_rewrite.system.records import UNKNOWN_NODE, ZENOH, Caveat, System
 

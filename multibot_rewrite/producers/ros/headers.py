@@ -15,8 +15,7 @@ from collections.abc import Callable, Iterable, Iterator, Set
 from multibot_rewrite.base.conventions import CLOCK, LISTENER
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.ros.assemble import numbers_of
-from multibot_rewrite.producers.ros.pace import Pace
-from multibot_rewrite.producers.ros.voices import Mark
+from multibot_rewrite.producers.ros.pace import Mark, Pace
 from multibot_rewrite.producers.zenoh.cdr import (
     read_child_frame,
     read_header_frame,

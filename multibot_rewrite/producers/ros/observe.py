@@ -10,17 +10,17 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from math import inf
 
 from multibot_rewrite.producers.ros import assemble, queries, ros
-from multibot_rewrite.producers.ros.answers import Answers
 from multibot_rewrite.producers.ros.ask import ask_nodes
-from multibot_rewrite.producers.ros.ears import TF_SECONDS, Ears
 from multibot_rewrite.producers.ros.look import (
     POLL_SECONDS,
+    TF_SECONDS,
+    Ears,
     GraphSession,
     complete_view,
     overview,
@@ -28,14 +28,25 @@ from multibot_rewrite.producers.ros.look import (
     view,
 )
 from multibot_rewrite.producers.ros.participants import lost_here, make_room, participants_here
-from multibot_rewrite.producers.ros.request import ENDED, SO_FAR, Request, from_text
+from multibot_rewrite.producers.ros.request import (
+    ENDED,
+    SO_FAR,
+    Request,
+    Send,
+    from_text,
+    run_worker,
+)
 from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
-from multibot_rewrite.producers.ros.worker import Send, run_worker
 from multibot_rewrite.system import environment
+from multibot_rewrite.system.environment import LOCALHOST
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.parameters import Answer, with_answers
-from multibot_rewrite.system.questions import ANSWER_SECONDS, Question
-from multibot_rewrite.system.reach import LOCALHOST
+from multibot_rewrite.system.parameters import (
+    ANSWER_SECONDS,
+    Answer,
+    Question,
+    questions,
+    with_answers,
+)
 from multibot_rewrite.system.records import (
     CHANGING,
     EXPECTED,
@@ -308,3 +319,34 @@ def _frames(tf: TfSubscriptions, placed: Iterable[End]) -> Iterator[Edge]:
 
 if __name__ == "__main__":
     sys.exit(run_worker(main))
+
+
+# States and parameters change without the graph: nodes are asked for them again after so long.
+AGAIN_SECONDS = 10.0
+Ask = Callable[[Iterable[Question]], Iterable[Answer]]
+
+
+class Answers:
+    """The last answers. ``parameters`` are what nodes are asked for besides; None asks nobody."""
+
+    def __init__(self, ask: Ask, parameters: Mapping[str, Collection[str]] | None) -> None:
+        self._ask, self._parameters = ask, parameters
+        self._asked = -AGAIN_SECONDS
+        self.states: tuple[Answer, ...] = ()
+
+    def old(self, now: float) -> bool:
+        """Whether it is time to ask again."""
+        return self._parameters is not None and now - self._asked >= AGAIN_SECONDS
+
+    def update(self, seen: System, quiet: bool, now: float) -> bool:
+        """Ask the nodes of a graph that is quiet; whether an answer is another than before.
+
+        One that does not answer now keeps what it said before, until it leaves.
+        """
+        there = {node.name for node in seen.nodes}
+        found = {it.node: it for it in self.states if it.node in there}
+        if quiet and self._parameters is not None:
+            found |= {it.node: it for it in self._ask(questions(seen, self._parameters))}
+            self._asked = now
+        before, self.states = self.states, tuple(found[it] for it in sorted(found))
+        return before != self.states

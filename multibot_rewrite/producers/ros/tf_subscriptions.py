@@ -9,8 +9,7 @@ from typing import Any
 
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, ReceivedTransform, numbers_of
-from multibot_rewrite.producers.ros.pace import Pace
-from multibot_rewrite.producers.ros.voices import Mark, Voices
+from multibot_rewrite.producers.ros.pace import Mark, Pace, Voices
 from multibot_rewrite.system.records import PUBLISHES, Caveat, End
 
 # As long as tf2 keeps a transform.

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A message of the type ``rosgraph_msgs/Graph`` -> a snapshot."""
+"""A message of the type ``rosgraph_msgs/Graph``, what its numbers mean, and the snapshot that it is.
+
+The messages are those of ros2/rcl_interfaces, rosgraph_msgs/msg: since 1.2.3 in Humble, 2.3.2 in Kilted
+and 2.4.4 in Rolling. A graph is a list of nodes with their endpoints, without transforms and processes.
+"""
 
 from __future__ import annotations
 
@@ -11,22 +15,7 @@ from typing import Any, cast
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.producers.rosgraph.messages import (
-    DURABILITY,
-    HISTORY,
-    LIVELINESS,
-    RELIABILITY,
-    SEND_GOAL,
-    UNKNOWN,
-    Action,
-    Duration,
-    Graph,
-    Service,
-    Topic,
-)
-from multibot_rewrite.producers.rosgraph.messages import (
-    Node as NodeMessage,
-)
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.record_values import record_from
 from multibot_rewrite.system.records import (
     ACTION,
@@ -49,6 +38,16 @@ from multibot_rewrite.system.records import (
 _NO_LIMIT = 2**31 - 1
 _CUT_SHORT = lazy_compile(r"^[^\S\n]*- '?\.\.\.'?$", re.MULTILINE)
 _REQUEST = "_Request"
+# The numbers of QoSProfile.msg, and of rmw types.h, are places in these lists.
+HISTORY = ("SYSTEM_DEFAULT", "KEEP_LAST", "KEEP_ALL", "UNKNOWN")
+RELIABILITY = ("SYSTEM_DEFAULT", "RELIABLE", "BEST_EFFORT", "UNKNOWN", "BEST_AVAILABLE")
+DURABILITY = ("SYSTEM_DEFAULT", "TRANSIENT_LOCAL", "VOLATILE", "UNKNOWN", "BEST_AVAILABLE")
+LIVELINESS = (
+    *("SYSTEM_DEFAULT", "AUTOMATIC", "MANUAL_BY_NODE"),
+    *("MANUAL_BY_TOPIC", "UNKNOWN", "BEST_AVAILABLE"),
+)
+UNKNOWN = "UNKNOWN"
+SEND_GOAL = "_SendGoal"
 NO_FRAMES = Caveat(
     "frames-not-read", False, "a rosgraph_msgs/Graph has no transforms: they are not compared"
 )
@@ -176,3 +175,84 @@ def _seconds(duration: Duration) -> float:
     if duration.sec == _NO_LIMIT or duration == (0, 0):
         return math.inf
     return duration.sec + duration.nanosec / 1e9
+
+
+class Hash(NamedTuple):
+    """TypeHash.msg."""
+
+    version: int
+    value: tuple[int, ...]
+
+
+class InterfaceType(NamedTuple):
+    """InterfaceType.msg."""
+
+    name: str
+    hash: Hash
+
+
+class Duration(NamedTuple):
+    """builtin_interfaces/Duration."""
+
+    sec: int
+    nanosec: int
+
+
+class QosProfile(NamedTuple):
+    """QoSProfile.msg."""
+
+    depth: int
+    deadline: Duration
+    lifespan: Duration
+    history: int
+    reliability: int
+    durability: int
+    liveliness: int
+    liveliness_lease_duration: Duration
+
+
+class Topic(NamedTuple):
+    """Topic.msg."""
+
+    name: str
+    type: InterfaceType
+    qos: QosProfile
+
+
+class Service(NamedTuple):
+    """Service.msg."""
+
+    name: str
+    request_type: InterfaceType
+    request_qos: QosProfile
+    response_type: InterfaceType
+    response_qos: QosProfile
+
+
+class Action(NamedTuple):
+    """Action.msg."""
+
+    name: str
+    send_goal: Service
+    get_result: Service
+    cancel_goal: Service
+    feedback: Topic
+    status: Topic
+
+
+class NodeMessage(NamedTuple):
+    """Node.msg without its parameters."""
+
+    name: str
+    publishers: tuple[Topic, ...]
+    subscriptions: tuple[Topic, ...]
+    service_clients: tuple[Service, ...]
+    service_servers: tuple[Service, ...]
+    action_clients: tuple[Action, ...]
+    action_servers: tuple[Action, ...]
+
+
+class Graph(NamedTuple):
+    """Graph.msg."""
+
+    nodes: tuple[NodeMessage, ...]

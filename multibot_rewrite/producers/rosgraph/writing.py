@@ -8,7 +8,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
-from multibot_rewrite.producers.rosgraph.messages import (
+from multibot_rewrite.producers.rosgraph.reading import (
     DURABILITY,
     HISTORY,
     LIVELINESS,

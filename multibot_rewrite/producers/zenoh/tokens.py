@@ -16,7 +16,7 @@ from functools import lru_cache
 from math import inf
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.producers.rosgraph.messages import (
+from multibot_rewrite.producers.rosgraph.reading import (
     DURABILITY,
     HISTORY,
     LIVELINESS,

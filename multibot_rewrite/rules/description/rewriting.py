@@ -8,11 +8,8 @@ from functools import partial
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
-from multibot_rewrite.companions.kinds import EVERY
-from multibot_rewrite.description.checks.audit import (
-    other_releases,
-    other_ros,
-)
+from multibot_rewrite.companions.named_file import EVERY
+from multibot_rewrite.description.checks.audit import other_releases, other_ros
 from multibot_rewrite.description.checks.mentions import (
     MENTIONED,
     as_problem,

@@ -18,8 +18,15 @@ from lxml.etree import _Element
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.numbers import Vector, number
-from multibot_rewrite.description.checks.poses import Pose, axis_of, dot, minus, origin_of, placed
-from multibot_rewrite.description.checks.rotation import turned
+from multibot_rewrite.description.checks.poses import (
+    Pose,
+    axis_of,
+    dot,
+    minus,
+    origin_of,
+    placed,
+    turned,
+)
 from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, shapes_of
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.rules.facts.memo import link_poses, memoized

@@ -16,8 +16,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot, read_robot
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
-from multibot_rewrite.description.checks.poses import Pose
-from multibot_rewrite.description.checks.rotation import turned
+from multibot_rewrite.description.checks.poses import Pose, turned
 from multibot_rewrite.description.checks.sdf_frames import Frames, Named, ends_of, named_in
 
 _Z: Vector = (0.0, 0.0, 1.0)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.markup import IN_EXPRESSION
+from multibot_rewrite.base.lazy import IN_EXPRESSION, lazy_compile
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.rules.subject import Subject

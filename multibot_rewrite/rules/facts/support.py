@@ -9,8 +9,7 @@ from math import hypot
 from lxml.etree import _Element
 
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.description.checks.poses import Pose, origin_of, placed, plus, scaled
-from multibot_rewrite.description.checks.rotation import turned
+from multibot_rewrite.description.checks.poses import Pose, origin_of, placed, plus, scaled, turned
 from multibot_rewrite.description.checks.shapes import extent_of, shapes_of
 from multibot_rewrite.rules.facts.drives import drives, radii
 from multibot_rewrite.rules.facts.memo import link_poses

@@ -27,12 +27,10 @@ from multibot_rewrite.companions.bridge_entry import (
     row_of,
     text_in,
 )
-from multibot_rewrite.companions.kinds import BRIDGE
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import BRIDGE, NamedFile
 from multibot_rewrite.companions.yaml_text import items
-from multibot_rewrite.rules.declaration import of_robots
-from multibot_rewrite.rules.files.given import did_you_mean_at
-from multibot_rewrite.rules.places import remark_at
+from multibot_rewrite.rules.declaration import remark_at, robots_rule
+from multibot_rewrite.rules.files.section_facts import did_you_mean_at
 from multibot_rewrite.spelling.bridge_rows import bridge_data
 from multibot_rewrite.system.records import NOWHERE, Place
 
@@ -97,14 +95,7 @@ def _misspelt(
         yield remark_at(node, f"there is no gz type {gz!r}", f"did you mean gz.msgs.{near}?")
 
 
-@rule(
-    "MB889",
-    "bridge-of-second-model",
-    WARNING,
-    formats=(BRIDGE,),
-    options={"robots": ("robot1", "robot2")},
-)
-@of_robots
+@robots_rule("MB889", "bridge-of-second-model", WARNING, BRIDGE)
 def second_model(file: NamedFile) -> Iterator[Finding]:
     """Each other model than the first, at its first entry."""
     first: dict[str, yaml.Node] = {}
@@ -117,14 +108,7 @@ def second_model(file: NamedFile) -> Iterator[Finding]:
         yield remark_at(first[name], message, hint)
 
 
-@rule(
-    "MB890",
-    "bridge-not-per-robot",
-    WARNING,
-    formats=(BRIDGE,),
-    options={"robots": ("robot1", "robot2")},
-)
-@of_robots
+@robots_rule("MB890", "bridge-not-per-robot", WARNING, BRIDGE)
 def shared_service(file: NamedFile) -> Iterator[Finding]:
     """Services that are not those of the world."""
     for node in _rows(file):

@@ -17,20 +17,14 @@ from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
 from multibot_rewrite.companions.moveit.file_kind import NAMES
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
-from multibot_rewrite.producers.evidence.claims import TYPE
-from multibot_rewrite.producers.evidence.moveit import (
-    controllers_of,
-    joints_of,
-    managers,
-    names_of,
-)
-from multibot_rewrite.rules.files.given import beside, did_you_mean_at, is_in, shown
-from multibot_rewrite.rules.places import remark, remark_at
+from multibot_rewrite.producers.evidence.hardware import TYPE
+from multibot_rewrite.producers.evidence.semantics import JOINTS, controllers_of, listed, managers
+from multibot_rewrite.rules.declaration import remark, remark_at
+from multibot_rewrite.rules.files.section_facts import beside, did_you_mean_at, is_in, shown
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
@@ -50,7 +44,7 @@ def undeclared_controller(file: NamedFile) -> Iterator[Finding]:
 def _without_body(file: NamedFile, manager: yaml.Node) -> Iterator[Finding]:
     """Listed controllers that have no parameters, which may be in another file."""
     keys = {str(key.value): key for key, _ in pairs(manager) if key.value != NAMES}
-    names = names_of(manager)
+    names = listed(manager, NAMES)
     left = keys.keys() - {it.value for it in names}
     for it in names:
         near = nearest(str(it.value), left) if it.value not in keys else ""
@@ -70,7 +64,7 @@ def _of_one(
         yield from _lacks(key, f"controller {name}", hint)
         return
     own = _own_joints(controller)
-    for joint in joints_of(body) if own else ():
+    for joint in listed(body, JOINTS) if own else ():
         if joint.value not in own:
             near = nearest(joint.value, own)
             hint = did_you_mean_at(near, own.get(near) or next(iter(own.values())))

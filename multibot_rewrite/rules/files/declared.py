@@ -14,20 +14,13 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.sections import MANAGER, PARAMETERS
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
-from multibot_rewrite.knowledge.declared import (
-    DECLARED,
-    DEMANDED,
-    READ,
-    YAML,
-    Declared,
-    stands_for,
-)
+from multibot_rewrite.knowledge.declared import DECLARED, DEMANDED, READ, YAML, Declared, stands_for
+from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.bounds import beyond
-from multibot_rewrite.rules.files.parameter_facts import facts_of_node, of_parameter, of_release
+from multibot_rewrite.rules.files.parameter_files import facts_of_node, of_parameter, of_release
 from multibot_rewrite.rules.files.plugin_names import older_nodes
 from multibot_rewrite.rules.files.plugins import RENAMED
 from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
-from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.system.parameters import Value
 
 # What every node has, or every controller and plugin; prefixes end in a dot.

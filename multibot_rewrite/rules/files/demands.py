@@ -14,15 +14,14 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import differ_in_numbers, slip_of
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.declared import DEMANDED
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.rules.files.parameter_facts import of_release
+from multibot_rewrite.rules.declaration import remark_at
+from multibot_rewrite.rules.files.parameter_files import of_release
 from multibot_rewrite.rules.files.section_facts import Section, Setting, filled, sections
-from multibot_rewrite.rules.places import remark_at
 from multibot_rewrite.system.parameters import Value
 
 # What keeps a node from coming up in each release.

@@ -9,57 +9,22 @@ from functools import cache
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.companions.kinds import PARAMS
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import PARAMS, NamedFile
 from multibot_rewrite.rules import declaration
-from multibot_rewrite.rules.description import rewriting
-from multibot_rewrite.rules.description.files import reading, shape, values
+from multibot_rewrite.rules.declaration import rules_in
+from multibot_rewrite.rules.description import names as description_names, rewriting
+from multibot_rewrite.rules.description.files import reading, values
 from multibot_rewrite.rules.description.multirobot import named_robots
-from multibot_rewrite.rules.description.names import ros_names as description_names
 from multibot_rewrite.rules.files import (
-    bridges,
-    chains,
-    controllers,
-    costmaps,
     declared,
     demands,
-    joystick,
-    keys,
-    limits,
-    missing,
-    moveit,
     names,
     plugin_names,
     rcl_rules,
-    releases,
-    robot_words,
     ros_names,
-    rviz,
     same_for_all,
-    sections,
-    wheels,
 )
 from multibot_rewrite.rules.system import clocks
-
-THEMES = (
-    names,
-    ros_names,
-    robot_words,
-    keys,
-    controllers,
-    releases,
-    bridges,
-    rviz,
-    moveit,
-    sections,
-    same_for_all,
-    wheels,
-    demands,
-    costmaps,
-    chains,
-    joystick,
-    limits,
-)
 
 
 def _each(
@@ -80,15 +45,17 @@ SHARED: tuple[Rule, ...] = (
     description_names.invalid_ros_name._replace(check=ros_names.invalid_names),
     description_names.leading_slash._replace(check=ros_names.slashes),
     rewriting.unclaimed_mention._replace(check=names.unknown_uses),
-    shape.misspelt._replace(
+    values.misspelt._replace(
         check=_each(
             declared.unknown_parameters, rcl_rules.misspelt_marks, plugin_names.renamed_nodes
         )
     ),
-    shape.not_read._replace(
+    values.not_read._replace(
         check=_each(declared.not_read, declared.below_unknown_names, declared.in_the_manager)
     ),
-    shape.missing._replace(check=_each(plugin_names.without_plugin, missing.missing_parameters)),
+    values.missing._replace(
+        check=_each(plugin_names.without_plugin, plugin_names.missing_parameters)
+    ),
     values.unreadable_value._replace(
         check=_each(declared.wrong_types, rcl_rules.rejected_values, rcl_rules.outside_of_marks),
         level=WARNING,
@@ -118,8 +85,7 @@ def codes() -> frozenset[str]:
 
 
 def _every() -> Iterator[Rule]:
-    yield from (it for theme in THEMES for it in vars(theme).values() if isinstance(it, Rule))
-    yield from SHARED
+    yield from (*rules_in("files"), *SHARED)
 
 
 def judged(file: NamedFile, rules: Iterable[Rule]) -> Iterator[Finding]:

@@ -12,8 +12,16 @@ from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.nearest import HINTED, MISTYPED, did_you_mean, meant_name
 from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.companions.engine import GRAPH
-from multibot_rewrite.companions.kinds import BRIDGE, EVERY, LUA, MOVEIT, PARAMS, RVIZ, TREE
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import (
+    BRIDGE,
+    EVERY,
+    LUA,
+    MOVEIT,
+    PARAMS,
+    RVIZ,
+    TREE,
+    NamedFile,
+)
 from multibot_rewrite.companions.names.by_kind import (
     frames_differ,
     is_component,
@@ -21,15 +29,13 @@ from multibot_rewrite.companions.names.by_kind import (
     is_shared_frame,
 )
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
-from multibot_rewrite.companions.params.guessed import in_doubt, is_guessed, stays
-from multibot_rewrite.companions.params.values import renamed
+from multibot_rewrite.companions.params.values import in_doubt, is_guessed, renamed
 from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.description.checks.mentions import mentioned
 from multibot_rewrite.knowledge.parameters import built_in_nodes
-from multibot_rewrite.rules.declaration import of_robots
+from multibot_rewrite.rules.declaration import of_robots, remark, robots_rule
 from multibot_rewrite.rules.files.declared import unknown_parameters
-from multibot_rewrite.rules.places import remark
 
 _FRAMES = ("frame", "link")
 _PARTS = ("joint", "sensor", "group", "interface")
@@ -183,7 +189,7 @@ def _guessed(file: NamedFile) -> Iterator[Finding]:
     for section, names in (it for it in file.pages if is_guessed(it[0])):
         taken = [it for it in names.sites if _is_taken(file, it)]
         doubt = in_doubt(file.context, section, names)
-        left = [it for it in taken if stays(it, doubt)]
+        left = [it for it in taken if it.kind in doubt]
         guessed = [it for it in taken if not it.is_sure and it not in left]
         if guessed:
             told = f"parameters that hold names are guessed: {_keys(guessed)}"
@@ -278,10 +284,7 @@ def _is_interface(file: NamedFile, value: str) -> bool:
     return interface != "" and any(is_declared(names, kind, it) for kind in kinds for it in chain)
 
 
-@rule(
-    "MB887", "included-file", WARNING, formats=(LUA, TREE), options={"robots": ("robot1", "robot2")}
-)
-@of_robots
+@robots_rule("MB887", "included-file", WARNING, LUA, TREE)
 def included_file(file: NamedFile) -> Iterator[Finding]:
     """Each file that is included."""
     key = "behavior_trees" if file.kind == TREE else "lua"
@@ -290,14 +293,7 @@ def included_file(file: NamedFile) -> Iterator[Finding]:
         yield remark(site, message, f"if it has names, list it under {key} as well")
 
 
-@rule(
-    "MB888",
-    "lua-frame-not-plain",
-    WARNING,
-    formats=(LUA,),
-    options={"robots": ("robot1", "robot2")},
-)
-@of_robots
+@robots_rule("MB888", "lua-frame-not-plain", WARNING, LUA)
 def computed_frame(file: NamedFile) -> Iterator[Finding]:
     """Each such frame, where robots have frames of their own."""
     for site in file.computed if frames_differ(file.context) else ():

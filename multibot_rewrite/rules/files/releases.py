@@ -10,15 +10,14 @@ import yaml
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.releases import has_release, releases_with
-from multibot_rewrite.companions.kinds import PARAMS
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import PARAMS, NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
-from multibot_rewrite.companions.params.sections import ParamSection, flattened
+from multibot_rewrite.companions.params.sections import ParamSection, flattened, scalars
 from multibot_rewrite.companions.yaml_text import items, pairs
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters, Param
+from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.declared import of_other_releases
-from multibot_rewrite.rules.places import remark_at
 
 _FORWARD = "forward_command_controller/ForwardCommandController"
 _BROADCASTER = "joint_state_broadcaster"
@@ -110,7 +109,7 @@ def _deprecated_types(body: yaml.Node, known: KnownNodes | None, release: str) -
         for node in (known.nodes.values() if known else ())
         for type_, it in node.deprecated_types.items()
     }
-    for key, value in _scalars(body):
+    for key, value in scalars(body):
         words = types.get(value.value, "") if key.value.rpartition(".")[2] == "type" else ""
         if words and has_release(words, release):
             message = f"{value.value} is deprecated in {release}"
@@ -123,7 +122,7 @@ def _not_sent(body: yaml.MappingNode) -> Iterator[Finding]:
     """Interfaces that no topic holds."""
     given = {key.value: value for key, value in pairs(body)}
     mapped = {
-        getattr(it, "value", "") for _, it in _scalars(given.get("map_interface_to_joint_state"))
+        getattr(it, "value", "") for _, it in scalars(given.get("map_interface_to_joint_state"))
     }
     for item in items(given.get("interfaces")):
         name = getattr(item, "value", "")
@@ -131,11 +130,3 @@ def _not_sent(body: yaml.MappingNode) -> Iterator[Finding]:
             message = f"no node publishes {name}: joint_states has no field for it"
             hint = "use a state_interfaces_broadcaster for it"
             yield remark_at(item, message, hint)
-
-
-def _scalars(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.ScalarNode]]:
-    for key, value in pairs(node):
-        if isinstance(value, yaml.ScalarNode):
-            yield key, value
-        else:
-            yield from _scalars(value)

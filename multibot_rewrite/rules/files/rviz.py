@@ -7,12 +7,10 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.companions.kinds import RVIZ
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import RVIZ, NamedFile
 from multibot_rewrite.companions.rviz.read_config import rviz_data, text_of, value
 from multibot_rewrite.companions.yaml_text import pairs
-from multibot_rewrite.rules.declaration import of_robots
-from multibot_rewrite.rules.places import remark_at
+from multibot_rewrite.rules.declaration import remark_at, robots_rule
 
 
 @rule("MB872", "rviz-ros1-property", WARNING, formats=(RVIZ,))
@@ -40,14 +38,7 @@ def volatile_description(file: NamedFile) -> Iterator[Finding]:
         yield remark_at(found[0].node, message, hint)
 
 
-@rule(
-    "MB891",
-    "rviz-unknown-display",
-    WARNING,
-    formats=(RVIZ,),
-    options={"robots": ("robot1", "robot2")},
-)
-@of_robots
+@robots_rule("MB891", "rviz-unknown-display", WARNING, RVIZ)
 def unknown_display(file: NamedFile) -> Iterator[Finding]:
     """Each such display."""
     for one in file.shown:

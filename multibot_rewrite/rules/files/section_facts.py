@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a file sets for each node and plugin, beside what declares it: of a parameter file, and of a
-file of MoveIt as the parameters that it becomes."""
+"""What a file, and the parameter files of the same robot, set for each node and plugin, beside what
+declares it: of a parameter file, and of a file of MoveIt as the parameters that it becomes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import cast
 
 import yaml
@@ -13,24 +15,93 @@ from multibot_rewrite.base.bounded import ANGLES
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.companions.kinds import MOVEIT
 from multibot_rewrite.companions.moveit.file_kind import find_kind, parameter_above
 from multibot_rewrite.companions.moveit.rewrite import node_of
-from multibot_rewrite.companions.named_file import NamedFile
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile, is_beside, kind_of
 from multibot_rewrite.companions.params.rcl_parameters import value_of
-from multibot_rewrite.companions.params.sections import (
-    ANY,
-    RawSection,
-    controller_types,
-)
-from multibot_rewrite.companions.yaml_text import YamlText, names_below, pairs
-from multibot_rewrite.description.sources.packages import is_for_ros_1
+from multibot_rewrite.companions.params.sections import ANY, RawSection, controller_types, settings
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.trace import alike
 from multibot_rewrite.knowledge.declared import EVERY_NODE, Declared, declared_by, stands_for
 from multibot_rewrite.knowledge.parameters import built_in_nodes
-from multibot_rewrite.knowledge.records import NodeParameters
-from multibot_rewrite.rules.files.parameter_facts import facts_of_node
+from multibot_rewrite.knowledge.records import NodeFacts, NodeParameters
+from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.rules.files.parameter_files import facts_of_node
 from multibot_rewrite.rules.files.plugins import plugins_in
+from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import Value
+from multibot_rewrite.system.records import NOWHERE, Place
+
+
+class Beside(NamedTuple):
+    """What all parameter files of a robot set for nodes, and the nodes that are known by name."""
+
+    given: tuple[Run, ...]
+    known: Mapping[str, NodeFacts]
+
+
+def beside(file: NamedFile) -> Beside:
+    """Of the robot that a file is for; of a file alone, by the parameter files in its folder."""
+    if Beside not in file.memo:
+        release = file.context.distro
+        file.memo[Beside] = Beside(_given_by(file, _in_folder(file)), load_nodes(release))
+    found: Beside = file.memo[Beside]
+    return found
+
+
+def given_in(file: NamedFile) -> tuple[Run, ...]:
+    """What is set for nodes where the file is for a certain robot, else what the file sets."""
+    if file.is_certain:
+        return beside(file).given
+    return _given_by(file, [file.document] if file.document else [])
+
+
+def is_set_beside(file: NamedFile, title: str, name: str) -> bool:
+    """Does a parameter file of the robot have it for the node of a section, or of its plugin?"""
+    node = _last(title.partition(":")[0])
+    return any(name in it.values for it in beside(file).given if _last(it.node) == node)
+
+
+def _last(name: str) -> str:
+    return name.rpartition("/")[2]
+
+
+def is_in(file: NamedFile, place: Place) -> bool:
+    """Is the place in this file?"""
+    return os.path.abspath(place.file) == os.path.abspath(file.file)
+
+
+def did_you_mean_at(near: str, place: Place) -> str:
+    """The hint: the name that is there, and its place."""
+    if place == NOWHERE:
+        return f"did you mean {near}?"
+    return f"did you mean {near} ({shown(place)})?" if near else f"see {shown(place)}"
+
+
+def shown(place: Place) -> str:
+    """A place of a file below the current folder by its path from there."""
+    return str(place._replace(file=alike(place.file, os.curdir)))
+
+
+def _given_by(file: NamedFile, documents: Iterable[YamlText]) -> tuple[Run, ...]:
+    """Nothing where a file cannot be read: that is told where it is linted itself."""
+    try:
+        return tuple(given_nodes(documents, built_in_nodes(file.context.distro)))
+    except InputError:
+        return ()
+
+
+def _in_folder(file: NamedFile) -> Iterator[YamlText]:
+    folder = os.path.dirname(os.path.abspath(file.file))
+    for name in sorted(entries(folder)):
+        path = os.path.join(folder, name)
+        data = read_file(path) if is_beside(name) else b""
+        if kind_of(data) == PARAMS:
+            yield read_yaml(data, path)
+
 
 ASKED = "asked"
 _FLOAT = "tag:yaml.org,2002:float"
@@ -73,7 +144,7 @@ def _sections(file: NamedFile) -> Iterator[Section]:
         name = it.path.rpartition("/")[2]
         if file.document is None:
             return
-        given = tuple(_given(file.document, it.body, ""))
+        given = _given(file.document, it.body)
         if name in ANY or PLACEHOLDER.search(it.path):
             yield _section(it.path, None, given, declared_by(EVERY_NODE), _by_name(given))
             continue
@@ -95,7 +166,7 @@ def _of_moveit(file: NamedFile) -> Iterator[Section]:
     node = built_in_nodes(file.context.distro).nodes[node_of(kind)]
     above = parameter_above(kind, file.document)
     root = file.document.root
-    read = tuple(_given(file.document, root, above)) if root is not None else ()
+    read = _given(file.document, root, above) if root is not None else ()
     given = tuple(it._replace(value=_tagged(it.node, it.value)) for it in read)
     facts = facts_of_node(node, "", file.file, file.roots)
     yield _section(node.name, node, given, facts, _by_name(given))
@@ -184,13 +255,9 @@ def _is_surely(node: NodeParameters, name: str, type_: str, given: Sequence[Sett
     return "/" not in type_ and (name == node.name or by_words)
 
 
-def _given(document: YamlText, body: yaml.Node, above: str) -> Iterator[Setting]:
-    for key, value in pairs(body):
-        name = f"{above}{key.value}"
-        if below := names_below(value):
-            yield from _given(document, below, f"{name}.")
-        else:
-            yield Setting(name, key, value, _value(document, value))
+def _given(document: YamlText, body: yaml.Node, above: str = "") -> tuple[Setting, ...]:
+    every = settings(body, above)
+    return tuple(Setting(name, key, node, _value(document, node)) for name, key, node in every)
 
 
 def _tagged(node: yaml.Node, value: Value | None) -> Value | None:

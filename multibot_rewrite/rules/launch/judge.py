@@ -11,12 +11,8 @@ from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.models import Model
 from multibot_rewrite.producers.launch.running import DESCRIPTION
-from multibot_rewrite.rules.launch import ending, models, rows, started
-from multibot_rewrite.rules.launch import words as rules_of_words
-from multibot_rewrite.rules.system.interfaces import (
-    interface_claimed_twice,
-    interface_not_exported,
-)
+from multibot_rewrite.rules.launch import models, started, words as rules_of_words
+from multibot_rewrite.rules.system.interfaces import interface_claimed_twice, interface_not_exported
 from multibot_rewrite.rules.system.planned_nodes import missing_node
 from multibot_rewrite.rules.system.tf_pieces import is_sure, tf_tree_in_pieces
 from multibot_rewrite.system import words
@@ -25,7 +21,7 @@ from multibot_rewrite.system.records import System
 
 CLAIMS = (interface_not_exported.code, interface_claimed_twice.code)
 _LEFT = "no node of its stack or file is started here: name the launch file that does, too"
-MODULES = (ending, models, rows, started, rules_of_words)
+MODULES = (models, started, rules_of_words)
 
 
 def _rules() -> Iterator[Rule]:

@@ -1,37 +1,38 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is wrong with the models that a launch spawns: two of one name, at one place, on one topic,
-and in a world that does not run what they need.
+and in a world that does not run what they need; and with the rows of the bridges beside them.
 
 Source: ros_gz_sim jazzy create.cpp (``-name``, ``-x`` ... and ``-allow_renaming``); gz-sim8
 src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is not created);
 src/ServerConfig.cc and src/SimulationRunner.cc (a world without any plugin gets those of
-server.config: physics, user commands, scene broadcaster); src/systems/sensors and the systems of other
-sensors.
+server.config: physics, user commands, scene broadcaster); src/systems/sensors and the systems of
+other sensors.
 """
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import combinations
 from math import dist
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.knowledge.worlds import DEFAULTS
-from multibot_rewrite.producers.launch.launched import (
-    InSimulator,
-    Launched,
-    World,
-    worlds,
-)
-from multibot_rewrite.rules.declaration import launch_rule
+from multibot_rewrite.producers.launch.bridges import bridged_by
+from multibot_rewrite.producers.launch.launched import InSimulator, Launched, World, worlds
+from multibot_rewrite.producers.launch.running import bound_of
+from multibot_rewrite.rules.declaration import at, launch_rule
 from multibot_rewrite.rules.facts.simulators import needed_systems
-from multibot_rewrite.rules.places import at
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE, BridgedTopic
+from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 
 _POSE = ("-x", "-y", "-z")
 # Two that stand nearer than this are in each other, whatever they are.
@@ -101,7 +102,6 @@ def _names(model: InSimulator) -> Iterator[str]:
 @launch_rule("MG704", "command-not-bridged")
 def not_bridged(launched: Launched) -> Iterator[Finding]:
     """What only one of the models gets may be meant; that its like gets nothing is not."""
-    from multibot_rewrite.rules.launch.rows import into_gazebo
 
     told = into_gazebo(launched)
     models = launched.simulated
@@ -117,7 +117,6 @@ def not_bridged(launched: Launched) -> Iterator[Finding]:
 @launch_rule("MG707", "data-not-bridged")
 def not_brought(launched: Launched) -> Iterator[Finding]:
     """By the topics without the names of the models: those of two descriptions mean other things."""
-    from multibot_rewrite.rules.launch.rows import out_of_gazebo
 
     told = out_of_gazebo(launched)
     models = launched.simulated
@@ -174,3 +173,66 @@ def _systems(world: World) -> set[str]:
 
 def _system(library: str) -> str:
     return library_key(library).removeprefix("gz-sim-").removesuffix("-system")
+
+
+class _Row(NamedTuple):
+    """A row of a bridge: the name in ROS and in Gazebo, whether it goes to Gazebo, who has it."""
+
+    ros: str
+    gz: str
+    inwards: bool
+    node: Run
+
+
+def _rows(launched: Launched) -> Iterator[_Row]:
+    for it in launched.nodes:
+        for end, inside in bridged_by(it):
+            # A node with a name that ROS refuses does not start.
+            with suppress(UsageError):
+                if end.kind == TOPIC:
+                    bound = bound_of(it.name, it.namespace, it.rules)
+                    full = resolve_bound(end.name, end.kind, bound)
+                    yield _Row(full, inside, end.role == SUBSCRIBES, it)
+
+
+def into_gazebo(launched: Launched) -> set[str]:
+    """The topics in Gazebo that bridges pass something on to."""
+    return {it.gz for it in _rows(launched) if it.inwards}
+
+
+def out_of_gazebo(launched: Launched) -> set[str]:
+    """The topics in Gazebo that bridges bring to ROS."""
+    return {it.gz for it in _rows(launched) if not it.inwards}
+
+
+@launch_rule("MG705", "bridge-to-another-robot")
+def to_another_robot(launched: Launched) -> Iterator[Finding]:
+    """By the names of the models, where they are in the names of their topics."""
+    models = launched.simulated
+    called = {it.name: {it.name, *it.words.get("-topic", "").split("/")} - {""} for it in models}
+    sent = {(f"/{one.gz.lstrip('/')}", it.name) for it in models for one in it.topics}
+    of_several = Counter(topic for topic, _ in sent)
+    # A topic that models share, such as one tf for all, is of none of them.
+    owners = {topic: name for topic, name in sent if of_several[topic] == 1}
+    names = {it.name for it in models if it.topics}
+    rows = [it for it in _rows(launched) if owners.get(it.gz) and len(names) > 1]
+    spaces = {word for it in launched.nodes for word in it.namespace.split("/") if word}
+    usual = {_plain_row(it, owners[it.gz]) for it in rows if owners[it.gz] in it.ros.split("/")}
+    for it in rows:
+        own, words = owners[it.gz], set(it.ros.split("/"))
+        # A word that both sides have says no other robot, whatever else is called so.
+        others = sorted(names & words - {*it.gz.split("/"), *called[own]})
+        if others and words.isdisjoint(called[own]):
+            message = f"{it.ros} of {others[0]} is bridged to gz topic {it.gz} of {own}"
+        elif not words & {own, *spaces} and _plain_row(it, own) in usual:
+            message = f"{it.ros} is bridged to gz topic {it.gz} of {own}, and has no robot's name"
+        else:
+            continue
+        hint = f"write the name of {own} on both sides"
+        yield at(to_another_robot, it.node.place, message, hint, names=(it.ros,))
+
+
+def _plain_row(row: _Row, own: str) -> tuple[str, str]:
+    """The row without the robot's name."""
+    ros, gz = ("/".join(w for w in it.split("/") if w != own) for it in (row.ros, row.gz))
+    return ros, gz

@@ -1,32 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What of a launch file does not start, or waits for ever: the launch itself, controllers, models.
+"""What of a launch file does not start, ends as soon as it starts, or waits for ever: the launch
+itself, programs, controllers, models.
 
-Source: launch jazzy launch_service.py (an exception ends it); ros2_control spawner.py (it waits for the
-services of its manager; what is loaded already is not loaded again) and controller_manager.cpp (a
-controller without a type is not loaded); nav2_lifecycle_manager jazzy (``autostart``, ``node_names``);
-joint_state_publisher humble to jazzy, joint_state_publisher.py (source_list).
+Source: launch jazzy launch_service.py (an exception ends it); ros2_control spawner.py (it waits for
+the services of its manager; what is loaded already is not loaded again) and controller_manager.cpp
+(a controller without a type is not loaded); nav2_lifecycle_manager jazzy (``autostart``,
+``node_names``); joint_state_publisher humble to jazzy, joint_state_publisher.py (source_list);
+robot_state_publisher jazzy robot_state_publisher.cpp (its robot_description is XML); rmw
+validate_node_name.c; ros_gz_sim jazzy create.cpp (gflags: a double); ros_gz_bridge jazzy
+parameter_bridge.cpp.
 """
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator
+from itertools import pairwise
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.base.rosnames import expand, resolve_bound
+from multibot_rewrite.base.rosnames import check_node_name, expand, resolve_bound
+from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
-from multibot_rewrite.producers.evidence.claims import COMMAND, claims_of
+from multibot_rewrite.producers.evidence.hardware import COMMAND, claims_of
 from multibot_rewrite.producers.launch import spawner_managers
+from multibot_rewrite.producers.launch.bridges import refused_rows
 from multibot_rewrite.producers.launch.launched import Launched
+from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_of
-from multibot_rewrite.rules.declaration import LAUNCH, launch_rule
-from multibot_rewrite.rules.places import at
+from multibot_rewrite.rules.declaration import LAUNCH, at, launch_rule
 from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVICE, SUBSCRIBES
 
-START_MANAGER = (
+_START_MANAGER = (
     "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
     "that starts it beside this one"
 )
@@ -56,7 +64,8 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
 
 def _no_manager(launched: Launched) -> Iterator[Finding]:
     """An error where another manager is there, or all is known: the nodes and the description. A launch
-    file without a description may be one of several."""
+    file without a description may be one of several. Its ``names`` are the manager that is missing, and
+    the one that may be meant."""
     there = [it.full_name for it in launched.nodes if _is(it, MANAGER)]
     described = bool(launched.models.found) and not launched.models.lost
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
@@ -66,9 +75,10 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
         names = ", ".join(dict.fromkeys(it.name for it in mine))
         message = f"nothing starts {manager}: {names} will not be loaded"
         if near := nearest(manager, there) or next(iter(there), ""):
-            yield at(no_manager, mine[0].place, message, f"did you mean {near}?")
+            hint = f"did you mean {near}?"
+            yield at(no_manager, mine[0].place, message, hint, names=(manager, near))
         elif described and _is_known(launched):
-            yield at(no_manager, mine[0].place, message, START_MANAGER)
+            yield at(no_manager, mine[0].place, message, _START_MANAGER, names=(manager,))
         else:
             hint = _ELSEWHERE if _is_known(launched) else _UNSURE
             yield at(no_manager, mine[0].place, message, hint, level=INCONCLUSIVE)
@@ -254,3 +264,45 @@ def of_itself(launched: Launched) -> Iterator[Finding]:
             message = f"{node.full_name} reads {topic}, which it sends itself"
             hint = "name another topic in source_list, or leave it out"
             yield at(of_itself, node.place, message, hint, names=(topic,))
+
+
+_NUMBERS = frozenset({"-x", "-y", "-z", "-R", "-P", "-Y"})
+
+
+@launch_rule("MG729", "program-ends-at-once")
+def ends(launched: Launched) -> Iterator[Finding]:
+    """Where all that a node gets is known."""
+    unsure = {(it.place.file, it.place.line) for it in launched.graph.notes}
+    for it in launched.graph.nodes:
+        fault = check_node_name(it.name) if it.name else None
+        if fault:
+            message = (
+                f"node {it.name!r} of {it.package} has a name that ROS refuses: {fault.reason}"
+            )
+            yield at(ends, it.place, message, "write it with letters, digits and underscores")
+        if f"{it.package}/{it.executable}" in programs().spawners:
+            for flag, word in pairwise(it.arguments):
+                if flag in _NUMBERS and number(word) is None:
+                    message = f"{it.executable}: {flag} {word} is no number"
+                    yield at(ends, it.place, message, "write a number")
+    for node in launched.nodes:
+        for word in refused_rows(node):
+            message = f"{node.full_name}: {word!r} is no row of a bridge"
+            yield at(ends, node.place, message, "write TOPIC@ROS_TYPE[GZ_TYPE, or ] to Gazebo")
+        if (node.place.file, node.place.line) not in unsure:
+            yield from _described(node)
+
+
+def _described(it: Run) -> Iterator[Finding]:
+    """An empty text is the output of a program that is not run here (producers/launch/commands.py)."""
+    is_one = it.fact.known == STATE_PUBLISHER
+    if not is_one or it.arguments or it.is_untold("robot_description"):
+        return
+    given = it.value("robot_description")
+    text = given.strip() if isinstance(given, str) else given
+    if text is None:
+        message = f"{it.full_name} gets no robot_description, and ends"
+        yield at(ends, it.place, message, "give it robot_description, the text of the URDF")
+    elif isinstance(text, str) and text and "<" not in text:
+        message = f"{it.full_name}: robot_description is {text[:60]!r}, and no XML"
+        yield at(ends, it.place, message, "give it the text of the file, not its path")

@@ -21,8 +21,7 @@ from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.producers.launch.static_transforms import STATIC
-from multibot_rewrite.rules.declaration import LAUNCH, launch_rule
-from multibot_rewrite.rules.places import at
+from multibot_rewrite.rules.declaration import LAUNCH, at, launch_rule
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table_checks import RULE_WITHOUT_NAME
 

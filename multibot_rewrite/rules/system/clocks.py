@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of time: simulated time without a clock, two clocks, clocks mixed in one robot."""
+"""Dangers of time: simulated time without a clock, two clocks, clocks mixed in one robot; data that
+is stamped with another time than now.
+"""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Set
 from fnmatch import translate
-from math import inf
+from math import inf, isinf
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.wording import and_then, shorten
+from multibot_rewrite.base.wording import and_then, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.system.index import Index, nodes_of, once
+from multibot_rewrite.system import words
+from multibot_rewrite.system.index import Index, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SIM_TIME, TOPIC, without_clock
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
@@ -178,3 +181,48 @@ def _real_beside_simulated(robot: str, others: list[str], simulated: str) -> Fin
     return clocks_mixed.finding(
         message, cause, level=WARNING, robot=robot, node=others[0], names=(CLOCK,)
     )
+
+
+# A costmap waits a part of a second for a transform, tf2 keeps ten seconds (buffer_core.h).
+_OLD, _AHEAD = 3.0, 1.0
+# Simulated time begins at 0: no clock of a machine is so far off.
+_YEAR = 3.0e7
+_MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry")
+
+
+@system_rule("MG417", "stamp-of-another-time", ERROR)
+def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
+    """All topics of a sender that are wrong in one way are one; what a bag plays is of then."""
+    clock = CLOCK in seen.published
+    found: dict[tuple[tuple[str, ...], str], list[str]] = defaultdict(list)
+    for topic, _, age, *_ in seen.system.heard:
+        type_, senders = sent_on(seen, topic)
+        played = any(last_word(it).startswith(words.PLAYER) for it in senders)
+        measured = type_.startswith(_MEASURED)
+        if senders and measured and not played and (what := _wrong(age, clock)):
+            found[senders, what].append(topic)
+    for (senders, what), topics in found.items():
+        yield stamp_of_another_time.finding(
+            f"the stamps on {shorten(topics)} are {what}",
+            f"see the clock of {shorten(senders)}: use_sim_time, or that of its machine",
+            level=WARNING if what == _ZERO else ERROR,
+            robot=only(robots_of(seen, senders)), node=senders[0], names=tuple(topics),
+        )  # fmt: skip
+
+
+_ZERO = "0: its sender leaves them out"
+
+
+def _wrong(age: float, clock: bool) -> str:
+    """What is wrong with a message of this age; with a simulated clock the machine's time is."""
+    if isinf(age):
+        return _ZERO
+    other = abs(age) > _YEAR
+    if clock:
+        # 0 is not known.
+        return "of the machine's time, not of /clock" if age and not other else ""
+    if other:
+        return "of another clock: simulated time, which nothing here has?"
+    if age >= _OLD:
+        return f"{age:.0f} s old"
+    return f"{-age:.0f} s in the future" if age <= -_AHEAD else ""

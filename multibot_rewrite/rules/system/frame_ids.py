@@ -11,8 +11,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, only, shorten
-from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.places import where
+from multibot_rewrite.rules.declaration import system_rule, where
 from multibot_rewrite.system.index import Index, Tree, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
 from multibot_rewrite.system.records import NOWHERE, Edge, Heard, Place

@@ -16,7 +16,7 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules import declaration
-from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.declaration import see, where
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import CLAIMS, COMMAND, EXPORTS, JOINT, Interface, Place
 from multibot_rewrite.system.tool_nodes import last_word

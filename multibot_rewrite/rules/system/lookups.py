@@ -8,13 +8,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest
-from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.places import where
+from multibot_rewrite.rules.declaration import system_rule, where
 from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
-from multibot_rewrite.rules.system.tf_pieces import (
-    is_of_description,
-    publishes_description,
-)
+from multibot_rewrite.rules.system.tf_pieces import is_of_description, publishes_description
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system.index import TF, Index
 from multibot_rewrite.system.records import NOWHERE, QUIET, SUBSCRIBES, UNKNOWN_NODES, Edge, Lookup

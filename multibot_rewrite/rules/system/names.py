@@ -11,15 +11,14 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import and_then, shorten
-from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.system.causes import NONE, Spelled, alike
 from multibot_rewrite.rules.system.instead import (
     COMMON,
     in_other_namespace,
     listed_in_vain,
     sent_instead,
 )
-from multibot_rewrite.rules.system.slips import NONE, Spelled, alike
 from multibot_rewrite.system.index import (
     TF,
     Ends,
@@ -30,15 +29,7 @@ from multibot_rewrite.system.index import (
     robots_of,
     spaces,
 )
-from multibot_rewrite.system.records import (
-    ACTION,
-    RUNS,
-    SERVES,
-    SERVICE,
-    TOPIC,
-    UNKNOWN_NODES,
-    End,
-)
+from multibot_rewrite.system.records import ACTION, RUNS, SERVES, SERVICE, TOPIC, UNKNOWN_NODES, End
 from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
 
 ABSENT = "is that robot started, and is its name right?"

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.rules.declaration import planned_rule
+from multibot_rewrite.system.environment import machines
 from multibot_rewrite.system.index import Index, once
 from multibot_rewrite.system.parameters import parameter_value
-from multibot_rewrite.system.reach import machines
 from multibot_rewrite.system.records import SIM_TIME, UNTOLD, Parameter
 
 # A planned parameter, and its value there.

@@ -10,8 +10,7 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules import declaration
-from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of, robots_of
 from multibot_rewrite.system.records import (

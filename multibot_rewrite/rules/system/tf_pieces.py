@@ -12,8 +12,7 @@ from multibot_rewrite.base.conventions import BODY_FRAMES, SENT_FRAMES, USUAL_FR
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, differ_in_numbers, nearest
 from multibot_rewrite.base.wording import only, unique
-from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.planned_frames import misnamed
 from multibot_rewrite.rules.system.tf_causes import why_disconnected
 from multibot_rewrite.rules.system.tf_trees import (

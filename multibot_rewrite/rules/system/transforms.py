@@ -10,8 +10,7 @@ from itertools import pairwise
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
-from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.places import see, where
+from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.planned_frames import with_more_names
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, robots_of

@@ -8,8 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.places import where
+from multibot_rewrite.rules.declaration import system_rule, where
 from multibot_rewrite.rules.system.instead import is_needed, meant
 from multibot_rewrite.rules.system.likes import nodes_of_each
 from multibot_rewrite.rules.system.names import server_names_miss, topic_names_miss

@@ -17,8 +17,7 @@ from lxml import etree
 from multibot_rewrite import Rewrite, RewriteRefused, rewrite, strip
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import SiteRow
-from multibot_rewrite.base.naming import POSTFIX, make_naming
-from multibot_rewrite.base.policy import Policy
+from multibot_rewrite.base.naming import POSTFIX, Policy, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.meeting import SAME_TEXT

@@ -20,7 +20,7 @@ from paths import FIXTURES
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.__main__ import main as tell_fences
 from multibot_rewrite.description.sources.access import Access, Reach
-from multibot_rewrite.description.sources.child import landlock, seccomp
+from multibot_rewrite.description.sources.child import fences, seccomp
 from multibot_rewrite.description.sources.child.frames import (
     AUDIT,
     FENCES,
@@ -243,7 +243,7 @@ def test_a_hostile_file_gets_nothing(
 
 
 def have(fence: str) -> bool:
-    return {LANDLOCK: landlock.version() > 0, SECCOMP: os.uname().machine in seccomp.MACHINES}.get(
+    return {LANDLOCK: fences.version() > 0, SECCOMP: os.uname().machine in seccomp.MACHINES}.get(
         fence, True
     )
 

@@ -12,7 +12,7 @@ import pytest
 
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced, expand_whole
-from multibot_rewrite.description.sources.pieces import Piece
+from multibot_rewrite.description.sources.trace import Piece
 from multibot_rewrite.description.steps.document import read_document
 
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'

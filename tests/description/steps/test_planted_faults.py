@@ -22,8 +22,7 @@ from description_calls import (
     fill,
     make_naming,
 )
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from paths import ROBOTS
 from planted_faults import TOKENS, wrong_plans, wrong_texts
 from proof_faults import SOURCES

@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 import pytest
 from proof_faults import ARM, SOURCES, Fault, read_faults
-from wrong_plans import PLANS
-from wrong_plans import Fault as Step
+from wrong_plans import PLANS, Fault as Step
 from wrong_readings import READINGS
 
 from multibot_rewrite import ProofError, rewrite

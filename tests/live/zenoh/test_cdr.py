@@ -6,8 +6,7 @@ from __future__ import annotations
 import struct
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from zenoh_robots import tf_message
 
 from multibot_rewrite.producers.ros.assemble import numbers_of

@@ -9,8 +9,7 @@ from __future__ import annotations
 from math import inf
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from multibot_rewrite.producers.zenoh.tokens import endpoints, nodes, read_qos, read_token, ros_type
 from multibot_rewrite.system.records import End, Node, Qos

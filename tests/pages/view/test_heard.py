@@ -14,8 +14,8 @@ from paths import ROBOTS
 from view_pages import page, with_places
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.pages.view.heard import LinkFrames, apart, heard_trees, moved
 from multibot_rewrite.pages.view.models import Joint
+from multibot_rewrite.pages.view.scene import LinkFrames, apart, heard_trees, moved
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import Edge
 

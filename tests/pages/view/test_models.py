@@ -18,8 +18,8 @@ from multibot_rewrite.pages.view.models import (
     Model,
     find_mesh,
     load_mesh,
+    load_urdf,
 )
-from multibot_rewrite.pages.view.urdf_model import load_urdf
 
 IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 CORNERS = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0)

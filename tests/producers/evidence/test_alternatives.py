@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 from given_parameters import run_given
 
-from multibot_rewrite.producers.evidence.alternatives import alternatives
+from multibot_rewrite.producers.evidence.nodes import alternatives
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import Place
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.knowledge.records import Claim
-from multibot_rewrite.producers.evidence.claims import claimed
+from multibot_rewrite.producers.evidence.hardware import claimed
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Place
 

@@ -12,9 +12,8 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.producers.evidence.hardware import Exported
+from multibot_rewrite.producers.evidence.hardware import Exported, control_system
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.interfaces import control_system
 from multibot_rewrite.rules.system.interfaces import claims_any
 from multibot_rewrite.rules.system.states import interface_commanded_twice
 from multibot_rewrite.spelling.records import Run

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Findings as a report. One file a format; only the one that is asked for is imported.
+"""Findings as a report. Only the module of the format that is asked for is imported.
 
-Each has ``render(findings, report)``. The text can always be encoded as UTF-8 and ends with a line
-feed, or is empty.
+Each format is a function of findings and the report. Its text can always be encoded as UTF-8 and ends
+with a line feed, or is empty.
 """
 
 from __future__ import annotations
@@ -15,19 +15,17 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.record import NamedTuple
 
-# What --format takes, and the module beside this one that renders it.
+# What --format takes, and the module beside this one that has it, as ``as_json`` for json.
 FORMATS = {
-    "text": "text",
-    "json": "json_object",
+    "text": "plain",
+    "json": "plain",
     "sarif": "sarif",
-    "github": "github",
-    "gitlab": "gitlab",
+    "github": "plain",
+    "gitlab": "plain",
     "junit": "junit",
-    "markdown": "markdown",
-    "statistics": "statistics",
+    "markdown": "plain",
+    "statistics": "plain",
 }
-
-
 NO_COVERAGE: Mapping[str, object] = MappingProxyType({})
 
 
@@ -47,7 +45,7 @@ def rendered(
     name: str, findings: Sequence[Finding], report: Report, *, colour: bool = False
 ) -> str:
     """The report in the format ``name``; ``colour`` is for the text on a terminal."""
-    render = import_module(f"{__name__}.{FORMATS[name]}").render
+    render = getattr(import_module(f"{__name__}.{FORMATS[name]}"), f"as_{name}")
     options = {"colour": colour} if name == "text" else {}
     text: str = render(findings, report, **options)
     return text

@@ -10,14 +10,19 @@ from lxml import etree
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.formats import Report
-from multibot_rewrite.base.findings.formats.shared import by_file, file_of, path_below, said
-from multibot_rewrite.base.findings.formats.text import lines
+from multibot_rewrite.base.findings.formats.plain import (
+    by_file,
+    file_of,
+    lines_of,
+    path_below,
+    said,
+)
 from multibot_rewrite.base.wording import one_line
 
 _PASSED = "no findings"
 
 
-def render(findings: Sequence[Finding], report: Report) -> str:
+def as_junit(findings: Sequence[Finding], report: Report) -> str:
     """Errors and warnings are failures, what is inconclusive is skipped; a note passes, and so does a
     file without findings."""
     suites = etree.Element("testsuites", {"name": report.tool, **_totals(findings, report)})
@@ -66,7 +71,7 @@ def _names(findings: Sequence[Finding]) -> list[str]:
 
 
 def _tell(case: etree._Element, finding: Finding) -> None:
-    whole = "\n".join(lines(finding))
+    whole = "\n".join(lines_of(finding))
     if finding.level == NOTE:
         etree.SubElement(case, "system-out").text = whole
         return

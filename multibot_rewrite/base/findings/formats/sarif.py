@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
-from multibot_rewrite.base.bounded import read_bytes
+from multibot_rewrite.base.bounded import bytes_if_read
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding, locate
 from multibot_rewrite.base.findings.formats import Report
-from multibot_rewrite.base.findings.formats.shared import (
+from multibot_rewrite.base.findings.formats.plain import (
     calls,
     circumstances,
     file_of,
@@ -34,7 +34,7 @@ _ROOT = "%SRCROOT%"
 _ROOT_SAID = "The folder in which the command was started: the root of the repository."
 
 
-def render(findings: Sequence[Finding], report: Report) -> str:
+def as_sarif(findings: Sequence[Finding], report: Report) -> str:
     """One run with every rule, the files that were linted, and a result for each finding."""
     numbers = {code: number for number, code in enumerate(report.rules)}
     driver = {
@@ -128,7 +128,7 @@ def _escaped(text: str) -> str:
 
 def _fixes(finding: Finding) -> list[Json]:
     """The fix, unless the file is not the one that was linted any more."""
-    source = _source(finding.file) if finding.edits else b""
+    source = bytes_if_read(finding.file) if finding.edits else b""
     if not source or any(edit.end > len(source) for edit in finding.edits):
         return []
     replacements = [_replacement(source, edit) for edit in finding.edits]
@@ -145,10 +145,3 @@ def _replacement(source: bytes, edit: Edit) -> Json:
         "deletedRegion": dict(zip(names, (*start, *end), strict=True)),
         "insertedContent": {"text": text},
     }
-
-
-def _source(path: str) -> bytes:
-    try:
-        return read_bytes(path)
-    except OSError:
-        return b""

@@ -13,12 +13,12 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow, VocabularyError
 from multibot_rewrite.base.naming import SEPARATORS
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.base.releases import RELEASES as KNOWN
-from multibot_rewrite.base.releases import is_release_words, share_release
-from multibot_rewrite.description.rewriters.vocabulary.values import VALUE, is_typed
-from multibot_rewrite.description.rewriters.vocabulary.wired import ROLES as WIRES
-from multibot_rewrite.description.rewriters.vocabulary.wired import (
+from multibot_rewrite.base.releases import RELEASES as KNOWN, is_release_words, share_release
+from multibot_rewrite.description.rewriters.vocabulary.values import (
+    ROLES as WIRES,
+    VALUE,
     WiredTopic,
+    is_typed,
     role_and_type,
     wired_topics,
 )

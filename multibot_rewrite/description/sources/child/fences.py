@@ -1,18 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All fences around a process, put up once what it needs is loaded."""
+"""All fences around a process, put up once what it needs is loaded. With Landlock the kernel
+refuses this process every file but those that are named, every TCP port, and signals to others.
+
+Without rules nothing of what the set handles is left. Source: Linux, include/uapi/linux/landlock.h
+and Documentation/userspace-api/landlock.rst.
+"""
 
 from __future__ import annotations
 
+import ctypes
 import os
 import resource
 import signal
+import stat
+import struct
 import sys
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
 from typing import NoReturn
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.sources.child import landlock, seccomp
+from multibot_rewrite.description.sources.child import seccomp
 from multibot_rewrite.description.sources.child.frames import (
     AUDIT,
     FENCES,
@@ -20,7 +28,61 @@ from multibot_rewrite.description.sources.child.frames import (
     LIMITS,
     SECCOMP,
 )
-from multibot_rewrite.description.sources.child.system import undumpable
+from multibot_rewrite.description.sources.child.system import SYSTEM, no_new_privileges, undumpable
+
+# The same numbers on every architecture (since Linux 5.13).
+CREATE_RULESET, _ADD_RULE, RESTRICT_SELF = 444, 445, 446
+_ASK_VERSION, _BENEATH = 1, 1
+# Bits of rights to files by the version of the interface that first has them all.
+_FILES = {1: 0x1FFF, 2: 0x3FFF, 3: 0x7FFF, 5: 0xFFFF}
+# Read a file, list a folder; write a file, change its length, remove, make and move files and folders.
+_READ, _WRITE = 0b1100, 0b110000110111110
+# What of it is said of a file.
+_OF_FILE = 0b100000000000110
+# Bind and connect of TCP; abstract sockets and signals of other processes.
+_PORTS, _PORTS_SINCE = 0b11, 4
+_SCOPES, _SCOPES_SINCE = 0b11, 6
+
+
+def version() -> int:
+    """The version of the kernel's interface, 0 where it has none."""
+    found = SYSTEM.syscall(CREATE_RULESET, None, ctypes.c_size_t(0), _ASK_VERSION) if SYSTEM else 0
+    return max(0, int(found))
+
+
+def enclose(readable: Iterable[str] = (), writable: Iterable[str] = ()) -> bool:
+    """Take all but what is below these paths from this process, and from what it starts; False where
+    that is not possible. What is writable can be read as well."""
+    known = version()
+    if not known or not SYSTEM or not no_new_privileges():
+        return False
+    files = max(bits for since, bits in _FILES.items() if since <= known)
+    ports = _PORTS if known >= _PORTS_SINCE else 0
+    scopes = _SCOPES if known >= _SCOPES_SINCE else 0
+    size = 24 if scopes else 16 if ports else 8
+    rules = struct.pack("=QQQ", files, ports, scopes)[:size]
+    ruleset = SYSTEM.syscall(CREATE_RULESET, rules, ctypes.c_size_t(size), 0)
+    if ruleset < 0:
+        return False
+    for paths, rights in ((readable, _READ), (writable, _WRITE)):
+        for path in paths:
+            with suppress(OSError):  # what is not there needs no rule
+                _allow(ruleset, path, rights & files)
+    done = bool(SYSTEM.syscall(RESTRICT_SELF, ruleset, 0) == 0)
+    os.close(ruleset)
+    return done
+
+
+def _allow(ruleset: int, path: str, rights: int) -> None:
+    place = os.open(path, os.O_PATH | os.O_CLOEXEC)
+    try:
+        if not stat.S_ISDIR(os.fstat(place).st_mode):
+            rights &= _OF_FILE
+        assert SYSTEM is not None
+        SYSTEM.syscall(_ADD_RULE, ruleset, _BENEATH, struct.pack("=Qi", rights, place), 0)
+    finally:
+        os.close(place)
+
 
 # Beyond what the process has when it starts.
 MOST_MEMORY = 2 * 2**30
@@ -41,7 +103,7 @@ def put_up(wanted: Collection[str], seconds: float, files: Files | None = None) 
     memory = _memory()
     ways: Mapping[str, Callable[[], bool]] = {
         LIMITS: lambda: limit(seconds, memory, files is not None),
-        LANDLOCK: lambda: landlock.enclose(*(files or ())),
+        LANDLOCK: lambda: enclose(*(files or ())),
         SECCOMP: lambda: seccomp.enclose(files is not None),
         AUDIT: refuse_all,
     }

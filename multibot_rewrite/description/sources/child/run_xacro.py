@@ -19,8 +19,7 @@ from xml.dom import UserDataHandler
 from xml.parsers.expat import ExpatError, errors
 
 from multibot_rewrite.base.record import NamedTuple
-from multibot_rewrite.description.sources.child.asking import Ask, connect
-from multibot_rewrite.description.sources.child.frames import MOST_TEXT, NUMBER
+from multibot_rewrite.description.sources.child.frames import MOST_TEXT, NUMBER, Ask, connect
 from multibot_rewrite.description.sources.child.pieces import note, numbers, tracking
 
 # What xacro's functions call the element that they work on.

@@ -19,7 +19,6 @@ from contextlib import suppress
 from typing import Any, BinaryIO
 
 from multibot_rewrite.description.sources.child import fences, run_xacro
-from multibot_rewrite.description.sources.child.asking import Ask, asking
 from multibot_rewrite.description.sources.child.frames import (
     CALLS,
     COMMAND,
@@ -32,6 +31,8 @@ from multibot_rewrite.description.sources.child.frames import (
     REQUEST,
     START,
     TEXT,
+    Ask,
+    asking,
     framed,
     received,
 )

@@ -1,13 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
 """MB1: what a file is, how it is encoded, the shape of its XML, and the values in it."""
-
-# The files of its rules, loaded where they are asked.
-THEMES = (
-    ".reading",
-    ".shape",
-    ".values",
-    ".versions",
-    ".materials",
-    ".text",
-    ".libraries",
-)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that cannot be read, or are not a robot description as they are."""
+"""Files that cannot be read, or are not a robot description as they are; the XML declaration, byte
+order mark and namespaces.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +9,15 @@ from collections.abc import Iterator
 from itertools import islice
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import URDF, declare, rule
+from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO, declare, rule
+from multibot_rewrite.base.lazy import ATTRIBUTES, lazy_compile
+from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.companions.kinds import EVERY
-from multibot_rewrite.description.checks.audit import leftover_xacro, worlds
+from multibot_rewrite.companions.named_file import EVERY
+from multibot_rewrite.description.checks.audit import leftover_xacro, loosely_written, worlds
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import already_rewritten
+from multibot_rewrite.rules.declaration import OF_TWO
 from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet
 from multibot_rewrite.rules.subject import Subject
 
@@ -34,7 +39,7 @@ def leftover(subject: Subject) -> Iterator[Problem]:
     return leftover_xacro(subject.inventory)
 
 
-@rule("MB106", "already-rewritten", WARNING, options={"robots": ("robot1", "robot2")})
+@rule("MB106", "already-rewritten", WARNING, options=OF_TWO)
 def already(subject: Subject) -> Iterator[Problem]:
     """One finding per file, for the first robot whose name is in it."""
     # What has a robot's name by an argument has it by its author.
@@ -44,7 +49,7 @@ def already(subject: Subject) -> Iterator[Problem]:
         yield it._replace(hint="lint the source it was made from")
 
 
-@rule("MB109", "sdf-world", ERROR, options={"robots": ("robot1", "robot2")})
+@rule("MB109", "sdf-world", ERROR, options=OF_TWO)
 def sdf_world(subject: Subject) -> Iterator[Problem]:
     """Every world of the file; one that is only a world has no robots."""
     return worlds(subject.inventory) if subject.settings.robots else iter(())
@@ -70,3 +75,69 @@ def argument_not_read(subject: Subject) -> Iterator[Problem]:
         lacking = others.lacks(it for it in lacking if did_you_mean_one_of(it, known.names))
     if known and lacking:
         yield from unread_arguments(subject.document.root, lacking, known.names)
+
+
+BOM = b"\xef\xbb\xbf"
+# Of nearly all files, which spares them the two expressions below.
+_ENCODINGS = (b"", b" ", b' encoding="utf-8"', b' encoding="UTF-8"')
+_USUAL = tuple(b'<?xml version="1.0"%b?>' % it for it in _ENCODINGS)
+_DECLARED = lazy_compile(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
+_ENCODED = lazy_compile(rb"<\?xml\s[^<>]*?\sencoding\s*=\s*[\"']([^\"'<]*)[\"']")
+_NAMESPACE = lazy_compile(rb"(?<!\s)\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
+_ROOT = lazy_compile(rb"<robot\b" + ATTRIBUTES + rb">")
+
+
+@rule("MB140", "xml-declaration", WARNING)
+def xml_declaration(subject: Subject) -> Iterator[Problem]:
+    """With a fix: a file of another encoding that was read at all is plain ASCII."""
+    source = subject.document.source
+    if subject.origins or b"<?xml" not in source[:8]:
+        return
+    start = source.index(b"<?xml")
+    if source.startswith(_USUAL, start):
+        return
+    for pattern, right, allowed in (
+        (_DECLARED, b"1.0", (b"1.0",)),
+        (_ENCODED, b"UTF-8", (b"utf-8", b"utf8", b"us-ascii", b"ascii")),
+    ):
+        found = pattern.match(source, start)
+        if found and found[1].lower() not in allowed:
+            value = found[1].decode("utf-8", "replace")
+            edit = Edit(found.start(1), found.end(1), right, None)
+            message = f"the XML declaration says {value!r}"
+            yield Problem(subject.document.root, message, None, f"write {right.decode()}", (edit,))
+
+
+@rule("MB141", "byte-order-mark", NOTE)
+def byte_order_mark(subject: Subject) -> Iterator[Problem]:
+    """With a fix."""
+    if subject.document.source.startswith(BOM):
+        edit = Edit(0, len(BOM), b"", None)
+        root = subject.document.root
+        yield Problem(root, "the file starts with a byte order mark", None, "", (edit,))
+
+
+@rule("MB142", "unused-namespace", NOTE)
+def unused_namespace(subject: Subject) -> Iterator[Problem]:
+    """Prefixes of the root that are written nowhere else in the file."""
+    root, source = subject.document.root, subject.document.source
+    if not root.nsmap or subject.origins:
+        return
+    start = subject.document.starts[0]
+    tag = _ROOT.match(source, start)
+    for found in _NAMESPACE.finditer(source, start, tag.end() if tag else start):
+        prefix = found[1] + b":"
+        # What is left of xacro in a plain URDF is reported by MB105, its prefix as well.
+        left = b"/xacro" in found[0] and (b"${" in source or b"$(" in source)
+        if prefix not in source and not left:
+            edit = Edit(found.start(), found.end(), b"", None)
+            message = f"nothing in the file uses the prefix {found[1].decode()!r}"
+            yield Problem(root, message, f"xmlns:{found[1].decode()}", "", (edit,))
+
+
+@rule("MB146", "loose-xml", WARNING, formats=(URDF, SRDF, XACRO))
+def loose_xml(subject: Subject) -> Iterator[Problem]:
+    """As the rewrite says it; xacro itself cannot read what is wrong here."""
+    found = () if subject.origins else loosely_written(subject.document)
+    level = ERROR if subject.format == XACRO else ""
+    yield from (it._replace(level=level) for it in found)

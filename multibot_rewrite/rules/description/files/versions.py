@@ -10,17 +10,18 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.description.checks.poses import quaternion
+from multibot_rewrite.description.checks.poses import length_of, quaternion
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.checks.rotation import length_of
-from multibot_rewrite.rules.convert.capsules import capsule_edits, capsules
-from multibot_rewrite.rules.convert.spans import Spanned, text_of
-from multibot_rewrite.rules.convert.versions import (
+from multibot_rewrite.rules.convert import (
+    Spanned,
     as_rpy,
+    capsule_edits,
+    capsules,
     lowered,
     one_rotation,
     raised,
     rotated_origins,
+    text_of,
 )
 from multibot_rewrite.rules.facts.faults import faults, urdf_faults
 from multibot_rewrite.rules.facts.memo import memoized

@@ -11,10 +11,11 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import URDF, Rule, declare
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.multirobot.shared import APART, AS_WRITTEN, TWO
+from multibot_rewrite.rules.declaration import TWO
+from multibot_rewrite.rules.description.multirobot.topics import APART, AS_WRITTEN
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
-from multibot_rewrite.rules.system import commands, names, nodes, sharing, transforms
+from multibot_rewrite.rules.system import commands, names, sharing, states, transforms
 from multibot_rewrite.spelling import way_checks
 
 ODOMETRY_APART = make_naming("tf-per-robot", shared_topics=[*SHARED_TOPICS, "tf_static"])
@@ -63,7 +64,7 @@ def _of_descriptions(code: str, name: str, naming: Naming) -> Rule:
 
 
 shared_topic = _left(sharing.topic_of_several_robots)
-shared_node = _left(nodes.nodes_of_one_name)
+shared_node = _left(states.nodes_of_one_name)
 shared_frame = _left(transforms.robots_frames_collide)
 shared_command = _left(commands.command_for_several_robots)
 shared_service = _left(names.service_of_two_nodes)

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
 from multibot_rewrite.base.naming import Naming, make_naming, overlap
-from multibot_rewrite.companions.kinds import MOVEIT, PARAMS
+from multibot_rewrite.companions.named_file import MOVEIT, PARAMS
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.rules.description.multirobot.shared import AS_WRITTEN, ONE_TF, TWO
+from multibot_rewrite.rules.declaration import OF_TWO, TWO
+from multibot_rewrite.rules.description.multirobot.topics import AS_WRITTEN, ONE_TF
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -37,12 +38,12 @@ def _if_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
         yield from hazard(subject.inventory, rename_map(subject))
 
 
-joints_reordered = rule("MB405", "joints-reordered", WARNING, options={"robots": TWO})(
+joints_reordered = rule("MB405", "joints-reordered", WARNING, options=OF_TWO)(
     partial(_if_robots, hazards.reordered)
 )
 
 
-@rule("MB420", "name-taken", ERROR, options={"robots": TWO})
+@rule("MB420", "name-taken", ERROR, options=OF_TWO)
 def name_taken(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots rejects as MB420."""
     names = subject.settings.robots
@@ -71,16 +72,16 @@ def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
         yield from robots.meeting(subject.inventory, rename_map(subject), pairs)
 
 
-prefix_only = rule(
-    "MB422", "prefix-only", WARNING, formats=(URDF, PARAMS, MOVEIT), options={"robots": TWO}
-)(partial(_if_robots, _by_naming(hazards.prefix_only)))
+prefix_only = rule("MB422", "prefix-only", WARNING, formats=(URDF, PARAMS, MOVEIT), options=OF_TWO)(
+    partial(_if_robots, _by_naming(hazards.prefix_only))
+)
 
 off_the_shared_tf = rule(
     "MB423", "off-the-shared-tf", WARNING, options={"robots": TWO, "naming": ONE_TF}
 )(partial(_if_robots, _by_naming(hazards.moved_tf)))
 
 
-@rule("MB424", "collision-number-unstable", ERROR, options={"robots": TWO})
+@rule("MB424", "collision-number-unstable", ERROR, options=OF_TWO)
 def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     """Contacts that a rewrite rejects as MB424."""
     if not subject.settings.robots or subject.document.root.find(".//contact") is None:
@@ -117,7 +118,7 @@ fixed_to_own_frame = rule(
     options={"robots": TWO, "urdf": "r.urdf"},
 )(partial(_if_robots, hazards.outside_frames))
 
-hard_wired_name = rule("MB428", "hard-wired-name", WARNING, options={"robots": TWO})(
+hard_wired_name = rule("MB428", "hard-wired-name", WARNING, options=OF_TWO)(
     partial(_if_robots, hazards.hardwired)
 )
 

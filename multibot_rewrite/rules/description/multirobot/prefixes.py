@@ -3,26 +3,176 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.rule import XACRO, rule
+from multibot_rewrite.base.lazy import IN_EXPRESSION, lazy_compile
+from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.multirobot.xacro_scopes import (
-    PREFIX,
-    SUBSTITUTIONS,
-    Scope,
-    WrittenName,
-    is_xacro,
-    parameters,
-    prefixes,
-    scopes,
-    words_of,
-)
 from multibot_rewrite.rules.subject import Subject
+
+# What people call the parameter that is put in front of a robot's names.
+PREFIX = lazy_compile(r"(?:\w+_)?(?:prefix|namespace)|ns|robot_ns|robot_name")
+_PARAM = lazy_compile(r"\*{0,2}([A-Za-z_]\w*)(?::?=(?:'[^']*'|\"[^\"]*\"|\S*))?")
+SUBSTITUTIONS = lazy_compile(rf"\$\{{({IN_EXPRESSION})\}}|\$\(arg\s+([^)\s]+)\s*\)")
+_LITERAL = lazy_compile(r"'[^']*'|\"[^\"]*\"")
+_WORD = lazy_compile(r"[A-Za-z_]\w*")
+# Tag -> the attribute that refers to a link or joint; empty for the text.
+_REFERENCES = {
+    "parent": "link",
+    "child": "link",
+    "mimic": "joint",
+    "gazebo": "reference",
+    "left_joint": "",
+    "right_joint": "",
+    "leftJoint": "",
+    "rightJoint": "",
+    "joint_name": "",
+    "jointName": "",
+    "link_name": "",
+    "linkName": "",
+    "frame_name": "",
+    "frameName": "",
+    "body_name": "",
+    "bodyName": "",
+    "robot_base_frame": "",
+    "robotBaseFrame": "",
+    "child_frame_id": "",
+    "gz_frame_id": "",
+    "ignition_frame_id": "",
+}
+
+
+class WrittenName(NamedTuple):
+    """A name in the source: its attribute (empty for text), and the names in its substitutions."""
+
+    element: _Element
+    attribute: str
+    text: str
+    words: frozenset[str]
+
+
+class Scope(NamedTuple):
+    """The names in one macro, or outside of all of them (``macro`` is None then).
+
+    ``prefix_names`` are its prefixes and the properties made from them.
+    """
+
+    macro: _Element | None
+    prefix_names: frozenset[str]
+    declared: list[WrittenName]
+    used: list[WrittenName]
+
+
+def scopes(root: _Element) -> list[Scope]:
+    """The macros of a file, and what is outside of them; none where nothing takes a prefix."""
+    arguments = [it.get("name", "") for it in root.iter("{*}arg") if is_xacro(it)]
+    given = frozenset(prefixes(arguments))
+    macros = [it for it in root.iter("{*}macro") if is_xacro(it)]
+    own = {it: given | frozenset(prefixes(parameters(it))) for it in macros}
+    if not given and not any(own.values()):
+        return []
+    users = _properties_by_name(root)
+    prefix_names = {names: _with_properties(names, users) for names in {given, *own.values()}}
+    found: dict[_Element | None, Scope] = {}
+    for element in root.iter("link", "joint", *_REFERENCES):
+        home = next((it for it in element.iterancestors("{*}macro") if is_xacro(it)), None)
+        scope = found.get(home)
+        if scope is None:
+            names = given if home is None else own[home]
+            scope = found[home] = Scope(home, prefix_names[names], [], [])
+        _add(scope, element)
+    return list(found.values())
+
+
+def _add(scope: Scope, element: _Element) -> None:
+    tag = str(element.tag)
+    if tag in ("link", "joint"):
+        declares = _declares(element)
+        name = element.get("name")
+        if name:
+            (scope.declared if declares else scope.used).append(_name_at(element, "name", name))
+        return
+    attribute = _REFERENCES[tag]
+    value = element.get(attribute) if attribute else element.text
+    if value and value.strip():
+        scope.used.append(_name_at(element, attribute, value.strip()))
+
+
+def _declares(element: _Element) -> bool:
+    """Is it a link or joint of the robot itself: right below the robot or an element of xacro?"""
+    if element.tag == "joint" and element.find("parent") is None:
+        return False
+    above = element.getparent()
+    return above is not None and (above.tag == "robot" or is_xacro(above))
+
+
+def _name_at(element: _Element, attribute: str, text: str) -> WrittenName:
+    return WrittenName(
+        element, attribute, text, frozenset(_names_in(text)) if "$" in text else frozenset()
+    )
+
+
+def _names_in(text: str) -> Iterator[str]:
+    """The names in all substitutions of a text, and ``$`` for substitutions without a name."""
+    for expression, argument in SUBSTITUTIONS.findall(text):
+        yield from [argument] if argument else _WORD.findall(_LITERAL.sub("", expression))
+    yield "$"
+
+
+def _properties_by_name(root: _Element) -> Mapping[str, list[str]]:
+    """Name -> the properties whose values use it."""
+    users: defaultdict[str, list[str]] = defaultdict(list)
+    for it in root.iter("{*}property"):
+        value = it.get("value", "")
+        for word in set(_names_in(value)) if "$" in value and is_xacro(it) else ():
+            users[word].append(it.get("name", ""))
+    users.pop("$", None)
+    return users
+
+
+def _with_properties(names: frozenset[str], users: Mapping[str, list[str]]) -> frozenset[str]:
+    """These names, and the properties made from them."""
+    found, waiting = set(names), list(names)
+    while waiting:
+        new = set(users.get(waiting.pop(), ())) - found
+        found |= new
+        waiting += new
+    return frozenset(found)
+
+
+def parameters(macro: _Element) -> list[str]:
+    """The names of a macro's parameters."""
+    return [it[1] for it in _PARAM.finditer(macro.get("params", ""))]
+
+
+def prefixes(names: list[str]) -> list[str]:
+    """Those of the names that people use for a prefix."""
+    return [it for it in names if PREFIX.fullmatch(it)]
+
+
+def is_xacro(element: _Element) -> bool:
+    """Is it an element of xacro?"""
+    tag = element.tag
+    return isinstance(tag, str) and "xacro}" in tag
+
+
+def words_of(top: _Element) -> frozenset[str]:
+    """The names in all substitutions and conditions below an element."""
+    words: set[str] = set()
+    for it in top.iterdescendants("*"):
+        for value in (*it.values(), it.text or "", it.tail or ""):
+            if "$" in value:
+                words.update(_names_in(str(value)))
+        if is_xacro(it):
+            words.update(_WORD.findall(it.get("value", "")))
+    return frozenset(words)
+
 
 # The elements of xacro itself: all others call a macro.
 _BUILTIN = frozenset(

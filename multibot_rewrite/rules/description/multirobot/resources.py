@@ -13,7 +13,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback.active import RELATIVE, hardware_parts, opened
 from multibot_rewrite.description.readback.parameters import given_at
 from multibot_rewrite.rules import declaration
-from multibot_rewrite.rules.description.multirobot.shared import AS_WRITTEN, process_wide_plugins
+from multibot_rewrite.rules.description.multirobot.topics import AS_WRITTEN, process_wide_plugins
 from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
 

@@ -1,26 +1,105 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics that two robots of one description would share."""
+"""Topics, namespaces, frames and tf that two robots of one description would share, those of Gazebo
+itself, and the robot description that plugins read.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from operator import itemgetter
 
-from multibot_rewrite.base.findings.finding import NOTE
+from lxml.etree import _Element
+
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.base.model import Claim
-from multibot_rewrite.base.naming import TF_TOPICS
+from multibot_rewrite.base.model import Claim, SiteRow
+from multibot_rewrite.base.naming import FRAME_KINDS, NOT_PLAIN, TF_TOPICS, make_naming
 from multibot_rewrite.base.rosnames import split_remap
+from multibot_rewrite.description.checks import hazards
+from multibot_rewrite.description.checks.hazards import ignored_namespaces, used_namespaces
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.rewriters.insert import Insertion, insertions, lacks_namespace
+from multibot_rewrite.description.rewriters.switches import switched_off
+from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.knowledge.controller_ways import controller_way
-from multibot_rewrite.rules.description.multirobot.shared import (
-    claims_of,
-    inserted,
-    is_plain,
-    process_wide_plugins,
-    tag_of,
-)
-from multibot_rewrite.rules.facts.source_values import claim_is_fixed
+from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
+
+# Frames, tf and topics are all per robot: what a rewrite inserts for that is shared by copies.
+APART = make_naming("both")
+AS_WRITTEN = make_naming("tf-per-robot")
+ONE_TF = make_naming("frames-per-robot")
+
+
+def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
+    """Claims whose first kind is one of ``kinds``, which are no names of links or joints; only plugins,
+    sensors and hardware have them."""
+    by_kind = _claims_by_kind(subject) if subject.inventory.hosts else {}
+    found = [it for kind in kinds for it in by_kind.get(kind, ())]
+    return [claim for _, claim in sorted(found, key=itemgetter(0))]
+
+
+@memoized
+def _claims_by_kind(subject: Subject) -> Mapping[str, Sequence[tuple[int, Claim]]]:
+    """The claims by their first kind, each with its number; most name a link or joint, and are left
+    out."""
+    found: dict[str, list[tuple[int, Claim]]] = {}
+    for at, claim in enumerate(subject.inventory.claims):
+        if claim.site.whole_value_kind:
+            continue
+        found.setdefault(claim.site.kinds[0], []).append((at, claim))
+    return found
+
+
+def is_plain(text: str) -> bool:
+    """Is it a name: not empty and not a placeholder?"""
+    return bool(text.strip("/")) and NOT_PLAIN.isdisjoint(text) and not text.startswith("__")
+
+
+def tag_of(claim: Claim) -> str:
+    """How a message names the element of a claim."""
+    name = claim.element.get("name") if claim.element.tag == "param" else None
+    return f"parameter {name!r}" if name else f"<{claim.element.tag}>"
+
+
+def process_wide_plugins(subject: Subject) -> set[_Element]:
+    """The plugins that hand their remap rules to the whole Gazebo process."""
+    hosts = subject.inventory.hosts
+    return {it.element for it in hosts if it.node.section and it.node.section.process_wide}
+
+
+def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]]:
+    """Kind, default and tag of what urdf-postfix would insert, except namespaces."""
+    for host, it in _insertions(subject):
+        tag = it.xml[1:].partition(">")[0].partition(" ")[0]
+        if it.shared and it.kind != "namespace" and tag != "remapping":
+            yield host, (it.kind, it.old, tag)
+
+
+def missed(subject: Subject) -> Iterator[tuple[_Element, Insertion]]:
+    """The defaults that are names of nothing else, which urdf-postfix would replace."""
+    yield from ((host, it) for host, it in _insertions(subject) if not it.shared)
+
+
+@memoized
+def _insertions(subject: Subject) -> list[tuple[_Element, Insertion]]:
+    """What a rewrite would insert, with the plugin it is for."""
+    declared, hosts = subject.inventory.declared, subject.inventory.served
+    may = [it for it in hosts if any(map(_may_insert, it[1].sites))]
+    plugins = {host for host, _ in may}
+    found = []
+    for it in insertions(may, declared, APART):
+        inside = it.parent
+        while inside not in plugins:
+            inside = inside.getparent()  # type: ignore[assignment]
+        found.append((inside, it))
+    return found
+
+
+def _may_insert(site: SiteRow) -> bool:
+    return bool(site.default) and "namespace" not in site.kinds
+
 
 ROS_KINDS = ("topic", "service")
 REMAP_FORMS = ("remap", "argument")
@@ -95,3 +174,137 @@ def default_topic_shared(subject: Subject) -> Iterator[Problem]:
         if kind in NOUNS:
             message = f"its default {NOUNS[kind]} {old!r} is the same for every robot"
             yield Problem(element, message, None, "set it for each robot")
+
+
+@rule("MB403", "hard-coded-namespace", NOTE)
+def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
+    """Each literal namespace, at its first place."""
+    found: dict[str, list[Claim]] = {}
+    for claim in claims_of(subject, ("namespace",)):
+        if is_plain(claim.value) and claim_is_fixed(subject, claim):
+            found.setdefault(claim.value, []).append(claim)
+    for value, claims in found.items():
+        where = f" in {len(claims)} plugins" if len(claims) > 1 else ""
+        message = f"the namespace {value!r}{where} is the same for every copy of the robot"
+        yield Problem(claims[0].element, message, claims[0].attribute, "make it a xacro argument")
+
+
+@rule("MB409", "no-namespace", NOTE)
+def no_namespace(subject: Subject) -> Iterator[Problem]:
+    """The first plugin without a namespace, and how many there are."""
+    inventory = subject.inventory
+    bare = [
+        element
+        for element, section in inventory.served
+        if lacks_namespace(element, section, inventory.declared, APART)
+    ]
+    if bare:
+        have = f"and {len(bare) - 1} more have" if len(bare) > 1 else "has"
+        message = f"plugin {bare[0].get('name', '')!r} {have} no namespace"
+        yield Problem(bare[0], message, None, "give each robot its own")
+
+
+@rule("MB410", "one-robot-description", NOTE)
+def one_robot_description(subject: Subject) -> Iterator[Problem]:
+    """Absolute names of descriptions and of the nodes that hold them."""
+    found = [*hazards.one_description(subject.inventory, AS_WRITTEN)]
+    starts = starts_of(subject, [it.element for it in found])
+    yield from (it for it in found if is_fixed(subject, starts[it.element], ""))
+
+
+@rule("MB419", "ignored-model-namespace", WARNING)
+def ignored_model_namespace(subject: Subject) -> Iterator[Problem]:
+    """Each of them."""
+    return ignored_namespaces(subject.inventory, subject.tree)
+
+
+@rule("MB429", "model-namespace-in-use", WARNING, options={"distro": "rolling"})
+def model_namespace_in_use(subject: Subject) -> Iterator[Problem]:
+    """Each of them."""
+    return used_namespaces(subject.inventory, subject.tree)
+
+
+@rule("MB404", "robot-name-in-frame", WARNING)
+def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
+    """Frames that are a link with something and a slash in front."""
+    links = subject.inventory.declared["link"]
+    for claim in subject.inventory.claims if subject.inventory.hosts else ():
+        if "/" not in claim.value or "frame" not in claim.site.kinds:
+            continue
+        value = claim.value.strip("/")
+        if "/" not in value or value in links:
+            continue
+        link = value.partition("/")[2].strip("/")
+        if link in links and is_plain(value) and claim_is_fixed(subject, claim):
+            message = (
+                f"frame {claim.value!r} has a robot's name in front, the link is called {link!r}"
+            )
+            yield Problem(claim.element, message, claim.attribute, f"use {link!r}")
+
+
+@rule("MB406", "default-frame-shared", NOTE)
+def default_frame_shared(subject: Subject) -> Iterator[Problem]:
+    """Frames that would have to be inserted for a robot."""
+    for element, item in inserted(subject):
+        if item[0] in ("frame", "link"):
+            message = f"without <{item[2]}> the plugin uses {item[1]!r}, the same for every robot"
+            yield Problem(element, message, None, f"set <{item[2]}> for each robot")
+
+
+@rule("MB433", "default-frame-below-model", NOTE)
+def default_frame_below_model(subject: Subject) -> Iterator[Problem]:
+    """Frames that would be below the name by which the model is spawned."""
+    for element, item in missed(subject):
+        if item.kind in FRAME_KINDS:
+            tag = item.xml[1:].partition(">")[0]
+            was = item.old.replace("{model}", "MODEL")
+            message = f"without <{tag}> the frame is {was!r}, which no robot has in tf"
+            yield Problem(element, message, None, f"set <{tag}>; urdf-postfix does")
+
+
+@rule("MB407", "fixed-odometry-frame", NOTE)
+def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
+    """Literal odometry frames that are no links and hold no robot's name."""
+    if not subject.inventory.hosts:
+        return
+    links, shared = subject.inventory.declared["link"], subject.settings.naming.shared_frames
+    for claim in subject.inventory.claims:
+        if "frame" not in claim.site.kinds or claim.site.form != "whole":
+            continue
+        name = claim.value.strip("/")
+        if "odom" not in _words(claim) or {name, name.rpartition("/")[2]} & (links.keys() | shared):
+            continue
+        if is_plain(name) and claim_is_fixed(subject, claim):
+            message = (
+                f"{tag_of(claim)} {claim.value!r} is the same frame for every copy of the robot"
+            )
+            yield Problem(
+                claim.element, message, claim.attribute, "use a different one for each robot"
+            )
+
+
+def _words(claim: Claim) -> str:
+    return f"{claim.value} {claim.site.path}".lower()
+
+
+@rule("MB408", "tf-not-remapped", NOTE)
+def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
+    """Plugins with tf switched on and no rule for it, unless the robots share one /tf."""
+    if subject.settings.robots and not subject.settings.naming.layout.tf_per_robot:
+        return
+    for host in subject.inventory.hosts:
+        section = host.node.section
+        if section is None or "/tf" not in section.publishes or not section.inserts:
+            continue
+        if "/tf" in switched_off(host.element, section) or _moves_tf(host.element):
+            continue
+        of = "the controllers it loads publish" if section.process_wide else "it publishes"
+        message = (
+            f"plugin {host.element.get('name', '')!r}: {of} on /tf, which a namespace does not move"
+        )
+        yield Problem(host.element, message, None, "add <remapping>/tf:=tf</remapping>")
+
+
+def _moves_tf(plugin: _Element) -> bool:
+    rules = (split_remap(text_of(it)) for it in plugin.iter("remapping", "argument"))
+    return any(it is not None and it.source.strip("/") == "tf" for it in rules)

@@ -12,9 +12,16 @@ from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import Vector
-from multibot_rewrite.description.checks.poses import Pose, dot, minus, origin_of, placed
+from multibot_rewrite.description.checks.poses import (
+    Pose,
+    dot,
+    inverse,
+    minus,
+    origin_of,
+    placed,
+    turned,
+)
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.checks.rotation import inverse, turned
 from multibot_rewrite.description.checks.shapes import shapes_of, way_out
 from multibot_rewrite.rules.facts.memo import link_poses
 from multibot_rewrite.rules.facts.sensors import CAMERAS, LIDARS, Sensor, number_at, sensors

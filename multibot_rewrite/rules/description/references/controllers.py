@@ -18,11 +18,7 @@ from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules import declaration
-from multibot_rewrite.rules.facts.elements import (
-    COMMAND,
-    STATE,
-    name_of,
-)
+from multibot_rewrite.rules.facts.elements import COMMAND, STATE, name_of
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
@@ -155,9 +151,8 @@ def _interfaces(subject: Subject, path: str, is_sure: bool) -> tuple[Interface, 
     from multibot_rewrite.companions.yaml_text import read_yaml
     from multibot_rewrite.knowledge.parameters import load_known_nodes
     from multibot_rewrite.knowledge.stacks import load_nodes
-    from multibot_rewrite.producers.evidence.hardware import exported
+    from multibot_rewrite.producers.evidence.hardware import control_system, exported
     from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-    from multibot_rewrite.producers.interfaces import control_system
     from multibot_rewrite.rules.system.interfaces import claims_any
 
     release, document = subject.settings.distro, subject.document

@@ -16,10 +16,8 @@ from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import repeated
 from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.rules.facts.certain import since_jazzy
-from multibot_rewrite.rules.facts.elements import (
-    name_of,
-)
+from multibot_rewrite.rules.facts.elements import name_of
+from multibot_rewrite.rules.facts.memo import since_jazzy
 from multibot_rewrite.rules.schema.faults import canonical
 from multibot_rewrite.rules.subject import Subject
 

@@ -18,7 +18,7 @@ from multibot_rewrite.description.checks.planning_groups import (
     text_of,
 )
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.description.srdf.shared import of_moveit, srdf_rule
+from multibot_rewrite.rules.description.srdf.names import of_moveit, srdf_rule
 from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
 from multibot_rewrite.rules.subject import Subject
 

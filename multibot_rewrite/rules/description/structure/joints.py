@@ -1,24 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types, axes and origins of joints."""
+"""Types, axes and origins of joints, and their limits: missing, inverted, empty, in the wrong unit;
+soft limits, and dynamics.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot
+from math import hypot, pi, radians
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks.links_and_joints import (
+    BOUNDED,
     ONE_AXIS,
     TOLERANCE,
+    TYPES,
     Joint,
+    Robot,
     joints_with,
 )
-from multibot_rewrite.description.checks.numbers import vector
+from multibot_rewrite.description.checks.numbers import number, numbers, value_of, vector
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.facts.simulators import commanded
+from multibot_rewrite.rules.schema.versions import KNOWN, version_of
 from multibot_rewrite.rules.subject import Subject
 
 FAR = 50.0
@@ -86,3 +94,195 @@ def joint_origin_units(subject: Subject) -> Iterator[Problem]:
         if xyz and max(map(abs, xyz)) >= FAR:
             message = f"joint {joint.name!r} is {hypot(*xyz):.4g} m away from {joint.parent!r}"
             yield Problem(origin, message, "xyz", "are these millimetres?")
+
+
+# Above DEGREES[0] radians (more than two turns) and up to DEGREES[1] degrees (two turns); ENDLESS are
+# numbers that people write for "no limit".
+DEGREES = (4.5 * pi, 720.0)
+_TURN, _ROUND = 2.05 * pi, 5.0
+# A round number above a turn has two digits or an exponent: most values are told without being read.
+_LARGE = lazy_compile(r"(?<![.\d])\d\d|[eE]")
+ENDLESS = frozenset((50.0, 100.0, 200.0, 500.0, 999.0))
+# Metres; a gripper moves so many millimetres.
+LONG_WAY = 25.0
+ENDS = ("lower", "upper")
+# From this version on bounds are needed, effort and velocity are not, and a negative limit is refused.
+STRICT = KNOWN[2]
+
+
+@rule("MB509", "limit-missing", ERROR)
+def limit_missing(subject: Subject) -> Iterator[Problem]:
+    """Joints without a limit that they need, and limits without a part that they need."""
+    strict = version_of(subject.document.root) >= STRICT
+    motor = () if strict else ("effort", "velocity")
+    for joint in subject.robot.joints:
+        limit, is_bounded = joint.parts.get("limit"), joint.type in BOUNDED
+        if limit is None:
+            if is_bounded:
+                yield Problem(joint.element, f"{joint.type} joint {joint.name!r} has no <limit>")
+            continue
+        there = limit.keys()
+        bounds = ENDS if is_bounded else ()
+        for needed, level in ((motor, ""), (bounds, "" if strict else WARNING)):
+            missing = [it for it in needed if it not in there]
+            if missing:
+                message = f"<limit> of joint {joint.name!r} has no {' and no '.join(missing)}"
+                yield Problem(limit, message, level=level)
+
+
+@rule("MB511", "limits-inverted", ERROR)
+def limits_inverted(subject: Subject) -> Iterator[Problem]:
+    """Lower limits above the upper one; in URDF 1.2 of any joint."""
+    types = TYPES if _is_strict(subject) else BOUNDED
+    for joint, limit, lower, upper in _bounds(subject):
+        if lower > upper and joint.type in types:
+            message = f"joint {joint.name!r}: lower {lower:g} is above upper {upper:g}"
+            yield Problem(limit, message, "lower")
+
+
+@rule("MB512", "limits-zero-range", NOTE)
+def limits_zero_range(subject: Subject) -> Iterator[Problem]:
+    """Equal limits: an exporter's mistake, or a frame that Gazebo should not merge."""
+    for joint, limit, lower, upper in _bounds(subject):
+        if lower == upper and joint.type in BOUNDED:
+            message = (
+                f"{joint.type} joint {joint.name!r} cannot move: lower and upper are {lower:g}"
+            )
+            yield Problem(limit, message)
+
+
+@rule("MB515", "zero-limit", NOTE)
+def zero_limit(subject: Subject) -> Iterator[Problem]:
+    """One finding per joint; joints that mimic another one or cannot move need no effort."""
+    for joint, limit in joints_with(subject.robot, "limit"):
+        if joint.type not in ONE_AXIS or "mimic" in joint.parts:
+            continue
+        zero = [it for it in ("effort", "velocity") if value_of(limit, it) == 0]
+        if zero and not _cannot_move(joint, limit):
+            verb = "are" if zero[1:] else "is"
+            message = f"joint {joint.name!r}: {' and '.join(zero)} {verb} 0"
+            weak = zero[0] == "effort" and joint.name in commanded(subject)
+            yield Problem(limit, message, zero[0], level=WARNING if weak else "")
+
+
+@rule("MB516", "continuous-limits", WARNING)
+def continuous_limits(subject: Subject) -> Iterator[Problem]:
+    """Bounds of less than a turn: a whole turn means the same as continuous."""
+    for joint, limit in joints_with(subject.robot, "limit"):
+        if joint.type != "continuous" or limit.get("lower") is None:
+            continue
+        lower, upper = value_of(limit, "lower"), value_of(limit, "upper", 0.0)
+        if lower is not None and upper is not None and 0 < upper - lower < 1.99 * pi:
+            message = f"continuous joint {joint.name!r} ignores its limits {lower:g} to {upper:g}"
+            yield Problem(limit, message, "lower")
+
+
+@rule("MB517", "prismatic-units", WARNING)
+def prismatic_units(subject: Subject) -> Iterator[Problem]:
+    """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits,
+    and one that moves nothing stands for something else: a pressure, a dial."""
+    for joint, limit, lower, upper in _bounds(subject):
+        far = max(abs(lower), abs(upper))
+        is_long = joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper
+        if is_long and not _moves_nothing(subject.robot, joint):
+            message = f"prismatic joint {joint.name!r} goes from {lower:g} m to {upper:g} m"
+            name = "upper" if abs(upper) == far else "lower"
+            yield Problem(limit, message, name, "are these millimetres?")
+
+
+def _moves_nothing(robot: Robot, joint: Joint) -> bool:
+    """Is its child an empty link at the end of a robot whose other links have a body?"""
+    child = robot.link.get(joint.child)
+    empty = child is not None and not len(child.element) and joint.child not in robot.below
+    return empty and any(len(it.element) for it in robot.links)
+
+
+def limits_in_degrees(subject: Subject) -> Iterator[Problem]:
+    """Round numbers that are many turns in radians, and an angle in degrees."""
+    for joint, limit, lower, upper in _bounds(subject):
+        if joint.type == "revolute" and (_is_degrees(lower) or _is_degrees(upper)):
+            message = f"revolute joint {joint.name!r} turns from {lower:g} to {upper:g} radians"
+            name = "upper" if _is_degrees(upper) else "lower"
+            yield Problem(limit, message, name, "are these degrees?")
+
+
+def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
+    """Rotations of more than a turn by a round number: nobody writes 90 radians."""
+    origins = subject.elements.every("origin")
+    different = {it.get("rpy", "") for it in origins}
+    large = filter(_LARGE.search, different)
+    turned = {rpy: odd for rpy in large if (odd := _turned(rpy)) is not None}
+    for origin in origins if turned else ():
+        odd = turned.get(origin.get("rpy", ""))
+        if odd is not None:
+            message = f"rpy has {odd:g}, which is more than a turn: it is in radians"
+            yield Problem(origin, message, "rpy", f"{odd:g} degrees are {radians(odd):.4g}")
+
+
+def _turned(rpy: str) -> float | None:
+    found = numbers(rpy) or ()
+    return next((it for it in found if abs(it) > _TURN and it % _ROUND == 0), None)
+
+
+def _is_degrees(angle: float) -> bool:
+    size = abs(angle)
+    return DEGREES[0] < size <= DEGREES[1] and size % 0.5 == 0 and size not in ENDLESS
+
+
+def _is_strict(subject: Subject) -> bool:
+    return version_of(subject.document.root) >= STRICT
+
+
+@memoized
+def _bounds(subject: Subject) -> list[tuple[Joint, _Element, float, float]]:
+    """The joints of the known types that have both bounds."""
+    found = []
+    for joint, limit in joints_with(subject.robot, "limit"):
+        if joint.type in TYPES:
+            lower, upper = number(limit.get("lower")), number(limit.get("upper"))
+            if lower is not None and upper is not None:
+                found.append((joint, limit, lower, upper))
+    return found
+
+
+def _cannot_move(joint: Joint, limit: _Element) -> bool:
+    return joint.type in BOUNDED and value_of(limit, "lower", 0.0) == value_of(limit, "upper", 0.0)
+
+
+Range = tuple[float, float]
+
+
+@rule("MB532", "soft-limits", WARNING)
+def soft_limits(subject: Subject) -> Iterator[Problem]:
+    """Against hard limits that leave a range themselves."""
+    for joint, safety, soft, hard in _soft_and_hard(subject.robot):
+        if hard[0] >= hard[1]:
+            continue
+        said = f"joint {joint.name!r}: the soft limits {soft[0]:g} to {soft[1]:g}"
+        if max(soft[0], hard[0]) >= min(soft[1], hard[1]):
+            yield Problem(safety, f"{said} leave no range")
+        if soft[0] < hard[0] - TOLERANCE or soft[1] > hard[1] + TOLERANCE:
+            message = f"{said} are outside of {hard[0]:g} to {hard[1]:g}"
+            yield Problem(safety, message, level=NOTE)
+
+
+@rule("MB534", "dynamics-empty", ERROR)
+def dynamics_empty(subject: Subject) -> Iterator[Problem]:
+    """Dynamics without a value."""
+    for joint, dynamics in joints_with(subject.robot, "dynamics"):
+        if dynamics.get("damping") is None and dynamics.get("friction") is None:
+            message = f"<dynamics> of joint {joint.name!r} has neither damping nor friction"
+            yield Problem(dynamics, message)
+
+
+def _soft_and_hard(robot: Robot) -> Iterator[tuple[Joint, _Element, Range, Range]]:
+    """The bounded joints with a safety controller, and both pairs of limits as MoveIt reads them."""
+    for joint, safety in joints_with(robot, "safety_controller"):
+        limit = joint.parts.get("limit")
+        if joint.type not in BOUNDED or limit is None:
+            continue
+        soft = (value_of(safety, f"soft_{it}_limit", 0.0) for it in ("lower", "upper"))
+        hard = (value_of(limit, it, 0.0) for it in ("lower", "upper"))
+        read = [it for it in (*soft, *hard) if it is not None]
+        if len(read) == 4:
+            yield joint, safety, (read[0], read[1]), (read[2], read[3])

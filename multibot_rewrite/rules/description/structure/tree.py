@@ -11,14 +11,9 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.findings.rule import rule
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.wording import SHOWN, shorten
-from multibot_rewrite.description.checks.links_and_joints import (
-    is_tree,
-    loops,
-    reached,
-    roots,
-)
+from multibot_rewrite.description.checks.links_and_joints import is_tree, loops, reached, roots
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.facts.certain import level_of_absence
+from multibot_rewrite.rules.facts.memo import level_of_absence
 from multibot_rewrite.rules.subject import Subject
 
 # With more than this many pairs of names a search for the nearest one takes too long.

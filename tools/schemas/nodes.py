@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JSON schema of a file of nodes and stacks: ``python -m multibot_rewrite.knowledge.schema``.
+"""The JSON schema of a file of nodes and stacks: ``python -m tools.schemas.nodes``.
 
 It has the keys that the reader takes; what their values may be the reader says.
 """
@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
-from multibot_rewrite.knowledge.endpoint_entries import ENDPOINT_KEYS
+from multibot_rewrite.knowledge.node_entries import ENDPOINT_KEYS
 from multibot_rewrite.knowledge.node_library import (
     ENTRY_KEYS,
     ENTRY_OF_NODE,

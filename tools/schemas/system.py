@@ -1,26 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JSON schema of a file of a system: ``python -m multibot_rewrite.system.schema``."""
+"""The JSON schema of a file of a system: ``python -m tools.schemas.system``."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
 from types import NoneType
-from typing import Any, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 from multibot_rewrite.system.json import BEFORE, SCHEMA
 from multibot_rewrite.system.nested import ROW, WHEN
-from multibot_rewrite.system.record_values import (
-    ALLOWED_WORDS,
-    FULL_NAMES,
-    LEFT_OUT,
-    MAYBE_FULL_NAMES,
-    POLICIES,
-    POLICY_NAMES,
-    SHORT,
-    is_needed,
-)
-from multibot_rewrite.system.records import End, Node, Robot, Sure, System
+from multibot_rewrite.system.record_values import LEFT_OUT, POLICIES, POLICY_NAMES, SHORT, needed
+from multibot_rewrite.system.records import KINDS, ROLES, SURE_WORDS, End, Node, Robot, Sure, System
 
 _PLAIN = {str: "string", int: "integer", bool: "boolean"}
 _TEXT = {"type": "string"}
@@ -29,7 +20,7 @@ _ROW = {
     "description": f"[{', '.join(ROW)}], and {WHEN} for what only may be there; types are"
     " joined with |",
     "prefixItems": [
-        *({"enum": [*ALLOWED_WORDS[End, it]]} for it in ROW[:2]), {"type": "string", "pattern": "^/"},
+        {"enum": [*ROLES]}, {"enum": [*KINDS]}, {"type": "string", "pattern": "^/"},
         _TEXT, _TEXT, _TEXT,
     ],
     "items": False,
@@ -64,29 +55,17 @@ def schema() -> dict[str, object]:
 
 
 def _record(kind: Any, found: dict[str, object]) -> dict[str, Any]:
-    hints = get_type_hints(kind)
+    hints = get_type_hints(kind, include_extras=True)
     return {
         "type": "object",
         "description": " ".join(kind.__doc__.split()),
         "properties": {
-            name: _field(kind, name, it, found)
-            for name, it in hints.items()
-            if LEFT_OUT.get(kind) != name
+            name: _value(it, found) for name, it in hints.items() if LEFT_OUT.get(kind) != name
         }
         | _BELOW.get(kind, {}),
-        "required": [it for it in hints if is_needed(kind, it) and (kind, it) != (End, "node")],
+        "required": [it for it in needed(kind, hints) if (kind, it) != (End, "node")],
         "additionalProperties": False,
     }
-
-
-def _field(kind: Any, name: str, hint: Any, found: dict[str, object]) -> dict[str, object]:
-    if words := ALLOWED_WORDS.get((kind, name)):
-        word: dict[str, object] = {"enum": list(words)}
-        return {"type": "array", "items": word} if get_origin(hint) is tuple else word
-    made = _value(hint, found)
-    if MAYBE_FULL_NAMES.get(kind) == name:
-        return {**made, "pattern": "^(/|$)"}
-    return {**made, "pattern": "^/"} if (kind, name) in FULL_NAMES else made
 
 
 def _value(hint: Any, found: dict[str, object]) -> dict[str, object]:
@@ -94,6 +73,8 @@ def _value(hint: Any, found: dict[str, object]) -> dict[str, object]:
     if hint == POLICIES:
         names = {"enum": [*POLICY_NAMES]}
         return {"type": "object", "propertyNames": names, "additionalProperties": _TEXT}
+    if get_origin(hint) is Annotated:
+        return _limited(options[0], options[1], found)
     if NoneType in options:
         return {"anyOf": [_value(options[0], found), {"type": "null"}]}
     if get_origin(hint) is tuple:
@@ -103,9 +84,15 @@ def _value(hint: Any, found: dict[str, object]) -> dict[str, object]:
             found[hint.__name__] = {}
             found[hint.__name__] = _record(hint, found)
         whole: dict[str, object] = {"$ref": f"#/$defs/{hint.__name__}"}
-        short = {"enum": [*ALLOWED_WORDS[Sure, "word"]]} if hint is Sure else _TEXT
+        short = {"enum": [*SURE_WORDS]} if hint is Sure else _TEXT
         return {"anyOf": [short, whole]} if hint in SHORT else whole
     return {"type": ["number", "null"]} if hint is float else {"type": _PLAIN[hint]}
+
+
+def _limited(inner: Any, limit: object, found: dict[str, object]) -> dict[str, object]:
+    if isinstance(limit, tuple):
+        return {"enum": [*limit]}
+    return {**_value(inner, found), **({"pattern": limit} if isinstance(limit, str) else {})}
 
 
 if __name__ == "__main__":

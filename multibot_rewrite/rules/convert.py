@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Edits that make a description one of another version of URDF, where it means the same in both; a
+``<capsule>`` as a cylinder and two spheres: the same set of points.
+
+The ``length`` is that of the cylinder alone (urdfdom's README, version 1.1). The cylinder stays
+where the capsule is; the spheres go to the end of the link, so that the numbers of other collisions
+stay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+
+from lxml.etree import _Element
+
+from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import Edit
+from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.description.checks.numbers import Vector, number
+from multibot_rewrite.description.checks.poses import (
+    Pose,
+    is_same,
+    length_of,
+    matrix_of_quaternion,
+    pose_of,
+    quaternion,
+    quaternion_of_rpy,
+    rolled,
+    rpy_of,
+    turned,
+)
+from multibot_rewrite.description.steps.document import Document, attribute_slot, tag_end
+from multibot_rewrite.rules.schema.versions import OLDEST, Version
+
+
+class Spanned(NamedTuple):
+    """A document, and where its elements start."""
+
+    document: Document
+    starts: Mapping[_Element, int]
+
+    @property
+    def source(self) -> bytes:
+        """The bytes of the document."""
+        return self.document.source
+
+
+def text_of(document: Document) -> Spanned:
+    """The text of a document."""
+    return Spanned(document, dict(zip(document.elements, document.starts, strict=True)))
+
+
+def end_of(text: Spanned, element: _Element) -> int:
+    """The offset right after an element's end tag."""
+    end = tag_end(text.source, text.starts[element])
+    if text.source[end - 2 : end] == b"/>":
+        return end
+    return text.source.index(b">", end_tag_of(text, element)) + 1
+
+
+def end_tag_of(text: Spanned, element: _Element) -> int:
+    """The offset of the end tag of an element that has one."""
+    *_, last = element.iter("*")
+    start, tag = text.starts[last], f"</{element.tag}".encode()
+    at = text.source.index(tag, start)
+    while _in_comment(text.source[start:at]):
+        at = text.source.index(tag, at + 1)
+    return at
+
+
+def _in_comment(before: bytes) -> bool:
+    return before.count(b"<!--") > before.count(b"-->")
+
+
+def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -> Edit | None:
+    """The edit that gives an attribute another name and value; None where it is not found."""
+    slot = _slot(text, element, name)
+    if slot is None:
+        return None
+    begin = text.source.rindex(name.encode(), 0, slot[0])
+    quote = text.source[slot[0] - 1 : slot[0]].decode()
+    return Edit(begin, slot[1], f"{new}={quote}{value}".encode(), None)
+
+
+def removed(text: Spanned, element: _Element, name: str) -> Edit | None:
+    """The edit that takes an attribute out, with the white space before it."""
+    slot = _slot(text, element, name)
+    if slot is None:
+        return None
+    begin = text.source.rindex(name.encode(), 0, slot[0])
+    before = len(text.source[:begin].rstrip())
+    return Edit(before, slot[1] + 1, b"", None)
+
+
+def revalued(text: Spanned, element: _Element, name: str, value: str) -> Edit | None:
+    """The edit that gives an attribute another value, or adds it as the first one."""
+    start = text.starts[element]
+    if element.get(name) is None:
+        tag = text.source[start : start + 1 + len(str(element.tag))]
+        return Edit(start, start + len(tag), tag + f' {name}="{value}"'.encode(), None)
+    slot = _slot(text, element, name)
+    return None if slot is None else Edit(*slot, value.encode(), None)
+
+
+def _slot(text: Spanned, element: _Element, name: str) -> tuple[int, int] | None:
+    return attribute_slot(text.source, text.starts[element], name, element.get(name, ""))
+
+
+# All that URDF 1.0 needs, and what it means where nothing is written differs.
+LIMITS = ("lower", "upper", "effort", "velocity")
+_OF_LINKS = ("visual", "collision", "inertial")
+
+
+def rotated_origins(root: _Element) -> Iterator[_Element]:
+    """The origins that urdfdom reads and that have a quaternion."""
+    for origin in root.iter("origin"):
+        holder = origin.getparent()
+        if origin.get("quat_xyzw") is None or holder is None or holder.getparent() is None:
+            continue
+        above = holder.getparent()
+        of_link = above is not None and above.tag == "link" and holder.tag in _OF_LINKS
+        if of_link or (holder.tag == "joint" and above is root):
+            yield origin
+
+
+def as_rpy(text: Spanned, origin: _Element) -> tuple[Edit, ...]:
+    """The edit that writes a quaternion as roll, pitch and yaw; none where they would differ."""
+    if origin.get("rpy") is not None:
+        return one_rotation(text, origin, "quat_xyzw")
+    turn = quaternion(origin)
+    if turn is None:
+        return ()
+    matrix = matrix_of_quaternion(turn)
+    rpy = rpy_of(matrix)
+    if not is_same(matrix, matrix_of_quaternion(quaternion_of_rpy(rpy))):
+        return ()
+    return _one(renamed(text, origin, "quat_xyzw", "rpy", " ".join(map(written, rpy))))
+
+
+def one_rotation(text: Spanned, origin: _Element, other: str) -> tuple[Edit, ...]:
+    """The edit that takes one of two rotations out; none where they differ."""
+    turn, matrix = quaternion(origin), rolled(origin)
+    if turn is None or matrix is None or not is_same(matrix, matrix_of_quaternion(turn)):
+        return ()
+    return _one(removed(text, origin, other))
+
+
+def raised(text: Spanned, version: Version) -> tuple[Edit, ...]:
+    """The edit that declares a version that reads quaternions, where all of them can be read."""
+    root = text.document.root
+    capsule = any(capsules(link) for link in root.iterchildren("link"))
+    if capsule or not all(map(_is_readable, rotated_origins(root))):
+        return ()
+    return _one(revalued(text, root, "version", str(version)))
+
+
+def lowered(text: Spanned) -> tuple[Edit, ...]:
+    """All edits that make a description one of URDF 1.0; none where it would not mean the same."""
+    root = text.document.root
+    limits = (it for joint in root.iterchildren("joint") for it in joint.iterchildren("limit"))
+    if any(limit.get(name) is None for limit in limits for name in LIMITS):
+        return ()
+    links = [it for it in root.iterchildren("link") if capsules(it)]
+    groups = [
+        *(as_rpy(text, it) for it in rotated_origins(root)),
+        *(capsule_edits(text, it) for it in links),
+        _one(revalued(text, root, "version", str(OLDEST))),
+    ]
+    return tuple(edit for group in groups for edit in group) if all(groups) else ()
+
+
+def _is_readable(origin: _Element) -> bool:
+    turn = quaternion(origin)
+    alone = origin.get("rpy") is None and pose_of(origin) is not None
+    return alone and turn is not None and 0 < length_of(turn) < float("inf")
+
+
+def _one(edit: Edit | None) -> tuple[Edit, ...]:
+    return () if edit is None else (edit,)
+
+
+CAPSULE, CYLINDER = b"capsule", b"cylinder"
+HOLDERS = ("visual", "collision")
+# What a sphere may do without.
+_PLAIN = frozenset(("origin", "geometry", "material", "verbose"))
+_CLOSED = lazy_compile(rb"\s*</(capsule)\s*>")
+
+
+def capsules(link: _Element) -> list[tuple[_Element, _Element]]:
+    """The capsules that are read of a link, each with its visual or collision."""
+    found = []
+    for holder in link.iterchildren(*HOLDERS):
+        geometry = next(holder.iterchildren("geometry"), None)
+        shape = None if geometry is None else next(geometry.iterchildren("*"), None)
+        if shape is not None and shape.tag == "capsule":
+            found.append((shape, holder))
+    return found
+
+
+def capsule_edits(text: Spanned, link: _Element) -> tuple[Edit, ...]:
+    """The edits for all capsules of a link; none where one of them means more than its shape."""
+    found = capsules(link)
+    if not found or not all(_is_plain(text, link, *it) for it in found):
+        return ()
+    edits = [edit for shape, _ in found for edit in _cylinder(text, shape)]
+    spheres = [it for shape, holder in found for it in _spheres(text, shape, holder)]
+    return (*edits, _at_the_end(text, link, found[0][1], spheres))
+
+
+def ends_of(pose: Pose, length: float) -> tuple[Vector, Vector]:
+    """The centres of the half spheres of a capsule."""
+    x, y, z = turned(pose.matrix, (0.0, 0.0, length / 2))
+    (a, b, c) = pose.at
+    return (a + x, b + y, c + z), (a - x, b - y, c - z)
+
+
+def _is_plain(text: Spanned, link: _Element, shape: _Element, holder: _Element) -> bool:
+    """Is it a shape and nothing else: nobody may ask for this collision by its name."""
+    asked = f"{link.get('name')}_collision".encode() in text.source or holder.get("name")
+    if holder.tag == "collision" and asked:
+        return False
+    sizes = [number(shape.get(it)) for it in ("length", "radius")]
+    known = {it.tag for it in holder.iterchildren("*")} <= _PLAIN
+    return known and all(it is not None and it > 0 for it in sizes) and _pose(holder) is not None
+
+
+def _pose(holder: _Element) -> Pose | None:
+    return pose_of(next(holder.iterchildren("origin"), None))
+
+
+def _cylinder(text: Spanned, shape: _Element) -> Iterator[Edit]:
+    start = text.starts[shape] + 1
+    yield Edit(start, start + len(CAPSULE), CYLINDER, None)
+    closed = _CLOSED.match(text.source, tag_end(text.source, start - 1))
+    if closed:
+        yield Edit(closed.start(1), closed.end(1), CYLINDER, None)
+
+
+def _spheres(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes]:
+    pose, length = _pose(holder), number(shape.get("length"))
+    materials = (
+        text.source[text.starts[it] : end_of(text, it)] for it in holder.iterchildren("material")
+    )
+    material = b"".join(materials)
+    radius = f'<geometry><sphere radius="{shape.get("radius")}"/></geometry>'
+    for end in ends_of(pose, length) if pose and length else ():
+        xyz = " ".join(map(written, end))
+        head = f'<{holder.tag}><origin xyz="{xyz}"/>{radius}'.encode()
+        yield head + material + f"</{holder.tag}>".encode()
+
+
+def _at_the_end(text: Spanned, link: _Element, like: _Element, spheres: Sequence[bytes]) -> Edit:
+    """The spheres before the end tag of the link, a line each where the link's end has its own."""
+    at = end_tag_of(text, link)
+    margin, inner = map(partial(_margin, text.source), (at, text.starts[like]))
+    if margin is None:
+        lines = b"".join(spheres)
+    else:
+        more = (inner or b"").removeprefix(margin)
+        line_end = b"\r\n" if b"\r\n" in text.source else b"\n"
+        lines = b"".join(more + it + line_end + margin for it in spheres)
+    return Edit(at, at + 2, lines + text.source[at : at + 2], None)
+
+
+def _margin(source: bytes, at: int) -> bytes | None:
+    """The white space before it in its line; None where there is more than that."""
+    line = source[source.rfind(b"\n", 0, at) + 1 : at]
+    return None if line.strip() or b"\n" not in source[:at] else line
+
+
+def written(value: float) -> str:
+    """A number as the shortest text that reads back as it."""
+    return f"{value + 0.0!r}".removesuffix(".0")
