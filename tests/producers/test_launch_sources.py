@@ -48,6 +48,18 @@ def test_a_share_folder_is_as_cmake_installs_it(tmp_path: Path) -> None:
     assert not (source / "launch" / "top.yaml").exists()
 
 
+def test_folders_that_are_installed_under_one_name_are_one(tmp_path: Path) -> None:
+    files = ("bringup/launch/b.launch.py", "description/launch/d.launch.py", "launch/own.launch.py")
+    source = write(tmp_path / "src", *files)
+    rules = "install(DIRECTORY description/launch bringup/launch DESTINATION share/mine)\n"
+    (source / "CMakeLists.txt").write_text(rules)
+    link_share("mine", str(source), str(tmp_path / "share"))
+    names = ["b.launch.py", "d.launch.py", "own.launch.py"]
+    assert sorted(os.listdir(tmp_path / "share/launch")) == names
+    assert os.listdir(source / "launch") == ["own.launch.py"]
+    assert os.listdir(source / "description/launch") == ["d.launch.py"]
+
+
 def test_a_share_folder_of_a_package_in_python(tmp_path: Path) -> None:
     source = write(tmp_path / "src", "setup.py", "mine/assets/a.sdf", "mine/__init__.py")
     link_share("mine", str(source), str(tmp_path / "share"))

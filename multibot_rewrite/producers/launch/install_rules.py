@@ -69,3 +69,6 @@ def _link(folder: str, path: list[str], source: str) -> None:
         _link(there, path[1:], source)
     elif not os.path.lexists(there):
         os.symlink(source, there)
+    elif os.path.isdir(source) and os.path.isdir(there):
+        for it in os.listdir(source):  # two folders that are installed under one name are one
+            _link(there, [it], os.path.join(source, it))
