@@ -12,8 +12,8 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.declared import DECLARED, READ
 from multibot_rewrite.rules.files.parameter_files import NO_DEFAULT, text_of
 from tools.interfaces.expressions import is_node

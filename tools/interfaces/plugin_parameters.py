@@ -12,9 +12,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from tools.interfaces.expressions import text_of
 from tools.interfaces.plugin_demands import required_in, words_in
 from tools.interfaces.syntax import nodes_of

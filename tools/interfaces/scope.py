@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
-from multibot_rewrite.base.record import NamedTuple
 from tools.interfaces.expressions import last, template_arguments
 from tools.interfaces.records import (
     Alias,

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import PREFIX
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.moveit.file_kind import (
     ABOVE,
     NAMES,

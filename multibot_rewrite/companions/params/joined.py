@@ -11,12 +11,12 @@ Source: joint_state_broadcaster.cpp: without ``joints`` and ``interfaces`` it ta
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.formats import rewrite_alone
 from multibot_rewrite.companions.named_file import PARAMS

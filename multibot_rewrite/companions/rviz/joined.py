@@ -8,9 +8,9 @@ the part's name; they have its prefix before links, frames and groups.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.naming import PREFIX
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import companion_names
 from multibot_rewrite.companions.rviz.display_groups import group_text, leaves
 from multibot_rewrite.companions.rviz.read_config import (

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim, SiteRow
 from multibot_rewrite.base.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.mentions import MENTIONED, kept, mentioned
 from multibot_rewrite.description.reports.paths import tag_path
 from multibot_rewrite.description.rewriters.forms import IN_FRONT

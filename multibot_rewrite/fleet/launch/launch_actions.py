@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator, Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import BY_HAND
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.checks.lacking import CARTOGRAPHER
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP

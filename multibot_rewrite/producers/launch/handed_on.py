@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.naming import TWIN
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.producers.evidence.parameter_files import values_for
 from multibot_rewrite.producers.launch.parameter_texts import document_of, has_sections

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from lxml.etree import _Element
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import Link
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.checks.poses import Pose, sdf_pose

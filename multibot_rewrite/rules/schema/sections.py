@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.schema.described import table_text
 from multibot_rewrite.rules.schema.values import FINE
 from multibot_rewrite.rules.schema.versions import OLDEST, Version, read_version
