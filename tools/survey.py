@@ -20,7 +20,7 @@ from multibot_rewrite.base.wording import clip, plural
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.cli.walk import find_files
 from multibot_rewrite.description.checks.mentions import MENTIONED, unclaimed_mentions
-from multibot_rewrite.description.reports.paths import tag_path
+from multibot_rewrite.description.reports.explain import tag_path
 from multibot_rewrite.description.reports.suggest import Loaded, loaded_by
 from multibot_rewrite.description.rewriters.spelling import ResolvedName
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree

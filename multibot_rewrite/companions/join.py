@@ -11,9 +11,16 @@ from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.releases import release_here
-from multibot_rewrite.companions.moveit.joined import PartMoveit, joined_moveit, part_moveit
-from multibot_rewrite.companions.params.joined import JoinedFiles, joined_files, part_file
-from multibot_rewrite.companions.rviz.joined import JoinedRviz, joined_rviz, part_rviz
+from multibot_rewrite.companions.joined import (
+    JoinedFile,
+    PartMoveit,
+    joined_files,
+    joined_moveit,
+    joined_rviz,
+    part_file,
+    part_moveit,
+    part_rviz,
+)
 from multibot_rewrite.description.checks.verdict import not_proved
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
@@ -111,8 +118,8 @@ def _with_beside(
     moveit = joined_moveit(_moveit(given, made, tree, trust))
     names = tuple(it.part.name for it in made.parts)
     rviz = _rviz(given, made, tree)
-    told = (f"{file}: {what}" for file, what in (*moveit.notes, *rviz.notes))
-    notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *told)
+    told = (f"{file}: {what}" for file, what in moveit.notes)
+    notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *told, *rviz.notes)
     notes = (*notes, *_met(made, tree))
     return Joined(
         made.data, semantics.data, files.data, names, notes, made.findings, moveit.files, rviz.data
@@ -184,22 +191,22 @@ def _without_prefix(part: ReadPart, tree: Tree) -> Inventory:
     return collect(read_document(part.data, part.file), tree)
 
 
-def _rviz(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedRviz:
+def _rviz(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFile:
     found = []
     for it, mounted in zip(given, made.parts, strict=True):
         part = mounted.part
         if it.rviz:
             before = _without_prefix(part, tree)
             found.append(part_rviz(read_file(it.rviz), it.rviz, before, part.name, part.prefix))
-    return joined_rviz(found) if found else JoinedRviz(b"", ())
+    return joined_rviz(found) if found else JoinedFile(b"", ())
 
 
-def _controllers(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFiles:
+def _controllers(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFile:
     files = []
     for it, mounted in zip(given, made.parts, strict=True):
         part, before = mounted.part, _without_prefix(mounted.part, tree)
         files += [part_file(read_file(at), at, before, part.prefix) for at in it.controllers]
-    return joined_files(files) if files else JoinedFiles(b"", ())
+    return joined_files(files) if files else JoinedFile(b"", ())
 
 
 def _met(made: JoinedText, tree: Tree) -> Iterator[str]:

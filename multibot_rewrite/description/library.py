@@ -30,8 +30,7 @@ from multibot_rewrite.description.steps.collect import NOTHING, collect
 from multibot_rewrite.description.steps.document import Document, read_document
 
 if TYPE_CHECKING:
-    from multibot_rewrite.description.reports.explain import Explanation
-    from multibot_rewrite.description.reports.explain_xacro import OnLine
+    from multibot_rewrite.description.reports.explain import Explanation, OnLine
 
 
 class Prepared:
@@ -287,8 +286,7 @@ def explain(
     check_robot_name(robot)
     release = release_told(distro)
     # A rewrite does not need it.
-    from multibot_rewrite.description.reports.explain import explain_line
-    from multibot_rewrite.description.reports.explain_xacro import explain_source
+    from multibot_rewrite.description.reports.explain import explain_line, explain_source
 
     given = (naming, urdf, xacro_args, vocabulary, file, [robot], trust)
 

@@ -26,7 +26,7 @@ from multibot_rewrite.pages.states import (
 )
 from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.rules.check import side_by_side
-from multibot_rewrite.rules.system.planned import matches
+from multibot_rewrite.rules.system.planned_ends import matches
 from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.index import EndKey, Index

@@ -20,8 +20,7 @@ from multibot_rewrite.rules.system import clocks, differing, frame_ids, likes, l
 from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.rules.system.differing import COMPARED
 from multibot_rewrite.rules.system.names import topic_names_miss
-from multibot_rewrite.rules.system.planned import missing
-from multibot_rewrite.rules.system.planned_ends import missing_endpoint
+from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.rules.with_plan import one_for_a_cause
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE

@@ -15,8 +15,7 @@ from fnmatch import fnmatchcase
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
 from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.system.differing import COMPARED, unexplained
-from multibot_rewrite.rules.system.planned import missing
-from multibot_rewrite.rules.system.planned_ends import missing_endpoint
+from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_frames import frame_without_robot_name
 from multibot_rewrite.rules.system.planned_nodes import sender_not_planned, unplanned_node
 from multibot_rewrite.rules.system.unsent import nothing_known_sends

@@ -150,7 +150,7 @@ def test_without_ros2_control_nothing_is_read(tmp_path: Path) -> None:
         "import sys; from multibot_rewrite.lint.check import lint_file;"
         "from multibot_rewrite.rules.settings import Settings;"
         "lint_file(sys.argv[1], Settings());"
-        "print([it for it in sys.modules if '.evidence' in it or 'system.interfaces' in it])"
+        "print([it for it in sys.modules if '.evidence' in it or 'rules.system.states' in it])"
     )
     run = [sys.executable, "-c", code, str(tmp_path / "arm.urdf")]
     assert subprocess.run(run, capture_output=True, text=True, check=True).stdout == "[]\n"

@@ -11,8 +11,7 @@ from counted_steps import growth
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.rules.schema.faults import read_faults
-from multibot_rewrite.rules.schema.sections import schema
-from multibot_rewrite.rules.schema.values import FINE
+from multibot_rewrite.rules.schema.sections import FINE, schema
 from multibot_rewrite.rules.schema.versions import KNOWN
 
 LINKS = '<link name="a"/><link name="b"/>'

@@ -31,11 +31,11 @@ from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.facts.simulators import needed_systems
 from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch
-from multibot_rewrite.rules.system.interfaces import (
+from multibot_rewrite.rules.system.planned_nodes import missing_node, unplanned_node
+from multibot_rewrite.rules.system.states import (
     interface_claimed_twice,
     interface_not_exported,
 )
-from multibot_rewrite.rules.system.planned_nodes import missing_node, unplanned_node
 from multibot_rewrite.system.guess import guess_robots, whose_by_guess
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan

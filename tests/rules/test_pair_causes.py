@@ -22,8 +22,7 @@ from multibot_rewrite.rules.system.causes import (
     why_not_remapped,
     why_other_name,
 )
-from multibot_rewrite.rules.system.planned import probable_matches, similar
-from multibot_rewrite.rules.system.planned_ends import _why_besides
+from multibot_rewrite.rules.system.planned_ends import _why_besides, probable_matches, similar
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan

@@ -6,8 +6,8 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.rules.schema.sdf_values import misread, number_in
+from multibot_rewrite.rules.schema.sections import is_fine, shortened, wrong_numbers
 from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
-from multibot_rewrite.rules.schema.values import is_fine, shortened, wrong_numbers
 from multibot_rewrite.rules.schema.versions import (
     RVIZ,
     highest_version,

@@ -12,7 +12,7 @@ from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.base.wording import clip
 from multibot_rewrite.description.checks.mentions import MENTIONED
 from multibot_rewrite.description.checks.unknown import is_unknown
-from multibot_rewrite.description.reports.paths import plugin_name, short_name
+from multibot_rewrite.description.reports.explain import plugin_name, short_name
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import (

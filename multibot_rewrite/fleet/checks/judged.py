@@ -14,16 +14,15 @@ from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_sourc
 from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot
 from multibot_rewrite.producers.ends import NEEDS
 from multibot_rewrite.rules.check import absences, contradictions
-from multibot_rewrite.rules.system.interfaces import (
+from multibot_rewrite.rules.system.localized import map_not_joined
+from multibot_rewrite.rules.system.states import (
     interface_claimed_twice,
+    interface_commanded_twice,
     interface_not_exported,
     open_claims,
 )
-from multibot_rewrite.rules.system.localized import map_not_joined
-from multibot_rewrite.rules.system.lookups import frame_not_sent
-from multibot_rewrite.rules.system.states import interface_commanded_twice
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
-from multibot_rewrite.rules.system.unsent import no_longer_sent, open_ends
+from multibot_rewrite.rules.system.unsent import frame_not_sent, no_longer_sent, open_ends
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import ALONE, Whose
 from multibot_rewrite.system.records import (

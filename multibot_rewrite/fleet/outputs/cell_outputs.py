@@ -16,8 +16,8 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.engine import splices_of
+from multibot_rewrite.companions.joined import PartMoveit, joined_moveit
 from multibot_rewrite.companions.moveit.file_kind import NAMES, OF_SERVO, SIMPLE, entries, file_kind
-from multibot_rewrite.companions.moveit.joined import PartMoveit, joined_moveit
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, read_config, targets
 from multibot_rewrite.companions.rviz.rewrite import RvizText

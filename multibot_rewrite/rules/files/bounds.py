@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeGuard
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError
@@ -49,10 +49,10 @@ def beyond(check: str, arguments: str, value: Any) -> str:
 
 def _said(name: str, given: list[Any], value: Any) -> str:
     first: Any = given[0] if given else None
-    if name in _NUMBERS and _is_number(value) and _is_number(first):
+    if name in _NUMBERS and is_number(value) and is_number(first):
         holds, words = _NUMBERS[name]
         return "" if holds(value, first) else f"{words} {first}"
-    if name in _SIZES and isinstance(value, str | list) and _is_number(first):
+    if name in _SIZES and isinstance(value, str | list) and is_number(first):
         holds, words = _SIZES[name]
         return "" if holds(len(value), first) else f"{words} {first}"
     if name in _SHAPES:
@@ -62,11 +62,11 @@ def _said(name: str, given: list[Any], value: Any) -> str:
 
 def _of_many(name: str, given: list[Any], value: Any) -> str:
     first: Any = given[0] if given else None
-    if name in _EACH and isinstance(value, list) and _is_number(first):
+    if name in _EACH and isinstance(value, list) and is_number(first):
         holds, words = _NUMBERS[name]
-        every = all(holds(it, first) for it in value if _is_number(it))
+        every = all(holds(it, first) for it in value if is_number(it))
         return "" if every else f"{words} {first} in each place"
-    if name == "bounds" and _is_number(value) and len(given) == 2:
+    if name == "bounds" and is_number(value) and len(given) == 2:
         return "" if given[0] <= value <= given[1] else f"from {given[0]} to {given[1]}"
     if name == "not_empty" and value in ("", []):
         return "not empty"
@@ -151,5 +151,6 @@ _SHAPES: dict[str, Callable[[Any, Any], str]] = {
 }
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> TypeGuard[float]:
+    """Is it a number, and no truth value?"""
     return isinstance(value, int | float) and not isinstance(value, bool)

@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Set
-from typing import NamedTuple, TypeGuard
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.lazy import lazy_compile
@@ -18,6 +18,7 @@ from multibot_rewrite.knowledge.declared import DEMANDED
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.rules.declaration import remark_at
+from multibot_rewrite.rules.files.bounds import is_number
 from multibot_rewrite.rules.files.parameter_files import of_release
 from multibot_rewrite.rules.files.section_facts import Section, Setting, filled, sections
 from multibot_rewrite.system.parameters import Value
@@ -58,7 +59,7 @@ def above_others(file: NamedFile) -> Iterator[Finding]:
         value, other = it.given.value, value_of(it.section, it.words[0])
         # A negative one stands for no limit, or for that of the sensor.
         sizes = it.check == "not_above" or (_is_size(value) and _is_size(other))
-        if sizes and _is_number(value) and _is_number(other) and float(value) > float(other):
+        if sizes and is_number(value) and is_number(other) and float(value) > float(other):
             message = (
                 f"{it.section.title}: {it.given.name} is {value}, above {it.words[0]} ({other})"
             )
@@ -66,11 +67,7 @@ def above_others(file: NamedFile) -> Iterator[Finding]:
 
 
 def _is_size(value: Value | None) -> bool:
-    return _is_number(value) and value >= 0
-
-
-def _is_number(value: Value | None) -> TypeGuard[float]:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    return is_number(value) and value >= 0
 
 
 def value_of(section: Section, name: str) -> Value | None:
@@ -214,7 +211,7 @@ def _period(it: Demand) -> str:
     other, default = it.words
     given = it.section.whole.get(other)
     rate = given.value if given else float(default)
-    short = _is_number(rate) and _is_number(it.given.value) and rate * it.given.value < 1 - _ROUNDED
+    short = is_number(rate) and is_number(it.given.value) and rate * it.given.value < 1 - _ROUNDED
     return f"is {it.given.value}, below the period of {other} ({rate})" if short else ""
 
 
@@ -242,7 +239,7 @@ def _bonded(it: Demand) -> str:
     value = it.given.value
     words = [str(word) for word in value if "/" in str(word)] if isinstance(value, list) else []
     bond = value_of(it.section, it.words[0])
-    kept = bond is None or (_is_number(bond) and bond > 0)
+    kept = bond is None or (is_number(bond) and bond > 0)
     return f"lists {words[0]}, and waits for a bond of that name" if words and kept else ""
 
 

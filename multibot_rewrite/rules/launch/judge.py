@@ -11,8 +11,8 @@ from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.models import Model
 from multibot_rewrite.producers.launch.running import DESCRIPTION
 from multibot_rewrite.rules.launch import models, started, words as rules_of_words
-from multibot_rewrite.rules.system.interfaces import interface_claimed_twice, interface_not_exported
 from multibot_rewrite.rules.system.planned_nodes import missing_node
+from multibot_rewrite.rules.system.states import interface_claimed_twice, interface_not_exported
 from multibot_rewrite.rules.system.tf_pieces import is_sure, tf_tree_in_pieces
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index

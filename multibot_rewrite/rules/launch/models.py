@@ -30,7 +30,7 @@ from multibot_rewrite.producers.launch.launched import InSimulator, Launched, Wo
 from multibot_rewrite.producers.launch.running import bound_of
 from multibot_rewrite.rules.declaration import at, launch_rule
 from multibot_rewrite.rules.facts.simulators import needed_systems
-from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE, BridgedTopic
+from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 
@@ -102,31 +102,35 @@ def _names(model: InSimulator) -> Iterator[str]:
 @launch_rule("MG704", "command-not-bridged")
 def not_bridged(launched: Launched) -> Iterator[Finding]:
     """What only one of the models gets may be meant; that its like gets nothing is not."""
-
-    told = into_gazebo(launched)
-    models = launched.simulated
-    reached = {_plain(model, one) for model in models for one in _read(model) if one[1] in told}
-    for it in models:
-        for kind, gz in _read(it):
-            if gz not in told and _plain(it, (kind, gz)) in reached:
-                message = f"{it.name} reads gz topic {gz}, and no bridge passes anything on to it"
-                hint = "add a row to Gazebo for it, as another model has one"
-                yield at(not_bridged, it.place, message, hint, names=(gz,))
+    for it, gz in _lacking(launched, inwards=True):
+        message = f"{it.name} reads gz topic {gz}, and no bridge passes anything on to it"
+        hint = "add a row to Gazebo for it, as another model has one"
+        yield at(not_bridged, it.place, message, hint, names=(gz,))
 
 
 @launch_rule("MG707", "data-not-bridged")
 def not_brought(launched: Launched) -> Iterator[Finding]:
     """By the topics without the names of the models: those of two descriptions mean other things."""
+    for it, gz in _lacking(launched, inwards=False):
+        message = f"{it.name} sends gz topic {gz}, and no bridge brings it to ROS"
+        hint = "add a row to ROS for it, as another model has one"
+        yield at(not_brought, it.place, message, hint, names=(gz,))
 
-    told = out_of_gazebo(launched)
-    models = launched.simulated
-    brought = {_plain(model, one) for model in models for one in _sent(model) if one[1] in told}
-    for it in models:
-        for kind, gz in _sent(it):
-            if gz not in told and _plain(it, (kind, gz)) in brought:
-                message = f"{it.name} sends gz topic {gz}, and no bridge brings it to ROS"
-                hint = "add a row to ROS for it, as another model has one"
-                yield at(not_brought, it.place, message, hint, names=(gz,))
+
+def _lacking(launched: Launched, inwards: bool) -> Iterator[tuple[InSimulator, str]]:
+    """Yield the topics of models that no bridge has, where one has that of another model."""
+    told = {it.gz for it in _rows(launched) if it.inwards is inwards}
+    every = [(model, one) for model in launched.simulated for one in _topics(model, inwards)]
+    alike = {_plain(model, one) for model, one in every if one[1] in told}
+    for model, one in every:
+        if one[1] not in told and _plain(model, one) in alike:
+            yield model, one[1]
+
+
+def _topics(model: InSimulator, inwards: bool) -> Iterator[tuple[str, str]]:
+    for it in model.topics:
+        if (it.direction == _INTO_GAZEBO) is inwards:
+            yield it.ros_type, f"/{it.gz.lstrip('/')}"
 
 
 def _plain(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:
@@ -134,21 +138,6 @@ def _plain(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:
     kind, gz = topic
     own = {model.name, *model.words.get("-topic", "").strip("/").split("/")[:-1]}
     return kind, "/".join(word for word in gz.split("/") if word not in own)
-
-
-def _sent(model: InSimulator) -> Iterator[tuple[str, str]]:
-    for it in model.topics:
-        if it.direction != _INTO_GAZEBO:
-            yield it.ros_type, f"/{it.gz.lstrip('/')}"
-
-
-def _read(model: InSimulator) -> Iterator[tuple[str, str]]:
-    for it in _inputs(model):
-        yield it.ros_type, f"/{it.gz.lstrip('/')}"
-
-
-def _inputs(model: InSimulator) -> Iterator[BridgedTopic]:
-    yield from (it for it in model.topics if it.direction == _INTO_GAZEBO)
 
 
 @launch_rule("MG706", "world-without-system")
@@ -193,16 +182,6 @@ def _rows(launched: Launched) -> Iterator[_Row]:
                     bound = bound_of(it.name, it.namespace, it.rules)
                     full = resolve_bound(end.name, end.kind, bound)
                     yield _Row(full, inside, end.role == SUBSCRIBES, it)
-
-
-def into_gazebo(launched: Launched) -> set[str]:
-    """The topics in Gazebo that bridges pass something on to."""
-    return {it.gz for it in _rows(launched) if it.inwards}
-
-
-def out_of_gazebo(launched: Launched) -> set[str]:
-    """The topics in Gazebo that bridges bring to ROS."""
-    return {it.gz for it in _rows(launched) if not it.inwards}
 
 
 @launch_rule("MG705", "bridge-to-another-robot")

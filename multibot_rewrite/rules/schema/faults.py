@@ -15,18 +15,21 @@ from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.description.checks.problem import Problem, fault
 from multibot_rewrite.description.steps.document import Document, tag_end
 from multibot_rewrite.rules.schema.sections import (
+    COUNTS,
     ROBOT,
     Kind,
     Schema,
     UrdfPart,
+    is_fine,
     is_own,
     schema,
     section_of,
     sections_below,
     sections_once,
+    shortened,
     typed_attributes,
+    wrong_numbers,
 )
-from multibot_rewrite.rules.schema.values import COUNTS, is_fine, shortened, wrong_numbers
 from multibot_rewrite.rules.schema.versions import Version, is_known, version_of
 
 # What a child of <robot> can be a misspelling of: anything else there is an extension.

@@ -21,8 +21,7 @@ from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import values_of_plugin
 from multibot_rewrite.description.rewriters.vocabulary import Value, Values, Vocabulary
 from multibot_rewrite.rules.schema.sdf_values import TURN, misread, number_in
-from multibot_rewrite.rules.schema.sections import is_own
-from multibot_rewrite.rules.schema.values import shortened
+from multibot_rewrite.rules.schema.sections import is_own, shortened
 
 GZ, GAZEBO_ROS = "gz-sim-", "gazebo_ros_"
 # How the libraries end that come with Gazebo Classic itself.

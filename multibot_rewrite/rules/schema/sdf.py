@@ -22,8 +22,7 @@ from multibot_rewrite.description.checks.problem import Problem, fault
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.rules.schema.described import WORDS, SdfPart, SdfRow, chunks, described
 from multibot_rewrite.rules.schema.sdf_values import QUATERNION, TURN, misread, number_in
-from multibot_rewrite.rules.schema.sections import is_own
-from multibot_rewrite.rules.schema.values import shortened
+from multibot_rewrite.rules.schema.sections import is_own, shortened
 from multibot_rewrite.rules.schema.versions import (
     SDFORMAT,
     may_be_classics,

@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING,
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import Cause, caused
-from multibot_rewrite.rules.system.planned import similar
+from multibot_rewrite.rules.system.planned_ends import similar
 from multibot_rewrite.rules.system.tf_causes import (
     is_described,
     sent_by_robot,

@@ -10,7 +10,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.records import Claim
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.evidence.hardware import control_system, exported
-from multibot_rewrite.rules.system.interfaces import Missing, missing
+from multibot_rewrite.rules.system.states import Missing, missing
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import Place
 

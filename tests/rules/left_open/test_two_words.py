@@ -14,8 +14,7 @@ from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.producers.evidence.hardware import Exported, control_system
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.rules.system.interfaces import claims_any
-from multibot_rewrite.rules.system.states import interface_commanded_twice
+from multibot_rewrite.rules.system.states import claims_any, interface_commanded_twice
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import ALONE

@@ -25,7 +25,7 @@ from multibot_rewrite.description.sources.packages import (
     sources_around,
 )
 from multibot_rewrite.rules.description.references.control import misspelt_interfaces
-from multibot_rewrite.rules.description.references.gazebo import (
+from multibot_rewrite.rules.description.references.duplicates import (
     sensors_elsewhere,
     sensors_of_joints,
 )
@@ -35,8 +35,7 @@ from multibot_rewrite.rules.description.structure.joints import (
 )
 from multibot_rewrite.rules.description.structure.mimic import unreadable_numbers
 from multibot_rewrite.rules.facts.faults import faults
-from multibot_rewrite.rules.facts.memo import lacking
-from multibot_rewrite.rules.facts.sensors import CAMERAS, LIDARS, number_at
+from multibot_rewrite.rules.facts.memo import CAMERAS, LIDARS, lacking, number_at
 from multibot_rewrite.rules.facts.simulators import library_of, simulator_plugins
 from multibot_rewrite.rules.subject import Subject
 

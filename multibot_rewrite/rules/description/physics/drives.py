@@ -37,8 +37,7 @@ from multibot_rewrite.rules.facts.drives import (
     size_of,
     wheel_joints,
 )
-from multibot_rewrite.rules.facts.memo import driven_joints, link_poses, memoized
-from multibot_rewrite.rules.facts.sensors import number_at
+from multibot_rewrite.rules.facts.memo import driven_joints, link_poses, memoized, number_at
 from multibot_rewrite.rules.facts.support import beyond, contacts, hull
 from multibot_rewrite.rules.subject import Subject
 

@@ -23,7 +23,7 @@ from multibot_rewrite.description.checks.links_and_joints import (
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.rules.facts.sensors import number_at
+from multibot_rewrite.rules.facts.memo import number_at
 from multibot_rewrite.rules.facts.simulators import simulator_plugins
 from multibot_rewrite.rules.schema.versions import may_be_classics
 from multibot_rewrite.rules.subject import Subject

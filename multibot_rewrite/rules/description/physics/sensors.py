@@ -22,8 +22,14 @@ from multibot_rewrite.description.checks.poses import (
 )
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.shapes import shapes_of, way_out
-from multibot_rewrite.rules.facts.memo import link_poses
-from multibot_rewrite.rules.facts.sensors import CAMERAS, LIDARS, Sensor, number_at, sensors
+from multibot_rewrite.rules.facts.memo import (
+    CAMERAS,
+    LIDARS,
+    Sensor,
+    link_poses,
+    number_at,
+    sensors,
+)
 from multibot_rewrite.rules.facts.simulators import (
     CLASSIC,
     GAZEBO,

@@ -24,7 +24,7 @@ from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
 
 if TYPE_CHECKING:
-    from multibot_rewrite.rules.system.interfaces import Missing
+    from multibot_rewrite.rules.system.states import Missing
     from multibot_rewrite.system.records import Interface
 
 _IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
@@ -35,7 +35,7 @@ _BESIDE = "controllers"
 def _not_exported(subject: Subject) -> Iterator[Problem]:
     for element, known in _claimed(subject):
         # Few descriptions need them.
-        from multibot_rewrite.rules.system.interfaces import missing
+        from multibot_rewrite.rules.system.states import missing
         from multibot_rewrite.system.records import EXPORTS
 
         chosen = _chosen(subject) if any(missing(known)) else ()
@@ -46,7 +46,7 @@ def _not_exported(subject: Subject) -> Iterator[Problem]:
 
 def _claimed_twice(subject: Subject) -> Iterator[Problem]:
     for element, known in _claimed(subject):
-        from multibot_rewrite.rules.system.interfaces import claimed_twice
+        from multibot_rewrite.rules.system.states import claimed_twice
 
         for other, twice in claimed_twice(known):
             message = f"{_at(twice)}: {twice.node} claims {twice.name} by two parameters"
@@ -153,7 +153,7 @@ def _interfaces(subject: Subject, path: str, is_sure: bool) -> tuple[Interface, 
     from multibot_rewrite.knowledge.stacks import load_nodes
     from multibot_rewrite.producers.evidence.hardware import control_system, exported
     from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-    from multibot_rewrite.rules.system.interfaces import claims_any
+    from multibot_rewrite.rules.system.states import claims_any
 
     release, document = subject.settings.distro, subject.document
     try:
