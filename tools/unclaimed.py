@@ -11,9 +11,9 @@ import sys
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import NamedTuple
 
 from multibot_rewrite.base.model import InputError, MultibotError
-from multibot_rewrite.base.record import NamedTuple
 from tools.survey import MentionPlace, Survey, Tally, surveyed
 
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import re
 from functools import cache, lru_cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 
 # Who sends a topic, or reads it: every node there is; any node may; some nodes do; a single one.
 EVERY, ANY, SOME, ONE = range(4)

@@ -6,10 +6,10 @@ from __future__ import annotations
 import re
 from codecs import BOM_UTF8
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import COMMENT, lazy_compile, without_comments
 from multibot_rewrite.base.model import TEMPLATE, InputError
-from multibot_rewrite.base.record import NamedTuple
 
 PARAMS, RVIZ, BRIDGE, MOVEIT, TREE, LUA = "params", "rviz", "bridge", "moveit", "tree", "lua"
 URDF, XACRO, SDF, WORLD, SRDF = "urdf", "xacro", "sdf", "world", "srdf"

@@ -13,9 +13,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import ATTRIBUTES, SILENT, lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 
 _STAGE = "http://playerstage.sourceforge.net/gazebo/xmlschema/#"
 # What prefixes of descriptions stand for; a document may bind others to the same namespaces.

@@ -6,9 +6,7 @@ Text positions are byte offsets into the source; lines and columns count from 1.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from multibot_rewrite.base.record import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from lxml.etree import _Element

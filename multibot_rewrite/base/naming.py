@@ -8,12 +8,11 @@ where to insert, and what is put before and after the robot's name.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TypedDict
+from typing import NamedTuple, TypedDict
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.base.record import NamedTuple
 
 PREFIX, POSTFIX, NAMESPACE = "prefix", "postfix", "namespace"
 TF_TOPICS = ("tf", "tf_static")

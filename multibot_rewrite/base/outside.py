@@ -14,9 +14,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import wraps
 from importlib import import_module
-from typing import Any, ParamSpec, TypeVar
-
-from multibot_rewrite.base.record import NamedTuple
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 try:
     from _blake2 import blake2b  # hashlib loads OpenSSL, which takes longer than a short lint

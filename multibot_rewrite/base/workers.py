@@ -14,10 +14,9 @@ import select
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import BinaryIO, Generic, NoReturn, TypeVar
+from typing import BinaryIO, Generic, NamedTuple, NoReturn, TypeVar
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 
 _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")

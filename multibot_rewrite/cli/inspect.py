@@ -18,7 +18,7 @@ from multibot_rewrite.base.findings.codes import (
     near_name,
     no_rule,
 )
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import Rule
 from multibot_rewrite.base.model import SiteRow, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.wording import clip, shorten

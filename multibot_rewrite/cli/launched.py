@@ -6,9 +6,9 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.cli.output import deliver
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes

@@ -8,10 +8,10 @@ import sys
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, Rule
 from multibot_rewrite.base.findings.formats import NO_COVERAGE, Report, rendered
-from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import (
     Selection,
     fails,
@@ -19,7 +19,6 @@ from multibot_rewrite.base.findings.selection import (
     selected,
 )
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
 from multibot_rewrite.system.coverage import Coverage, as_value, in_words

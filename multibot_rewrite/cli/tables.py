@@ -8,9 +8,9 @@ import argparse
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import zip_longest
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import in_json, one_line
 from multibot_rewrite.cli.output import deliver, goes_to_file, prints_colour
 

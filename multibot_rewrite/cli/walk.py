@@ -6,12 +6,11 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 from multibot_rewrite.base.bounded import MAX_BYTES
 from multibot_rewrite.base.left_out import ignored_by_git, is_hidden, source_folders
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural, shorten, unique
 
 EVERYTHING = "--no-default-excludes"

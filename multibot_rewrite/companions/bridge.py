@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import POSTFIX, spelled
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge_entry import (
     BOTH,
     FRAME,

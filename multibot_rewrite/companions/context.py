@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.description.rewriters.forms import Declared

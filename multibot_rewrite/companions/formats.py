@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
+from typing import NamedTuple
 
 from multibot_rewrite.base.file_kinds import refuse_others
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.behavior_tree.rewrite import named_tree, rewrite_behavior_tree
 from multibot_rewrite.companions.bridge import read_bridge, rewrite_bridge
 from multibot_rewrite.companions.bridge_entry import MODEL_SLOT

@@ -15,12 +15,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import PREFIX, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.formats import rewrite_alone
 from multibot_rewrite.companions.moveit.file_kind import (

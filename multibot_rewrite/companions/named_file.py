@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from multibot_rewrite.base.bounded import MAX_BYTES, read_start
 from multibot_rewrite.base.file_kinds import BESIDE, BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
-from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
     from multibot_rewrite.base.findings.finding import Finding

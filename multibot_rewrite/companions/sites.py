@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import Finding, Rule
 
 if TYPE_CHECKING:
     from multibot_rewrite.knowledge.records import Param

@@ -12,15 +12,14 @@ import re
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from math import inf
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.bounded import MAX_BYTES, QUOTED, compose_yaml
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import Finding, Rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 
 # Reads back as the same text in any place, and never as a number, date, boolean or null.
 _PLAIN = re.compile(r"[A-Za-z_/~][A-Za-z0-9_./~-]*")

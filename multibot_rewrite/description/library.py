@@ -7,14 +7,13 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from itertools import chain
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import Change
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves, make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline

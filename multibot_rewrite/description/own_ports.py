@@ -16,12 +16,12 @@ launch/multi_uav_mavros_sitl.launch (1 for each instance); of hardware see its s
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from lxml.etree import Comment, _Element
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, locate
 from multibot_rewrite.base.model import Change, Edit, InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem, to_findings
 from multibot_rewrite.description.readback.meeting import (
     NUMBERED,

@@ -7,12 +7,12 @@ import itertools
 import os
 from collections.abc import Iterator, Sequence
 from functools import cache
+from typing import NamedTuple
 
 from multibot_rewrite.base import editors
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.fleet.checks.across_domains import one_launch_each

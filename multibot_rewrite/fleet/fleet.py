@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import Naming, Policy, make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.steps.collect import Inventory

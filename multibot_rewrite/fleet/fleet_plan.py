@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.naming import Naming, make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import robots_meet
 from multibot_rewrite.fleet.checks.named_twice import declared_twice

@@ -7,10 +7,10 @@ import json
 import os
 from collections.abc import Iterable, Mapping
 from hashlib import sha256
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import load_json
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import BUILD, MANIFEST
 from multibot_rewrite.fleet.fleet_plan import FleetPlan

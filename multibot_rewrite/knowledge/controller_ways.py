@@ -6,7 +6,8 @@ Source: ros2_control ``controller_manager.cpp`` (``determine_controller_node_opt
 
 from __future__ import annotations
 
-from multibot_rewrite.base.record import NamedTuple
+from typing import NamedTuple
+
 from multibot_rewrite.base.releases import has_release
 
 

@@ -13,9 +13,9 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import read_text
-from multibot_rewrite.base.record import NamedTuple
 
 FILE = os.path.join(os.path.dirname(__file__), "declared.schema")
 _DEMANDS = os.path.join(os.path.dirname(__file__), "demanded.schema")

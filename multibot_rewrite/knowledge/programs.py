@@ -8,7 +8,8 @@ slam_toolbox launch/online_sync_launch.py.
 
 from __future__ import annotations
 
-from multibot_rewrite.base.record import NamedTuple
+from typing import NamedTuple
+
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.records import NO_ORIGIN, Origin
 
 MANAGER, MOVE_GROUP, TWIST_MUX = "controller_manager", "move_group", "twist_mux"

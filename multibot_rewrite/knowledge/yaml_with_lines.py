@@ -5,12 +5,11 @@ besides itself: the releases that have it, and where that can be read."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NoReturn, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias, TypeVar
 
 from multibot_rewrite.base.bounded import compose_own_yaml, compose_yaml
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
     import yaml

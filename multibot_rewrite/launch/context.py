@@ -12,11 +12,10 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from tempfile import TemporaryDirectory
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
 from multibot_rewrite.fleet.scripts import LoadedFleet, load_fleet
 from multibot_rewrite.producers.launch.door import of_launch

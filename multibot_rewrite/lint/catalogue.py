@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
 
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import Rule
 
 # The modules (below the package) that declare rules beside those of ``rules``.
 HOMES = (

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from lxml.etree import _Element
 
 from multibot_rewrite.base.file_kinds import refuse_templates
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, by_place, locate
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Rule, by_place, locate
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.lazy import lazy_compile

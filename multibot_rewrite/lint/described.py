@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, locate
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Rule, locate
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.rules.settings import LEFT_OUT
 

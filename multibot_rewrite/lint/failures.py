@@ -7,8 +7,7 @@ import os
 import re
 import signal
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Rule
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import (

@@ -7,12 +7,12 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit, ProofError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.checks.poses import (
     NO_ROTATION,

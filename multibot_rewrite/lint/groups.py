@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.rule import URDF, Rule
+from multibot_rewrite.base.findings.finding import URDF, Rule
 from multibot_rewrite.base.findings.selection import is_on
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.settings import Settings
 

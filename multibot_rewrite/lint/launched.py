@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 import yaml
 
@@ -18,7 +19,6 @@ from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.named_file import BRIDGE, PARAMS, kind_of

@@ -14,9 +14,8 @@ import json
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.ros.assemble import BUSY_MACHINE

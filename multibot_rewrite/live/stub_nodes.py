@@ -13,11 +13,10 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.conventions import CLIENT, LISTENER
 from multibot_rewrite.base.naming import TF_TOPICS
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.live.rehearsal import (
     TF,

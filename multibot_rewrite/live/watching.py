@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from enum import IntEnum
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.check import ABSENCE
 from multibot_rewrite.system.coverage import Coverage
 from multibot_rewrite.system.records import CHANGING, System, doubts

@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR
-from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import ERROR, Rule
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.pages.page_sections import LEVELS, PageSection, ids_in, ids_of, link_to
 from multibot_rewrite.pages.scene import FindingRow, Scene

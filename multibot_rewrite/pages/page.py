@@ -11,11 +11,10 @@ from functools import cache
 from html import escape
 from importlib.resources import files
 from itertools import groupby
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import NOTE
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import NOTE, Rule
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.live.watching import Verdict
 from multibot_rewrite.pages.finding_list import Sources, explanations, filters, finding_list

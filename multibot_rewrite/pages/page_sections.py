@@ -6,13 +6,11 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Rule
 from multibot_rewrite.base.findings.formats.plain import in_words
-from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.findings.selection import said_of
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.live.watching import Verdict, verdict_words
 from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName, FindingRow, Scene

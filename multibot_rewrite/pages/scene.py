@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.selection import with_members
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.live.watching import Outcome, judge, verdict_words
 from multibot_rewrite.pages.states import (
     FAULTY,

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.index import Index, ends_of
 from multibot_rewrite.system.records import alternatives

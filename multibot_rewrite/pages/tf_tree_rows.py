@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.index import Index

@@ -9,11 +9,10 @@ convert/utils.hpp (frame_id_gz_to_ros makes / of each ::).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import cast
+from typing import NamedTuple, cast
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import read_robot
 from multibot_rewrite.description.rewriters.text import text_at
 

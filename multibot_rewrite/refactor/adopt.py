@@ -15,11 +15,11 @@ from contextlib import redirect_stderr
 from io import StringIO
 from itertools import chain
 from types import MappingProxyType
+from typing import NamedTuple
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, affix
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.joining.part import PREFIXED, prefixing
 from multibot_rewrite.description.reports.xacro_arguments import (

@@ -13,9 +13,9 @@ import os
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator
 from itertools import accumulate, chain
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import locate
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.refactor.placing import Left
 from multibot_rewrite.refactor.source_edits import SourceEdit, edited
 

@@ -17,10 +17,10 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import zip_longest
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError, MultibotError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS
 from multibot_rewrite.description.checks.links_and_joints import WORLD

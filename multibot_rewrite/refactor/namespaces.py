@@ -11,12 +11,12 @@ import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import zip_longest
+from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, ROS_KINDS, Naming, make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.part import in_one_line
 from multibot_rewrite.description.readback.xml import read_xml

@@ -15,11 +15,11 @@ from contextlib import redirect_stderr
 from io import StringIO
 from itertools import chain, islice
 from types import MappingProxyType
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced

@@ -11,10 +11,10 @@ from __future__ import annotations
 import os
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.expand import Expansion
 from multibot_rewrite.description.sources.trace import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.steps.document import attribute_slots, tag_end

@@ -12,6 +12,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
+from typing import NamedTuple
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.bounded import read_bytes
@@ -19,7 +20,6 @@ from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError, MultibotError, UsageError
 from multibot_rewrite.base.naming import Affix, Naming, make_naming
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.rewriters.contact import respell_collisions

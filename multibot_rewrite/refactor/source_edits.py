@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.expand import Expansion
 from multibot_rewrite.description.sources.trace import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.steps.document import Document, place_in, value_slot

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import Vector, number
 from multibot_rewrite.description.checks.poses import (
     Pose,

@@ -11,8 +11,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.findings.rule import Rule, declare, rule
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Rule, declare, rule
 from multibot_rewrite.system.records import NOWHERE, Place
 
 if TYPE_CHECKING:

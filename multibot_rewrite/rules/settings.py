@@ -6,12 +6,11 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.selection import NO_LEVELS, matched
 from multibot_rewrite.base.naming import Naming, make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import NEWEST_LTS
 
 if TYPE_CHECKING:

@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from multibot_rewrite.base.findings.rule import URDF
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import URDF
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import Tree

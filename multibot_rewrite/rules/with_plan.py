@@ -12,8 +12,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
 from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.system.differing import COMPARED, unexplained
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint

@@ -10,14 +10,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite import knowledge
 from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.description.readback.other_topics import as_valid_topic
 from multibot_rewrite.description.readback.parameters import holds

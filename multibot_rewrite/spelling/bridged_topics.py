@@ -6,13 +6,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import cast
+from typing import NamedTuple, cast
 
 from lxml import etree
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, make_naming, spelled
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.model_namespaces import scoped_namespace
 from multibot_rewrite.description.readback.xml import values_at
 from multibot_rewrite.description.rewriters.model_namespaces import is_model_namespace

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import (
     READ_BY_EVERY_NODE,
     SENT_BY_EVERY_NODE,
     tool_patterns,
 )
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,

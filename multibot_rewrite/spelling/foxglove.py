@@ -13,11 +13,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.spelling.shown import Shown, shown_by_robot, world_of_plan
 from multibot_rewrite.system.records import PUBLISHES, System, surely
 

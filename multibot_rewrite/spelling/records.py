@@ -5,10 +5,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.system.parameters import ANY_NAME, Value
 from multibot_rewrite.system.records import NOWHERE, Place

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SUBSCRIBES, TOPIC, Robot, System
 
 _STRING, _DESCRIPTION = "std_msgs/msg/String", "robot_description"

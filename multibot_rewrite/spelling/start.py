@@ -6,9 +6,8 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.programs import Program
 from multibot_rewrite.spelling.records import Rules
 from multibot_rewrite.spelling.ways import (

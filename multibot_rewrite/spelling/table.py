@@ -8,11 +8,10 @@ by resolving every name with its rules as rcl does (``rosnames``), not by trusti
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.naming import NAMESPACE, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.nodes import ReadNode
 from multibot_rewrite.description.readback.reading import Reading

@@ -10,10 +10,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
 from functools import cache, partial
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.rosnames import BoundNode, bind, parse_remap, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import ControllerWay, controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import OF_EVERY_NODE
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.system.records import (
     NOT_KNOWN_PROCESS,

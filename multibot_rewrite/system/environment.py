@@ -13,10 +13,10 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from math import inf
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.system.records import (
     CHANGING,

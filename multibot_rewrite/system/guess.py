@@ -14,9 +14,9 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Set
 from functools import cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, USUAL_FRAMES
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.ownership import SEPARATORS, Whose
 from multibot_rewrite.system.records import TOPIC, Edge, System
 from multibot_rewrite.system.tool_nodes import is_tool

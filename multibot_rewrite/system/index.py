@@ -6,10 +6,9 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence, Set
 from functools import wraps
-from typing import Any, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar, cast
 
 from multibot_rewrite.base.conventions import EVERYBODYS
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.system import words
 from multibot_rewrite.system.ownership import NameOwnership, Whose

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.system.records import System
 
 # What may separate a robot's name from the rest of a segment.

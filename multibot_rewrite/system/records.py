@@ -7,10 +7,9 @@ Texts for people decide nothing.
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"

@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.base.findings import codes
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding, Rule
 from multibot_rewrite.base.findings.formats import Report, plain, rendered
 from multibot_rewrite.base.findings.formats.plain import by_file, counts, inside, path_below
-from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import Edit, UsageError
 from multibot_rewrite.version import __version__
 

@@ -13,8 +13,7 @@ import pytest
 from fleet_folder import planned_fleet
 from support.rule_examples import DESCRIPTION, whole
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
-from multibot_rewrite.base.findings.rule import URDF, Rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, URDF, Finding, Rule
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.lint.check import lint_file

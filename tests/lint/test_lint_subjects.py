@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.base.findings.rule import SRDF, XACRO
+from multibot_rewrite.base.findings.finding import SRDF, XACRO
 from multibot_rewrite.lint.files.subjects import Failed, read_subjects
 from multibot_rewrite.rules.settings import ArgumentSet, Settings
 

@@ -11,8 +11,7 @@ from typing import Any
 import pytest
 from paths import ROOT
 
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import Finding, Rule
 from multibot_rewrite.base.findings.selection import is_on
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.lint.check import lint_file, unsuppressed

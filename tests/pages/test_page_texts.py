@@ -7,8 +7,7 @@ import re
 
 import pytest
 
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import Finding, Rule
 from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.pages.finding_list import (
     Sources,

@@ -13,8 +13,7 @@ import pytest
 import yaml
 from rule_examples import BUILT, COMPANIONS
 
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import Finding, Rule
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.fleet.build import make_outputs

@@ -13,8 +13,7 @@ from fleet_folder import planned_fleet
 from graph_examples import read_example, read_system
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO, Rule
+from multibot_rewrite.base.findings.finding import SRDF, URDF, XACRO, Finding, Rule
 from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS

@@ -12,8 +12,8 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.declared import DECLARED, READ
 from multibot_rewrite.producers.sources.expressions import is_node
 from multibot_rewrite.producers.sources.records import Call, Place, Source, Value

@@ -14,9 +14,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import load_yaml
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES as EVERY
 from multibot_rewrite.knowledge.declared import ANY, CHECKS, DECLARED, RELEASES, YAML, checks_in
 from multibot_rewrite.knowledge.stacks import every_release

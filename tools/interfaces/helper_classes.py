@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from tools.interfaces.plugin_parameters import ANY, Parameter, declared_types, type_of
 
 _CLASS = re.compile(r"^\s*class\s+(\w+)", re.MULTILINE)

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.sources.records import Class, Fact, Place
 from tools.interfaces.nodes import facts_of
 from tools.interfaces.scope import Index

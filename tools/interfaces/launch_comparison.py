@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib.resources import files
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import load_yaml
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from tools.interfaces.parameter_tables import LaunchFact
 

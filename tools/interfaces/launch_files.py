@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 import yaml
 from lxml import etree
 
 from multibot_rewrite.base.bounded import compose_yaml
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 
 NODE, LIFECYCLE, CONTAINER, COMPONENT = "node", "lifecycle_node", "container", "component"
 # Actions of Python files, and elements of XML and YAML files.

@@ -6,8 +6,8 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Iterator
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.sources.apis import ARGUMENT, HELPER, OWN, Api, apis
 from multibot_rewrite.producers.sources.expressions import is_node, last, template_arguments
 from multibot_rewrite.producers.sources.records import Call, Class, Fact

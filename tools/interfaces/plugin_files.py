@@ -10,9 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Container, Iterable, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.description.rewriters.vocabulary import Value, Vocabulary
 from multibot_rewrite.description.rewriters.vocabulary.values import VALUE, read_values

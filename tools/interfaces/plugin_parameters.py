@@ -12,9 +12,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.sources.expressions import text_of
 from multibot_rewrite.producers.sources.syntax import nodes_of
 from tools.interfaces.plugin_demands import required_in, words_in

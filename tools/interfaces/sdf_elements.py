@@ -11,11 +11,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 
 # Older ones are not met any more.
 OLDEST = (1, 4)

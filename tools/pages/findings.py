@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 
 from multibot_rewrite.base.findings.codes import examples, listed
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import Rule
 from multibot_rewrite.lint.catalogue import declared
 from multibot_rewrite.lint.groups import GROUPS
 from multibot_rewrite.lint.registry import RULES

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.registry import RULES
 from tools.pages.markdown import plain
 

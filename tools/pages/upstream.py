@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from tools.pages.markdown import plain
 
 DATA = Path(__file__).parents[2] / "fixtures" / "upstream.tsv"

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import Rule
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import nearest
 

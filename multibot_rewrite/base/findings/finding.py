@@ -1,13 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The one record of a finding: of a description, a parameter file, a remap table, the live graph."""
+"""The one record of a finding (of a description, a parameter file, a remap table, the live graph), and
+the rule that it is of: its code, level and check. A rule's words and examples are its page,
+``rules/pages/CODE.md``.
+
+A page says what is found, why that hurts, the fix, and has examples. Below the title are three
+paragraphs, the second begins with ``**Why.**``, the third with ``**Fix.**``. Then come fenced blocks,
+each below its title: ``Bad``, ``Fixed`` (what ``--fix`` makes), ``Good``, and ``Beside it, `NAME` ``
+for each other file. ``Bad (line N)`` says where the finding is.
+"""
 
 from __future__ import annotations
 
-from functools import lru_cache
-from typing import Annotated
+import os
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache, lru_cache, partial
+from types import MappingProxyType
+from typing import Annotated, Any, NamedTuple, TypeVar
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, MultibotError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import one_line
 
 # What is counted once: a file may have thousands of findings, and be one line.
@@ -117,3 +128,173 @@ class RewriteRefused(MultibotError):
 
     def __str__(self) -> str:
         return "\n".join(str(finding) for finding in self.findings)
+
+
+URDF, SRDF, XACRO = "urdf", "srdf", "xacro"
+NOTHING: Mapping[str, Any] = {}
+_Check = TypeVar("_Check", bound=Callable[..., Any])
+
+
+class Rule(NamedTuple):
+    """A rule, with its words and examples.
+
+    ``check`` is the function that finds the fault, None where several functions raise it.
+    ``formats`` are what the examples are written in; in a ``urdf``, ``srdf`` or ``xacro`` a text that
+    starts with neither ``<?xml`` nor ``<robot`` belongs inside ``<robot name="r">``. ``options`` say
+    how the examples are checked. ``examples`` names the page of the examples where it is not that
+    of the code.
+    """
+
+    code: str
+    name: str
+    level: str
+    check: Callable[..., Any] | None = None
+    formats: tuple[str, ...] = (URDF,)
+    options: Mapping[str, object] = NOTHING
+    examples: str = ""
+
+    @property
+    def what(self) -> str:
+        """What the rule finds."""
+        return rule_page(self.code).what
+
+    @property
+    def why(self) -> str:
+        """Why that hurts at run time."""
+        return rule_page(self.code).why
+
+    @property
+    def fix(self) -> str:
+        """How to mend it."""
+        return rule_page(self.code).fix
+
+    @property
+    def page(self) -> RulePage:
+        """The page with the examples."""
+        return rule_page(self.examples or self.code)
+
+    @property
+    def bad(self) -> str:
+        """A text that has the finding exactly once, in line ``line``."""
+        return self.page.bad
+
+    @property
+    def good(self) -> str:
+        """A text that does not have the finding."""
+        return self.page.good
+
+    @property
+    def fixed(self) -> str:
+        """What the fix makes of ``bad``; empty where there is none."""
+        return self.page.fixed
+
+    @property
+    def line(self) -> int:
+        """The line of ``bad`` with the finding."""
+        return self.page.line
+
+    @property
+    def beside(self) -> Mapping[str, str]:
+        """The files beside the example, by name."""
+        return self.page.beside
+
+    def finding(self, message: str, hint: str = "", **place: Any) -> Finding:
+        """A finding of this rule; ``place`` are the other fields of ``Finding``; one of a line alone
+        is at its first column."""
+        if "line" in place:
+            place.setdefault("column", 1)
+        level = place.pop("level", self.level)
+        return Finding(self.code, level, message, hint or self.advice, **place)
+
+    @property
+    def advice(self) -> str:
+        """What to do in few words: the first sentence of ``fix``, as a hint is written.
+
+        Empty where that sentence says to do nothing, or what the hint of each finding has.
+        """
+        first = self.fix.partition(". ")[0].removesuffix(".")
+        if first.startswith("Nothing") or "the hint" in first:
+            return ""
+        return first[:1].lower() + first[1:]
+
+
+def declare(
+    code: str,
+    name: str,
+    level: str,
+    check: Callable[..., Any] | None = None,
+    *,
+    formats: tuple[str, ...] = (URDF,),
+    options: Mapping[str, object] = NOTHING,
+) -> Rule:
+    """Return a rule; without a function of its own it is for what a step or several functions find."""
+    return Rule(code, name, level, check, formats, options)
+
+
+def rule(code: str, name: str, level: str, **about: Any) -> Callable[[_Check], Rule]:
+    """Make the function that looks for a fault a ``Rule``; ``about`` is as for ``declare``."""
+    return partial(declare, code, name, level, **about)
+
+
+FOLDER = os.path.join(os.path.dirname(__file__), "..", "..", "rules", "pages")
+_WHY, _FIX = "**Why.** ", "**Fix.** "
+_BESIDE = "Beside it, "
+_TITLE = lazy_compile(r"(Bad|Fixed|Good|Beside it, `[^`]+`)(?: \(line ([0-9]+)\))?:")
+
+
+class RulePage(NamedTuple):
+    """The words and examples of a rule."""
+
+    what: str = ""
+    why: str = ""
+    fix: str = ""
+    bad: str = ""
+    good: str = ""
+    fixed: str = ""
+    line: int = 1
+    beside: Mapping[str, str] = MappingProxyType({})
+
+
+@cache
+def rule_page(name: str) -> RulePage:
+    """Return the page ``name`` of the rules; raises FileNotFoundError where there is none."""
+    with open(os.path.join(FOLDER, f"{name}.md"), encoding="utf-8", newline="") as file:
+        return read_page(file.read())
+
+
+def read_page(text: str) -> RulePage:
+    """Return what a page says. An example of one line has no line end, a longer one has."""
+    prose, examples, line = [], {}, 1
+    lines = iter(text.split("\n"))
+    paragraph: list[str] = []
+    title = ""
+    for each in lines:
+        found = _TITLE.fullmatch(each)
+        if found:
+            title, line = found[1], int(found[2] or line)
+        elif title and each.startswith("```"):
+            examples[title] = _example(each[: len(each) - len(each.lstrip("`"))], lines)
+        elif each.strip() and not each.startswith("#"):
+            paragraph.append(each)
+        elif paragraph:
+            prose.append(" ".join(paragraph))
+            paragraph = []
+    what, why, fix = prose or ("", _WHY, _FIX)
+    beside = {
+        it.removeprefix(_BESIDE).strip("`"): own
+        for it, own in examples.items()
+        if it.startswith(_BESIDE)
+    }
+    why, fix = why.removeprefix(_WHY), fix.removeprefix(_FIX)
+    bad, good, fixed = (examples.get(it, "") for it in ("Bad", "Good", "Fixed"))
+    return RulePage(what, why, fix, bad, good, fixed, line, beside)
+
+
+def _example(fence: str, lines: Iterator[str]) -> str:
+    """Return the block up to the closing fence."""
+    block = []
+    for line in lines:
+        if line == fence:
+            break
+        block.append(line)
+    return block[0] if len(block) == 1 else "".join(f"{it}\n" for it in block)

@@ -6,10 +6,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.findings.finding import LEVELS, Finding
-from multibot_rewrite.base.record import NamedTuple
 
 # In the place of a level: the rule is off.
 OFF = "off"

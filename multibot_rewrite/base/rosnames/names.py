@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import pairwise
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 
 # rmw: 255 less 8 for the rt/, rq/ and rr/ ... Reply of the wire; a namespace leaves room for "/x".
 MAX_TOPIC = 247

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import LEVELS
 from multibot_rewrite.base.findings.formats import FORMATS
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS, SEPARATORS
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES, VARIABLE
 from multibot_rewrite.cli import values
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.naming import NAMESPACE
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import bind, check_name_in_code, expand, resolve_bound
 from multibot_rewrite.companions.context import NAMESPACE_SLOT, Context
 from multibot_rewrite.companions.names.by_kind import is_plain

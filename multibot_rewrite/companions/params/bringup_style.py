@@ -13,8 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
 from multibot_rewrite.companions.params.rcl_parameters import parameters_text
 from multibot_rewrite.companions.params.sections import RawSection, raw_sections
 from multibot_rewrite.companions.params.shared_defaults import DefaultLine, inserted

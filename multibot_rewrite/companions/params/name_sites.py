@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import yaml
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.params.sections import NO_NAME, ParamSection

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER, WORLD_NODES
 from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.naming import spelled
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import NAMESPACE_SLOT, Context, full_name
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.yaml_text import YamlText, anchors, names_below, pairs, refused

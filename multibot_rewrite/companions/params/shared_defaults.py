@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.naming import spelled
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import NAMESPACE_SLOT, Context, full_name
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
 from multibot_rewrite.companions.params.name_sites import SectionNames

@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.context import NAMESPACE_SLOT, TAG_SLOT, Context
 from multibot_rewrite.companions.engine import GRAPH, spell_site, splices_of, written

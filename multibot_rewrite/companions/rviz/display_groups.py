@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import robot_topic
 from multibot_rewrite.companions.rviz.read_config import (
     ABSOLUTE,

@@ -11,8 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, make_naming
 from multibot_rewrite.companions.rviz.display_groups import leaves
 from multibot_rewrite.companions.rviz.read_config import TOPIC, RvizItem, palette, read_config

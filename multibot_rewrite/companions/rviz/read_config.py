@@ -6,14 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from colorsys import hls_to_rgb
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.sites import Site, site_at
 from multibot_rewrite.companions.yaml_text import (

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import yaml
 
@@ -12,7 +13,6 @@ from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, ProofError, UsageError
 from multibot_rewrite.base.naming import TF_TOPICS, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.named_file import RVIZ, NamedFile
 from multibot_rewrite.companions.names.placeholders import without_robot

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.naming import NAMESPACE
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.engine import splices_of
 from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.names.rename_map import CompanionNames, spell

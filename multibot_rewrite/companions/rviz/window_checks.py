@@ -7,8 +7,7 @@ from collections.abc import Iterator
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.companions.rviz.display_groups import Robots, for_one_process, leaves
 from multibot_rewrite.companions.rviz.read_config import (
     ABSOLUTE,

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import WARNING
-from multibot_rewrite.base.findings.rule import XACRO, declare
+from multibot_rewrite.base.findings.finding import WARNING, XACRO, declare
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import FRAME_KINDS
 from multibot_rewrite.base.nearest import did_you_mean_one_of

@@ -13,10 +13,10 @@ from functools import reduce
 from io import BytesIO
 from itertools import count
 from math import cos, isfinite, radians, sin, sqrt
+from typing import NamedTuple
 
 from lxml.etree import XMLSyntaxError, _Element, iterparse
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.shapes import Extent, around
 
 # Rows of a matrix of 3 x 4: a rotation that may scale, and a place.

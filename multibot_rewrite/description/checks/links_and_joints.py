@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import number, value_of
 from multibot_rewrite.description.rewriters.text import kept_joints
 

@@ -7,6 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterator
 from functools import lru_cache
+from typing import NamedTuple
 
 from lxml import etree
 
@@ -15,7 +16,6 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import TF_TOPICS, Naming, spelled
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, TreeNode, values_of_plugin

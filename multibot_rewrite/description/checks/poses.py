@@ -13,10 +13,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import atan2, cos, hypot, isfinite, sin, sqrt
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot, roots
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
 

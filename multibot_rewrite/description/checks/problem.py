@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Claim, Edit
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.steps.document import Document, finding
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
@@ -11,7 +12,6 @@ from multibot_rewrite.base.findings.finding import WARNING, locate
 from multibot_rewrite.base.model import Claim, SiteRow
 from multibot_rewrite.base.naming import CLOSED_KINDS, is_keyword
 from multibot_rewrite.base.nearest import Guesses
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.rewriters.forms import Declared, NamePart
 from multibot_rewrite.description.rewriters.spelling import kind_of, must_be_declared, names_in

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import FRAME_KINDS, NO_OWN_NAMES, TOPIC_KINDS, Naming, removal
 from multibot_rewrite.description.checks.problem import Problem, about

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import radians
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.checks.poses import (
     HERE,

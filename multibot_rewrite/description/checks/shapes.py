@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from math import hypot, inf, sqrt
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.description.checks.poses import (

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim
@@ -15,7 +16,6 @@ from multibot_rewrite.base.naming import (
     TOPIC_KINDS,
     OwnNames,
 )
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.steps.collect import Inventory

@@ -16,11 +16,11 @@ model has, whatever stands in the visual is not read).
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.joining.kept import left_out, was
 from multibot_rewrite.description.joining.part import ReadPart

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from math import isfinite
 from operator import attrgetter
+from typing import NamedTuple
 
 from lxml import etree
 from lxml.etree import _Element
@@ -18,7 +19,6 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError, UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import WORLD, Joint, Robot, read_robot
 from multibot_rewrite.description.checks.poses import (
     HERE,

@@ -18,13 +18,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 from urllib.parse import quote, unquote
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import read_document, silenced
 from multibot_rewrite.description.steps.spans import Spans

@@ -10,12 +10,12 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import PREFIX, Naming, make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.audit import audit
 from multibot_rewrite.description.checks.links_and_joints import (

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError, ProofError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.links_and_joints import WORLD
 from multibot_rewrite.description.checks.poses import Pose, placed, pose_of, pose_of_six

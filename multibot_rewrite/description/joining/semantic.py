@@ -15,13 +15,13 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import combinations, product
+from typing import NamedTuple
 
 from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.part import PREFIXED, ReadPart, in_one_line, prefixing

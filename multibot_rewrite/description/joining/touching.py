@@ -14,14 +14,13 @@ from importlib import import_module
 from itertools import product
 from math import cos, isfinite, pi, sin
 from random import Random
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import unquote
 
 from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_folder
 
 NEVER, ALWAYS = "Never", "Always"

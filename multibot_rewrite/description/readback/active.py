@@ -11,11 +11,11 @@ is its own matter), webots_ros2_driver WebotsNode.cpp, ros2_control component_pa
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.parameters import given_at, holds
 from multibot_rewrite.description.readback.xml import child_text
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.naming import NAMESPACE, Naming, is_keyword, is_of_world
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.active import ADDRESS, FILE, NUMBER, RELATIVE
 from multibot_rewrite.description.readback.nodes import (

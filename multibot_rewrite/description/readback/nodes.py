@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import islice
 from math import pi
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import SiteRow, UsageError
 from multibot_rewrite.base.naming import TOPIC_KINDS
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import (
     BoundNode,
     RemapRule,

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import SiteRow
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.active import (
     hardware_section,
     opened,

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.loose_xml import NAMESPACES
 from multibot_rewrite.base.model import Claim, InputError, SiteRow
 from multibot_rewrite.base.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.mentions import MENTIONED, kept, mentioned
 from multibot_rewrite.description.rewriters.forms import IN_FRONT
 from multibot_rewrite.description.rewriters.insert import Insertion, without

@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.model import VocabularyError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.base.wording import clip
 from multibot_rewrite.description.checks.mentions import MENTIONED

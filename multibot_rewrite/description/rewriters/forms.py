@@ -8,10 +8,10 @@ and remap rules need no writer of their own.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Claim
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import split_remap
 
 Declared = Mapping[str, Mapping[str, Claim]]

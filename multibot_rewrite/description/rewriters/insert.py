@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, RemapRule, expand
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.model_namespaces import has_own_names

@@ -10,13 +10,13 @@ that is absolute in the code stays.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.model import Claim, UsageError
 from multibot_rewrite.base.naming import TF_TOPICS, TOPIC_KINDS
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import RemapRule, expand, remapped_node, split_remap
 from multibot_rewrite.description.rewriters.forms import NamePart, remap
 from multibot_rewrite.description.rewriters.own_defaults import filled

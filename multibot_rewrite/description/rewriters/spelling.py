@@ -9,6 +9,7 @@ leads to decides.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from lxml import etree
 
@@ -24,7 +25,6 @@ from multibot_rewrite.base.naming import (
     removal,
     spelled,
 )
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.forms import FORMS, IN_FRONT, Declared, Kinds, NamePart
 
 ROBOT_SLOT = "\0"

@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.text import text_at
 
 if TYPE_CHECKING:

@@ -7,11 +7,11 @@ import os
 import stat
 from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import MAX_BYTES, read_start
 from multibot_rewrite.base.model import UNREADABLE, InputError, MultibotError
 from multibot_rewrite.base.outside import outside, real_path, variable
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.child.frames import FENCES
 from multibot_rewrite.description.sources.packages import in_sources, package_folder
 

@@ -10,12 +10,11 @@ import struct
 from array import array
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.bounded import MAX_BYTES, load_json
 from multibot_rewrite.base.model import XACRO_FAILED, InputError
 from multibot_rewrite.base.outside import real_path, unrepeatable
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import Access, NotAllowedError
 from multibot_rewrite.description.sources.child.frames import (
     CALLS,

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.lazy import lazy_compile
@@ -23,7 +23,6 @@ from multibot_rewrite.base.model import (
     XACRO_FAILED,
     InputError,
 )
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import BOUNDED, Access, Find, Reach, check_file
 from multibot_rewrite.description.sources.child.frames import KERNEL
 from multibot_rewrite.description.sources.conversation import Failure, Result, Sources, converse

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 
 _DECLARED = lazy_compile(rb"<xacro:arg\s[^<]*?\bname\s*=\s*[\"']\s*([^\"'<\s]+)")
 _READ = lazy_compile(rb"\$\(arg\s+([^\s)]+)|\bxacro\.arg\(\s*[\"']([^\"']+)")

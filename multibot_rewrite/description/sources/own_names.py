@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DECLARED_KINDS, TWIN, Affix, OwnNames
-from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.collect import Inventory

@@ -6,12 +6,11 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.bounded import MAX_BYTES, read_bytes
 from multibot_rewrite.base.lazy import lazy_compile, without_comments
 from multibot_rewrite.base.model import UNREADABLE, InputError, UsageError
-from multibot_rewrite.base.record import NamedTuple
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.sources.known_arguments import KnownArguments

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import bytes_if_read, load_json
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import outside
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import ENDED, NEWEST_LTS, OF_OLD, RELEASES, evidence
 
 # Folders above a description in which the top of its repository is looked for.

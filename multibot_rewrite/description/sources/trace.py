@@ -13,9 +13,8 @@ import os
 from collections import defaultdict
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.steps.document import attribute_slots, start_offsets, tag_end
 
 if TYPE_CHECKING:

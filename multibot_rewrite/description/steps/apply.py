@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.model import Change, Claim, Edit
 from multibot_rewrite.base.naming import Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, respelled
 from multibot_rewrite.description.rewriters.tree import Tree

@@ -4,6 +4,8 @@ plugin met."""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from lxml import etree
 
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
@@ -16,7 +18,6 @@ from multibot_rewrite.base.naming import (
     Layout,
     find_layout,
 )
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import names_in_topics
 from multibot_rewrite.description.rewriters.model_namespaces import below_models, own_namespaces

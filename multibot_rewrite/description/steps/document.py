@@ -13,6 +13,7 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from operator import sub
+from typing import NamedTuple
 
 from lxml import etree
 
@@ -21,7 +22,6 @@ from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.lazy import ATTRIBUTES, SILENT, lazy_compile
 from multibot_rewrite.base.loose_xml import Mended, is_loose, well_formed
 from multibot_rewrite.base.model import NOT_UTF8, REFUSED, Edit, InputError
-from multibot_rewrite.base.record import NamedTuple
 
 # No element of a robot has fifty.
 MAX_ATTRIBUTES = 1000

@@ -16,12 +16,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import groupby
+from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.insert import Insertion, query, without
 from multibot_rewrite.description.rewriters.own_defaults import MODEL
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT

@@ -7,12 +7,11 @@ A plan is for any robot: its edits have a slot for the robot's name.
 from __future__ import annotations
 
 from operator import itemgetter
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
 from multibot_rewrite.base.model import Claim, Edit
 from multibot_rewrite.base.naming import Affix, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.insert import Insertion, insertions
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT

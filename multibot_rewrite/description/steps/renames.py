@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.naming import Affix, Naming, affix
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.contact import Respell
 from multibot_rewrite.description.rewriters.spelling import (
     Renamed,

@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from operator import attrgetter
+from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.model import Claim, Edit, InputError, ProofError
 from multibot_rewrite.base.naming import FRAME_KINDS, Naming, affix, removal, spelled
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.insert import insertions, query, without

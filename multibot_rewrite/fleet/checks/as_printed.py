@@ -18,9 +18,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import count, zip_longest
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.launch.starts import (
     CLASSIC,

@@ -9,10 +9,9 @@ cartographer_ros ros2 src/node_main.cpp (CHECK of both flags).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP

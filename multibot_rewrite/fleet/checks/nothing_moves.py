@@ -6,8 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.readback.active import active_parts
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot

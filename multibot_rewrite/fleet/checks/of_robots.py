@@ -9,8 +9,7 @@ from itertools import combinations, pairwise
 from math import ceil, dist
 
 from multibot_rewrite.base.conventions import USUAL_FRAMES
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.checks.problem import to_findings

@@ -7,8 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Protocol
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.naming import FRAME_KINDS, TF_TOPICS, TOPIC_KINDS, Naming
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.description.steps.collect import Inventory

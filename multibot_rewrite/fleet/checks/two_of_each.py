@@ -11,9 +11,8 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.file.robot_spec import (
     Pose,

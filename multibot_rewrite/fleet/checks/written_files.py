@@ -6,8 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.moveit.file_kind import SIMPLE
 from multibot_rewrite.companions.named_file import BRIDGE, MOVEIT, PARAMS, NamedFile

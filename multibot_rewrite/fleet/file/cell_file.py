@@ -8,12 +8,11 @@ messages with some of the joints (moveit2 2.12.4 current_state_monitor.cpp, ``jo
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.fleet_data import FleetData, listed
 
 CELL, MOVE_GROUP, JOINT_STATES = "cell", "move_group", "/joint_states"

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
@@ -14,7 +14,6 @@ from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.file_kinds import FLEET, refuse_others
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
 
 Path = tuple[Any, ...]

@@ -5,11 +5,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.fleet_data import FleetData, listed
 from multibot_rewrite.system.domains import USUAL_DOMAIN
 from multibot_rewrite.system.records import Domain

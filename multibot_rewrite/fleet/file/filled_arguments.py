@@ -10,12 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import cache
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import NOTE, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE, POSTFIX, ROS_KINDS, SEPARATORS, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.reports.xacro_arguments import (
     WHOLE,
     Argument,

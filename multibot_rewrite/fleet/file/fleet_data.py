@@ -9,7 +9,7 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import yaml
 
@@ -17,7 +17,6 @@ from multibot_rewrite import fleet
 from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.description.joining.from_file import BESIDE
 from multibot_rewrite.description.sources.own_names import filled

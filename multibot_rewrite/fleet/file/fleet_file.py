@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import Naming, Policy, make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import chosen_release, why_told
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_of_all
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell

@@ -8,12 +8,11 @@ robot1, robot2 and robot3, each 2 m beside the one before.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import MOST, check_robot_name
 from multibot_rewrite.fleet.file.fleet_data import FleetData
 

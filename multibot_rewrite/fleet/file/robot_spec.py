@@ -6,11 +6,10 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import NAMESPACE, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.named_file import PARAMS
 from multibot_rewrite.companions.rviz.read_config import read_colour
 from multibot_rewrite.description.joining.from_file import part_of, parts_of

@@ -8,13 +8,12 @@ import os
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite import fleet
 from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec

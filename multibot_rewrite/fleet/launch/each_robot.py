@@ -12,9 +12,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import count
 from keyword import iskeyword
-from typing import Any
+from typing import Any, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.launch.starts import RobotStarts
 from multibot_rewrite.spelling.start import Start
 

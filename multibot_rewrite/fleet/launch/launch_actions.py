@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator, Mapping
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from multibot_rewrite.base.conventions import BY_HAND
 from multibot_rewrite.base.naming import TF_TOPICS, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.fleet.checks.lacking import CARTOGRAPHER
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP

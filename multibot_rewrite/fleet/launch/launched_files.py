@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.conventions import SHARED_TOPICS
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Policy
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.fleet.fleet import FRAME_PREFIX
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot

@@ -6,9 +6,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
-from typing import Any
+from typing import Any, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.launch.each_robot import FLAG, Code
 from multibot_rewrite.spelling.start import EVENTS, HOW, File, Led, Start, Text, in_order, with_rest
 

@@ -4,15 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import cast
+from typing import NamedTuple, cast
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ, MODEL_SLOT, ROS
 from multibot_rewrite.companions.context import FileTemplate, fill_template

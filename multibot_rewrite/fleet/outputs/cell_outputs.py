@@ -12,8 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.engine import splices_of

@@ -5,13 +5,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import (
     NAMESPACE_SLOT,
     NUMBER_STEP,

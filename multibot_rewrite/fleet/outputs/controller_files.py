@@ -13,8 +13,7 @@ import os
 import re
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit

@@ -15,8 +15,7 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
-from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.moveit.file_kind import (
     ABOVE,

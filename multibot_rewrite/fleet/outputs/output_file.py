@@ -7,11 +7,10 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.sources.read import JOIN, XACRO, read_file
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec

@@ -12,8 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from types import MappingProxyType
 
-from multibot_rewrite.base.findings.finding import NOTE, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, make_naming
 from multibot_rewrite.companions.params.bringup_style import for_bringup

@@ -13,10 +13,10 @@ src/tf_namespace_bridge.cpp, launch/tf_namespace_bridge.yaml, CMakeLists.txt (41
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.fleet import Fleet

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
 from multibot_rewrite.companions.rviz.of_plan import bridged_window, windows_of_plan
 from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz

@@ -8,14 +8,13 @@ Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spaw
 from __future__ import annotations
 
 from collections.abc import Iterator, Set
+from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.naming import NAMESPACE
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.fleet.file.robot_spec import Pose

@@ -7,8 +7,8 @@ Source: teleop_twist_keyboard jazzy (``stamped`` and ``frame_id``; it publishes 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.robot_topics import robot_topic
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import yaml_of

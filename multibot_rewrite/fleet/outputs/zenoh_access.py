@@ -10,9 +10,9 @@ with ``@adv`` (zenoh-ext ``advanced_publisher.rs``); ``**`` does not match a par
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import OF_EVERY_NODE, SENT_BY_ANY_NODE
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.zenoh.tokens import SPACE
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE, beyond
 from multibot_rewrite.system.domains import domain_of

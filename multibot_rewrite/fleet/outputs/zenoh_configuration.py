@@ -14,10 +14,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.fleet_data import FleetData, listed
 from multibot_rewrite.fleet.outputs.zenoh_access import (
     FLEET_ROUTER,

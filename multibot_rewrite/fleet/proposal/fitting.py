@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.conventions import SENT_FRAMES
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.looking import Looked

@@ -7,13 +7,13 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.reports.xacro_arguments import (
     declared_arguments,
     find_arguments,

@@ -8,11 +8,11 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import lru_cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.lazy import FILLED_IN
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.included_by import data_of_file

@@ -6,13 +6,12 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from math import ceil
-from typing import Any
+from typing import Any, NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.base.rosnames import numbered_names
 from multibot_rewrite.base.wording import shorten

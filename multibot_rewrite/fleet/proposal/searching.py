@@ -10,6 +10,7 @@ import os
 import re
 from collections.abc import Container, Iterable, Iterator, Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.file_kinds import (
     DESCRIPTIONS,
@@ -21,7 +22,6 @@ from multibot_rewrite.base.file_kinds import (
 )
 from multibot_rewrite.base.left_out import source_folders
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.included_by import (
     MOST_FILES,
     TESTS,

@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from lxml import etree
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import NOTE, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.join import Joined, join_plain
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, RVIZ
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts

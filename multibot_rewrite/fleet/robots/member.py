@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import islice
+from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import RemapRule, bind, resolve_bound
 from multibot_rewrite.description.checks.arguments import UNREAD
 from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs

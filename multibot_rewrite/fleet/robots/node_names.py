@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER, Started, launch_arguments, started

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from multibot_rewrite.base.findings.finding import NOTE
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import NOTE, declare
 from multibot_rewrite.description.own_ports import numbered, ports_of
 from multibot_rewrite.description.readback.meeting import NUMBERED
 from multibot_rewrite.fleet.file.robot_spec import REAL

@@ -7,12 +7,12 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.expand import Expansion, expand, expand_traced
 from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.sources.trace import EXPRESSION, GIVEN, Piece

@@ -6,12 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import cache
 from types import MappingProxyType
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import Finding, Rule
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names, with_srdf
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.arguments import UNREAD

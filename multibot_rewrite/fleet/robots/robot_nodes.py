@@ -6,15 +6,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import NOTE, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.context import NO_FRAMES, Frames
 from multibot_rewrite.description.readback.nodes import wheels_in
 from multibot_rewrite.description.rewriters.tree import library_key

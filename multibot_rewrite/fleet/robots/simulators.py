@@ -12,8 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from lxml import etree
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, declare
 from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
 from multibot_rewrite.description.checks.unknown import SAY_IT
 from multibot_rewrite.description.readback.active import HARDWARE, PLUGIN, ActivePart, active_parts

@@ -7,12 +7,11 @@ Sources: tf2_ros jazzy ``static_transform_publisher``; nav2_amcl jazzy (``set_in
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import Rule, declare
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Rule, declare
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import Naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.description.rewriters.text import text_at

@@ -12,8 +12,7 @@ from collections.abc import Iterator, Sequence
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.hazards import LEFT, world_systems

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_name_in_code
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.yaml_with_lines import (

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.base.model import ProofError, UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.nodl.document import GROUP, SECTIONS, parse
 from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
 from multibot_rewrite.knowledge.records import Endpoint

@@ -9,13 +9,12 @@ from _thread import get_ident  # threading is slow to import
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.bounded import load_json, read_bytes
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.outside import Asked, Question, answer_now, digest
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.vocabulary.installed import installed
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.version import __version__

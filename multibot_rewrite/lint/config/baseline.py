@@ -11,12 +11,12 @@ import os
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import load_json
 from multibot_rewrite.base.config import read
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 
 FORMAT = "urdf-lint-baseline"
 VERSION = 1

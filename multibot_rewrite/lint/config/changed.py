@@ -8,11 +8,11 @@ import re
 import subprocess
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.child import git
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 
 _INCLUDE = re.compile(
     rb"<xacro:include\s(?:[^<>\"']|\"[^<\"]*\"|'[^<']*')*?filename\s*=\s*(\"[^<\"]*\"|'[^<']*')"

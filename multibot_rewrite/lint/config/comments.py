@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.findings.selection import is_on, level_of
 from multibot_rewrite.base.lazy import ATTRIBUTES, lazy_compile
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.config.directives import (
     ALWAYS_REPORTED,
     IGNORE_FILE,

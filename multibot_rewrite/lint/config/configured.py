@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.config import (
     configured_vocabulary,
@@ -19,7 +19,6 @@ from multibot_rewrite.base.findings.selection import OFF
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.config.values import (
     FIELDS,
     READERS,

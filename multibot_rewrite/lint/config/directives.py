@@ -11,11 +11,11 @@ import re
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.codes import names_to_codes
 from multibot_rewrite.base.lazy import ATTRIBUTES, SILENT, lazy_compile
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.settings import MARK
 

@@ -6,13 +6,13 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.config import listed_files, type_name
 from multibot_rewrite.base.findings.codes import find_codes
 from multibot_rewrite.base.findings.finding import LEVELS
 from multibot_rewrite.base.findings.selection import OFF
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.base.rosnames.names import check_robot_names
 from multibot_rewrite.rules.settings import EVERY_FILE, TARGETS, ArgumentSet

@@ -9,11 +9,10 @@ from contextlib import redirect_stderr
 from functools import partial
 from glob import escape
 from io import StringIO
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.named_file import is_beside
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.description.rewriters.forms import Declared

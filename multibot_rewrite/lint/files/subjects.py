@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from contextlib import redirect_stderr
 from functools import partial
 from io import StringIO
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.rule import SRDF, XACRO
+from multibot_rewrite.base.findings.finding import SRDF, XACRO
 from multibot_rewrite.base.model import NO_ARGUMENT, InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.packages import package_folder

@@ -7,11 +7,11 @@ from __future__ import annotations
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK, LISTENER
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import nearest_few
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_full_name, check_namespace
 from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SERVICE, TOPIC, System

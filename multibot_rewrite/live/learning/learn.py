@@ -10,12 +10,12 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import TF_TOPICS
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts

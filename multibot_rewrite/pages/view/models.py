@@ -16,12 +16,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
 from math import pi
-from typing import Any
+from typing import Any, NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import Unusable
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import numbers, vector
 from multibot_rewrite.description.checks.poses import HERE, Pose, X, origin_of
 from multibot_rewrite.description.sources.packages import package_folder

@@ -8,10 +8,10 @@ import os
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from math import acos, degrees, dist, isfinite
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.model import Change
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.checks.poses import inverse, matrix_of_quaternion, product
 from multibot_rewrite.description.library import Prepared

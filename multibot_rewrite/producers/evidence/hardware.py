@@ -19,11 +19,11 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.bounded import own_text
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.knowledge.conditions import Values, holds
 from multibot_rewrite.knowledge.node_entries import read_claims
 from multibot_rewrite.knowledge.records import MANAGER, Claim, NodeFacts

@@ -13,10 +13,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.declared import NODE, plugin_bases
 from multibot_rewrite.knowledge.records import UNKNOWN, Claim, NodeFacts

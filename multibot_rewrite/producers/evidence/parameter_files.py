@@ -12,13 +12,13 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from operator import itemgetter
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, nearest
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_node_name
 from multibot_rewrite.companions.names.placeholders import of_one_robot, without_robot
 from multibot_rewrite.companions.params.rcl_parameters import value_of

@@ -12,11 +12,11 @@ moveit_simple_controller_manager_plugin.cpp has ``controller_names``, and of eac
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 import yaml
 from lxml.etree import _Element
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.moveit.file_kind import NAMES, SIMPLE
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot

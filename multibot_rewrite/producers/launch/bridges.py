@@ -12,13 +12,13 @@ import os
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS, SERVICE as SERVICE_ROW
 from multibot_rewrite.description.sources.read import read_file

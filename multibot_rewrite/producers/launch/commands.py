@@ -17,10 +17,9 @@ from contextlib import redirect_stderr, redirect_stdout
 from functools import lru_cache
 from importlib import import_module
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import MultibotError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.describe import text

@@ -10,11 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.records import LaunchNote
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE

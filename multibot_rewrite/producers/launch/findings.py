@@ -6,8 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing

@@ -7,9 +7,8 @@ import os
 import re
 import shlex
 from collections.abc import Callable, Collection, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.names.placeholders import filled
 from multibot_rewrite.producers.evidence.parameter_files import values_for

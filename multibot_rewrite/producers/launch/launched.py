@@ -7,12 +7,12 @@ import shlex
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from itertools import pairwise
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.read import read_file

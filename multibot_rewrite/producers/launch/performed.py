@@ -11,9 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePath
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.describe import is_wanted
 from multibot_rewrite.producers.launch.failures import failure
 from multibot_rewrite.producers.launch.places import keep_places, place_of

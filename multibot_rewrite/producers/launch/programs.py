@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from functools import cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import load_own_yaml
-from multibot_rewrite.base.record import NamedTuple
 
 
 class Programs(NamedTuple):

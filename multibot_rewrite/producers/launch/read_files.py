@@ -9,9 +9,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from types import ModuleType
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.commands import xacro_of
 from multibot_rewrite.producers.launch.kept_paths import lasting
 from multibot_rewrite.producers.launch.records import FileRead, ParameterText

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
-
-from multibot_rewrite.base.record import NamedTuple
+from typing import NamedTuple
 
 _RULE, _VALUE, _FILE = ("-r", "--remap"), ("-p", "--param"), "--params-file"
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.description.readback.xml import root_of

@@ -8,10 +8,9 @@ manager is below the namespace that the spawner gets, by ``--namespace`` or as a
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.findings.rule import declare
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.producers.launch.spawners import Spawned
 
 NO_MANAGER = declare("MG723", "no-controller-manager", ERROR, formats=("fleet",))

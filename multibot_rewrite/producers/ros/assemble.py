@@ -6,10 +6,9 @@ from __future__ import annotations
 import math
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.system.record_values import FARTHEST
 from multibot_rewrite.system.records import (

@@ -14,11 +14,10 @@ import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from queue import SimpleQueue
-from typing import IO
+from typing import IO, NamedTuple
 
 from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.model import Unusable
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.ros.request import (
     ENDED,
     NO_RCLPY,

@@ -11,9 +11,9 @@ import math
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Set
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK, LISTENER
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.ros.assemble import numbers_of
 from multibot_rewrite.producers.ros.pace import Mark, Pace
 from multibot_rewrite.producers.zenoh.cdr import (

@@ -8,9 +8,8 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.ros import assemble, queries, ros
 from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, HeaderSamples, Receive
 from multibot_rewrite.producers.ros.pace import Mark

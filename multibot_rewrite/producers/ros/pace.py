@@ -10,7 +10,7 @@ the numbers of one transform go back again and again, several publishers count s
 
 from __future__ import annotations
 
-from multibot_rewrite.base.record import NamedTuple
+from typing import NamedTuple
 
 # So many times between two messages say how often they come, and more do not say more.
 ENOUGH, MOST = 3, 50

@@ -6,8 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
-
-from multibot_rewrite.base.record import NamedTuple
+from typing import NamedTuple
 
 ARGUMENT = "ARGUMENT"
 HELPER, OWN = "helper", "own"

@@ -7,8 +7,8 @@ import os
 import re
 from collections.abc import Iterator
 from functools import lru_cache
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.producers.sources.files import sources_in, start_of_file
 

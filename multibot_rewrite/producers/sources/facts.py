@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.base.rosnames import check_node_name, check_topic_name, propose_token
 from multibot_rewrite.knowledge.conditions import AND, OPEN_KIND, OR, SOURCE, joined

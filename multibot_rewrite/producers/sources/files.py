@@ -6,9 +6,9 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.sources.cpp import read_cpp
 from multibot_rewrite.producers.sources.python import read_python

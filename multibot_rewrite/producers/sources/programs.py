@@ -9,8 +9,8 @@ import os
 import re
 from collections.abc import Iterator
 from functools import lru_cache
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.sources.cmake import CmakeCall, cmake_calls
 from multibot_rewrite.producers.sources.cpp import COMPONENT
 from multibot_rewrite.producers.sources.files import (

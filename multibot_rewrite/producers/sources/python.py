@@ -10,9 +10,8 @@ import ast
 import re
 import warnings
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.sources.records import (
     ANY,
     OTHERWISE,

@@ -9,8 +9,7 @@ colon: ``<Node:name>``.
 from __future__ import annotations
 
 from collections.abc import Mapping
-
-from multibot_rewrite.base.record import NamedTuple
+from typing import NamedTuple
 
 # A text of which nothing is known, and a condition that is not.
 ANY, OTHERWISE = "<?>", "?"

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.sources.expressions import last
 from multibot_rewrite.producers.sources.records import (
     ANY,

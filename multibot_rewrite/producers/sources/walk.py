@@ -7,8 +7,8 @@ What is called is followed as far as its text is here. What nothing calls by nam
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.sources.apis import ARGUMENT, HELPER, OWN, Api, apis
 from multibot_rewrite.producers.sources.expressions import is_node, last, template_arguments
 from multibot_rewrite.producers.sources.records import (

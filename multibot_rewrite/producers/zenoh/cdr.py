@@ -10,9 +10,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
-from typing import TypeVar
-
-from multibot_rewrite.base.record import NamedTuple
+from typing import NamedTuple, TypeVar
 
 _T = TypeVar("_T")
 _HEADER = 4

@@ -11,8 +11,8 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import ExitStack, closing
 from itertools import zip_longest
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import FEW, SEVERAL, plural, shorten
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, frames
 from multibot_rewrite.producers.ros.request import Request

@@ -10,10 +10,9 @@ import json
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError, Unusable
-from multibot_rewrite.base.record import NamedTuple
 
 INSTALL = "pip install 'multibot_rewrite[zenoh]' (or pip install eclipse-zenoh)"
 # The router answers in milliseconds; over a slow network connecting takes some time.

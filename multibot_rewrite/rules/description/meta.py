@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.findings.rule import declare
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, declare
 
 # Reported where rules are run: see ``failures``.
 rule_crashed = declare("MB001", "rule-crashed", ERROR, formats=())

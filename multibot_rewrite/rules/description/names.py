@@ -10,8 +10,7 @@ from collections.abc import Collection, Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, SRDF, URDF, WARNING, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Claim, Edit
 from multibot_rewrite.base.naming import FRAME_KINDS, NOT_PLAIN, is_keyword

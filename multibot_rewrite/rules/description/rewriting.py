@@ -6,8 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING
-from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.base.findings.finding import NOTE, SRDF, URDF, WARNING, rule
 from multibot_rewrite.companions.named_file import EVERY
 from multibot_rewrite.description.checks.audit import other_releases, other_ros
 from multibot_rewrite.description.checks.mentions import (

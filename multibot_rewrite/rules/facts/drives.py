@@ -11,11 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.numbers import Vector, number
 from multibot_rewrite.description.checks.poses import (

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.rule import SRDF, URDF
+from multibot_rewrite.base.findings.finding import SRDF, URDF
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.simulators import simulator_plugins

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import wraps
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.model import Claim
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.description.checks import poses
 from multibot_rewrite.description.checks.links_and_joints import Link, roots

@@ -8,12 +8,12 @@ the one that it is ``expressed_in``; up to SDF 1.6 in that of the model if it sa
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot, read_robot
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.description.checks.poses import Pose, turned

@@ -9,10 +9,10 @@ the plugins the vocabulary.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.knowledge.worlds import SYSTEMS

@@ -7,13 +7,12 @@ Source: gazebosim/ros_gz ros_gz_bridge/src/bridge_config.cpp (parseEntry, and it
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import WARNING, Finding, rule
 from multibot_rewrite.base.nearest import SLIP, did_you_mean, nearest
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.bridge_entry import (
     BOTH,
     DIRECTIONS,

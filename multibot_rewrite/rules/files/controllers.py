@@ -14,8 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.companions.moveit.file_kind import NAMES
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile

@@ -7,12 +7,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Set
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import differ_in_numbers, slip_of
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.declared import DEMANDED

@@ -6,8 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import WARNING, Finding, Rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.companions.named_file import PARAMS, NamedFile
 from multibot_rewrite.rules import declaration

@@ -11,8 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import WARNING, Finding, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.nearest import did_you_mean

@@ -6,8 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.nearest import HINTED, MISTYPED, did_you_mean, meant_name
 from multibot_rewrite.base.rosnames import check_topic_name

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import yaml
 
@@ -17,7 +18,6 @@ from multibot_rewrite.base.bounded import compose_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.outside import outside
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.description.sources.packages import entries, package_folder

@@ -20,8 +20,7 @@ from collections.abc import Iterator, Mapping
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import nearest, slip_of

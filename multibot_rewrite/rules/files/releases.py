@@ -7,8 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.companions.named_file import PARAMS, NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at

@@ -11,8 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from lxml.etree import _Element
 
 from multibot_rewrite.base.conventions import PARTS, USUAL_FRAMES
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.lazy import IN_SUBSTITUTION, lazy_compile
 from multibot_rewrite.base.rosnames import check_name_in_code, check_node_name
 from multibot_rewrite.companions.engine import GRAPH

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import WARNING, Finding, rule
 from multibot_rewrite.companions.named_file import RVIZ, NamedFile
 from multibot_rewrite.companions.rviz.read_config import rviz_data, text_of, value
 from multibot_rewrite.companions.yaml_text import pairs

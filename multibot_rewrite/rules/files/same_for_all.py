@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, RVIZ, NamedFile

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import cast
+from typing import NamedTuple, cast
 
 import yaml
 
 from multibot_rewrite.base.bounded import ANGLES
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.companions.moveit.file_kind import find_kind, parameter_above
 from multibot_rewrite.companions.moveit.rewrite import node_of
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile, is_beside, kind_of

@@ -13,8 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, rule
 from multibot_rewrite.companions.named_file import PARAMS, NamedFile
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.plugins import FILTER

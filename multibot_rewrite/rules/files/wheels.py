@@ -13,12 +13,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import hypot
+from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
-from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import WARNING, Finding, rule
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.description.rewriters.tree import builtin_tree

@@ -6,8 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Rule
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.models import Model
 from multibot_rewrite.producers.launch.running import DESCRIPTION

@@ -16,10 +16,10 @@ from collections.abc import Iterator
 from contextlib import suppress
 from itertools import combinations
 from math import dist
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.shapes import filled_by

@@ -13,9 +13,9 @@ import re
 from collections.abc import Callable
 from functools import lru_cache, partial
 from math import isinf, tau
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 
 # No digits but 0 to 9; inf and nan in capitals, too.
 _ASCII = re.ASCII | re.IGNORECASE

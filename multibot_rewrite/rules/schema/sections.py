@@ -14,11 +14,11 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from math import isfinite
+from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.rules.schema.described import table_text
 from multibot_rewrite.rules.schema.versions import OLDEST, Version, read_version
 

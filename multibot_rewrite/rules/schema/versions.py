@@ -8,11 +8,11 @@ Source: urdfdom 6.0.0, class ``URDFVersion`` in urdf_parser.h; without an attrib
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.rules.schema.described import table_text
 

@@ -9,10 +9,10 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from itertools import islice, zip_longest
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.rules.system.instead import COMMON
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.likes import (

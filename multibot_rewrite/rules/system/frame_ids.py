@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cache, partial
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, only, shorten
 from multibot_rewrite.rules.declaration import system_rule, where
 from multibot_rewrite.system.index import Index, Tree, once, robots_of, sent_on

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 from math import inf, isfinite
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.states import ACTIVE

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import Cause, caused

@@ -12,11 +12,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import Guesses
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import SEVERAL, and_then, shorten
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.declaration import see, system_rule, where

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.base.findings.rule import FOLDER, RulePage, read_page, rule_page
+from multibot_rewrite.base.findings.finding import FOLDER, RulePage, read_page, rule_page
 from multibot_rewrite.lint import catalogue
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.launch.judge import RULES as LAUNCHED

@@ -12,8 +12,7 @@ from lint_calls import Settings, fix
 from paths import FIXTURES, ROOT
 from rule_examples import WITHOUT_FILE, found, is_built, whole
 
-from multibot_rewrite.base.findings.finding import LEVELS
-from multibot_rewrite.base.findings.rule import Rule
+from multibot_rewrite.base.findings.finding import LEVELS, Rule
 from multibot_rewrite.lint import catalogue
 
 RULES = catalogue.rules()

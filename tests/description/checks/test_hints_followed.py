@@ -7,12 +7,11 @@ Expected: the word, and that the hint names what was written here (never what th
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
 from multibot_rewrite import rewrite
-from multibot_rewrite.base.record import NamedTuple
 
 ROVER = '<robot name="rover"><link name="base"/>{}</robot>'
 CONTROL = (

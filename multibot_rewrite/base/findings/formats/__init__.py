@@ -10,10 +10,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from types import MappingProxyType
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.findings.rule import Rule
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import Finding, Rule
 
 # What --format takes, and the module beside this one that has it, as ``as_json`` for json.
 FORMATS = {

@@ -8,7 +8,7 @@ import os
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import (
     ERROR,
@@ -22,7 +22,6 @@ from multibot_rewrite.base.findings.finding import (
 from multibot_rewrite.base.findings.formats import Report
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.wording import in_json, one_line, plural
 
 _SURROGATE = lazy_compile("[\ud800-\udfff]")

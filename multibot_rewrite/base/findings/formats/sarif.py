@@ -10,7 +10,7 @@ from typing import Any
 from urllib.parse import quote
 
 from multibot_rewrite.base.bounded import bytes_if_read
-from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding, locate
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding, Rule, locate
 from multibot_rewrite.base.findings.formats import Report
 from multibot_rewrite.base.findings.formats.plain import (
     calls,
@@ -21,7 +21,6 @@ from multibot_rewrite.base.findings.formats.plain import (
     json_text,
     said_of,
 )
-from multibot_rewrite.base.findings.rule import Rule
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.wording import one_line
 from multibot_rewrite.version import __version__

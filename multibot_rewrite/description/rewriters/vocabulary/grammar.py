@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow, VocabularyError
 from multibot_rewrite.base.naming import SEPARATORS
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import RELEASES as KNOWN, is_release_words, share_release
 from multibot_rewrite.description.rewriters.vocabulary.values import (
     ROLES as WIRES,

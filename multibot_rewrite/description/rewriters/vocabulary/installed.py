@@ -11,9 +11,9 @@ import re
 import sys
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
+from typing import NamedTuple
 
 from multibot_rewrite.base.model import VocabularyError
-from multibot_rewrite.base.record import NamedTuple
 
 GROUP = "multibot_rewrite.vocabulary"
 _METADATA = (".dist-info", ".egg-info")

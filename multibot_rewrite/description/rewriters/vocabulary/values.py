@@ -6,10 +6,10 @@ topics and services that it names, as a section has them: ``odom=pkg/msg/Name``.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import VocabularyError
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.base.releases import is_release_words
 
 VALUE = "value"

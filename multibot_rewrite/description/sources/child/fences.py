@@ -17,9 +17,8 @@ import struct
 import sys
 from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.child import seccomp
 from multibot_rewrite.description.sources.child.frames import (
     AUDIT,

@@ -12,10 +12,9 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any, SupportsIndex
+from typing import Any, NamedTuple, SupportsIndex
 from xml.dom import Node
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.child.frames import NUMBER
 
 GIVEN = -1

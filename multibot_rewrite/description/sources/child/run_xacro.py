@@ -14,11 +14,10 @@ import sys
 from array import array
 from collections.abc import Callable, Iterator, Mapping
 from types import FrameType
-from typing import Any
+from typing import Any, NamedTuple
 from xml.dom import UserDataHandler
 from xml.parsers.expat import ExpatError, errors
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.child.frames import MOST_TEXT, NUMBER, Ask, connect
 from multibot_rewrite.description.sources.child.pieces import note, numbers, tracking
 

@@ -15,8 +15,8 @@ import os
 import struct
 from collections.abc import Mapping
 from functools import cache
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.sources.child.system import control, no_new_privileges
 
 _SET_SECCOMP, _MODE_FILTER = 22, 2

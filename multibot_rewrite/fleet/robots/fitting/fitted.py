@@ -9,8 +9,8 @@ transforms with which it works beside them.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.robots.fitting.commands import by_way_of_relays, driving, of_one_type
 from multibot_rewrite.fleet.robots.fitting.frames import root_link, with_root

@@ -7,8 +7,8 @@ The inputs are those of the user's file, where one has the node; then what a sta
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.fleet.robots.fitting.node_topics import COMMANDS, topic_of, topics_of
 from multibot_rewrite.knowledge.records import TWIST_MUX, Endpoint, NodeFacts
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts

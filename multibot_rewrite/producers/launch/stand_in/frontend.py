@@ -11,10 +11,9 @@ import shlex
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.bounded import A_VALUE, load_yaml, read_bytes
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.producers.launch.entities import Entity, root_of
 from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
 from multibot_rewrite.producers.launch.stand_in.values import TextSubstitution

@@ -7,8 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from lxml import etree
 
-from multibot_rewrite.base.findings.finding import WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import WARNING, rule
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.checks.problem import Problem

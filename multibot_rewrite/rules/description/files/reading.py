@@ -8,8 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import islice
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import SRDF, URDF, XACRO, declare, rule
+from multibot_rewrite.base.findings.finding import (
+    ERROR,
+    NOTE,
+    SRDF,
+    URDF,
+    WARNING,
+    XACRO,
+    declare,
+    rule,
+)
 from multibot_rewrite.base.lazy import ATTRIBUTES, lazy_compile
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.nearest import did_you_mean_one_of

@@ -11,8 +11,7 @@ from functools import partial
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, SRDF, URDF, WARNING, rule
 from multibot_rewrite.base.nearest import nearest, slip_of
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS
 from multibot_rewrite.description.checks.numbers import number

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.checks.poses import length_of, quaternion
 from multibot_rewrite.description.checks.problem import Problem

@@ -10,14 +10,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, lru_cache
 from math import isfinite
 from struct import iter_unpack
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import file_state, is_file, kept_bytes
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.numbers import Vector, vector
 from multibot_rewrite.description.checks.poses import minus
 from multibot_rewrite.description.checks.problem import Problem

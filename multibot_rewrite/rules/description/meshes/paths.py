@@ -6,13 +6,12 @@ backslashes, formats that not every program reads.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of

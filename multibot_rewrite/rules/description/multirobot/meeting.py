@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.findings.rule import URDF, Rule, declare
+from multibot_rewrite.base.findings.finding import ERROR, URDF, WARNING, Rule, declare
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.declaration import TWO

@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.base.findings.finding import ERROR, SRDF, URDF, WARNING, rule
 from multibot_rewrite.base.naming import Naming, make_naming, overlap
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS
 from multibot_rewrite.description.checks import hazards

@@ -5,14 +5,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
-from multibot_rewrite.base.findings.finding import WARNING
-from multibot_rewrite.base.findings.rule import XACRO, rule
+from multibot_rewrite.base.findings.finding import WARNING, XACRO, rule
 from multibot_rewrite.base.lazy import IN_EXPRESSION, lazy_compile
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.subject import Subject
 

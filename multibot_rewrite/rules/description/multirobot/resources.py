@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING
-from multibot_rewrite.base.findings.rule import URDF, rule
+from multibot_rewrite.base.findings.finding import NOTE, URDF, WARNING, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem

@@ -10,8 +10,7 @@ from operator import itemgetter
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, rule
 from multibot_rewrite.base.model import Claim, SiteRow
 from multibot_rewrite.base.naming import FRAME_KINDS, NOT_PLAIN, TF_TOPICS, make_naming
 from multibot_rewrite.base.rosnames import split_remap

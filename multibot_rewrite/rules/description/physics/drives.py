@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import dist, pi
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
-from multibot_rewrite.base.record import NamedTuple
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.description.checks.links_and_joints import Joint, roots
 from multibot_rewrite.description.checks.numbers import Vector, number, value_of
 from multibot_rewrite.description.checks.poses import (

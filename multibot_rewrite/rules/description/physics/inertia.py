@@ -10,8 +10,7 @@ from math import acos, cos, hypot, pi, sqrt
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.description.checks.links_and_joints import (
     WORLD,

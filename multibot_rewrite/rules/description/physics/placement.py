@@ -10,8 +10,7 @@ from math import inf
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, rule
 from multibot_rewrite.description.checks.links_and_joints import Link
 from multibot_rewrite.description.checks.numbers import Vector, vector
 from multibot_rewrite.description.checks.poses import Pose, is_same, length, minus, pose_in

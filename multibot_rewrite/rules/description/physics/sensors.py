@@ -7,8 +7,7 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import WARNING, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import Vector

@@ -11,8 +11,7 @@ from functools import lru_cache
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.base.outside import is_folder, is_there
 from multibot_rewrite.description.checks.links_and_joints import Joint

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.rule import URDF
+from multibot_rewrite.base.findings.finding import URDF
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file

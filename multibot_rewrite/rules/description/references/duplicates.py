@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, locate
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, locate, rule
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import ambiguous, repeated

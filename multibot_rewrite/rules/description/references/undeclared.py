@@ -8,16 +8,15 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from functools import partial
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.conventions import SENT_FRAMES
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import FRAME_KINDS, make_naming
 from multibot_rewrite.base.nearest import HINTED, meant_name
-from multibot_rewrite.base.record import NamedTuple
 from multibot_rewrite.description.checks.audit import uses_xacro
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import (

@@ -11,8 +11,7 @@ from functools import partial, wraps
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import SRDF, rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, SRDF, WARNING, rule
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.planning_groups import FREE_FLYER, is_pinocchios, text_of
 from multibot_rewrite.description.checks.problem import Problem

@@ -10,8 +10,7 @@ from math import hypot, pi, radians
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks.links_and_joints import (
     BOUNDED,

@@ -9,8 +9,7 @@ from collections.abc import Iterator, Mapping
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.wording import SHOWN, shorten
 from multibot_rewrite.description.checks.links_and_joints import (
     BOUNDED,

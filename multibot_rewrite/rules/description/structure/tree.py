@@ -7,8 +7,7 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
-from multibot_rewrite.base.findings.rule import rule
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, rule
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.wording import SHOWN, shorten
 from multibot_rewrite.description.checks.links_and_joints import is_tree, loops, reached, roots
