@@ -24,9 +24,8 @@ _KEYS = ("role", "kind", "name", "type", "parameter", "when")
 def is_program(word: str) -> bool:
     """Is it a program of a package that is here, or a class of one?"""
     folder, name = os.path.split(word)
-    return (
-        bool(name) and not os.path.lexists(word) and os.path.isfile(os.path.join(folder, MANIFEST))
-    )
+    named = bool(folder and name) and not os.path.lexists(word)
+    return named and os.path.isfile(os.path.join(folder, MANIFEST))
 
 
 def run(options: argparse.Namespace, word: str) -> int:

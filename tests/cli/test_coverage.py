@@ -108,7 +108,8 @@ def numbers(capsys: pytest.CaptureFixture[str]) -> Mapping[str, object]:
 
 def row(nodes: int, known: int | None, seen: int | None, silent: int | None) -> dict[str, object]:
     left = None if known is None else nodes - known
-    return {"nodes": nodes, "known": known, "as_they_are": left, "seen": seen, "silent": silent}
+    told = {"known": known, "in_part": None if known is None else 0, "as_they_are": left}
+    return {"nodes": nodes, **told, "seen": seen, "silent": silent}
 
 
 def whole(text: str, total: dict[str, object], each: dict[str, object]) -> dict[str, object]:

@@ -37,7 +37,7 @@ def listed() -> list[Path]:
 
 
 PAGES = listed()
-MOST_PAGES, MOST_LINES = 40, 6000
+MOST_PAGES, MOST_LINES = 40, 6100
 # Written by programs of the repository.
 MADE = ("measurements.md", "robots.md", "vendors.md", "strangers.md", "launch-idioms.md")
 

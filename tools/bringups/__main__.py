@@ -188,8 +188,8 @@ def table(verdicts: Iterable[Verdict]) -> Iterator[str]:
         sums = {name: round(sums.get(name, 0) + row[name], 1) for name in row}
         cells = [it.choice.name, *map(str, row.values()), it.fault]
         yield f"| {' | '.join(cells)} |"
-    cells = (str(sums.get(it, 0)) for it in HEAD[1:-1])
-    yield f"| sum | {' | '.join(cells)} | |"
+    whole = (str(sums.get(it, 0)) for it in HEAD[1:-1])
+    yield f"| sum | {' | '.join(whole)} | |"
 
 
 def details(verdict: Verdict) -> Iterator[str]:

@@ -29,7 +29,9 @@ class Choice(NamedTuple):
 def chosen(half: str, path: Path = LIST) -> list[Choice]:
     """Return the repositories of a part of the list."""
     rows = [it.split("\t") for it in path.read_text().splitlines() if not it.startswith("#")]
-    made = [Choice(*row[:3], *_words(row[3])) for row in rows[1:]]
+    made = [
+        Choice(name, part, release, *_words(more)) for name, part, release, more, *_ in rows[1:]
+    ]
     return [it for it in made if it.half == half]
 
 

@@ -12,7 +12,7 @@ import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import yaml
 
@@ -132,7 +132,7 @@ def start(file: Path, given: Sequence[str], sources: Iterable[Path], folder: Pat
             child.wait()
     rows = [json.loads(it.read_text()) for it in sorted((folder / "rows").glob("*.json"))]
     failed = child.returncode != 0 or any(it.get("failed") for it in rows)
-    base = next((it["base"] for it in rows if "base" in it), {})
+    base: dict[str, Any] = next((it["base"] for it in rows if "base" in it), {})
     facts = {it["of"]: it["facts"] for it in rows if "facts" in it}
     processes = [
         made._replace(facts={**made.facts, **facts.get(row.get("pid"), {})})
@@ -278,7 +278,8 @@ class _Values(yaml.SafeLoader):
 
 
 _Values.add_constructor(
-    "tag:yaml.org,2002:python/tuple", lambda loader, node: loader.construct_sequence(node)
+    "tag:yaml.org,2002:python/tuple",
+    lambda loader, node: loader.construct_sequence(cast(yaml.SequenceNode, node)),
 )
 
 

@@ -172,7 +172,7 @@ def with_includes(prefix: Prefix, rows: Path) -> None:
     real = IncludeLaunchDescription.execute
 
     def text(context: Any, value: Any) -> str:
-        return perform_substitutions(context, normalize_to_list_of_substitutions(value))
+        return str(perform_substitutions(context, normalize_to_list_of_substitutions(value)))
 
     def execute(self: Any, context: Any) -> Any:
         source = self.launch_description_source

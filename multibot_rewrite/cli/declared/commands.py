@@ -29,14 +29,15 @@ REPORT_FORMS = ("table", "json")
 INSPECT = Command(
     "inspect",
     "inspect",
-    "%(prog)s [CODE... | NAME | FILE.xacro | FLEET] [NAME:=VALUE...] [options]",
-    "Explain a finding's code, a plugin, a xacro's arguments, what a fleet starts.",
+    "%(prog)s [CODE... | NAME | FILE] [NAME:=VALUE...] [options]",
+    "Explain a finding, a plugin, a xacro, a fleet or a node.",
     (
         Example("multibot inspect MB202", "a finding: what it is, why, how to fix it"),
         Example("multibot inspect MB", "all rules of urdf-lint; MG: those of check"),
         Example("multibot inspect libgazebo_ros_diff_drive.so", "which of its values are names?"),
         Example("multibot inspect arm.urdf.xacro", "which argument goes into which names?"),
         Example("multibot inspect fleet.yaml", "what its launch files start, for whom"),
+        Example("multibot inspect my_package/driver.py", "what a node does, by its source"),
         Example("multibot inspect --suggest rover.urdf -o acme.vocab", "draft what is missing"),
         Example("multibot inspect", "all that is known: plugins, then rules"),
     ),

@@ -50,16 +50,13 @@ def test_a_sensors_topic_of_several_words_stands_somewhere(
     assert fitting._is_strange(topic, said) is strange
 
 
-def fit(names: str, given: bool = False) -> Fitting:
-    return Fitting("p.yaml", frozenset({"amcl"}), frozenset(names), given)
+def fit(names: str) -> Fitting:
+    return Fitting("p.yaml", frozenset({"amcl"}), frozenset(names))
 
 
 def test_a_file_with_clearly_more_strange_names_is_no_rival() -> None:
     assert fitting._is_rival(fit("abcd"), fit("ab"))
     assert not fitting._is_rival(fit("abcde"), fit("ab"))
-    assert not fitting._is_rival(fit("ab", given=True), fit("ab"))
-    order = [fit("ab", given=True), fit(""), fit("a"), fit("", given=True)]
-    assert [order.index(it) for it in sorted(order, key=lambda it: it.rank)] == [3, 1, 0, 2]
 
 
 @pytest.mark.parametrize(("names", "shown"), [("ba", "a, b"), ("cab", "a, b ..."), ("a", "a")])
