@@ -62,7 +62,7 @@ def test_what_the_rename_map_does_is_no_difference() -> None:
     fleet = [
         it._replace(
             name=f"driver_{robot}",
-            rules=(("/scan", f"/{robot}/front/scan"), ("/tf", "tf")),
+            rules=(("/scan", f"/{robot}/front/scan"), ("/tf", "tf"), ("other:/map", "map")),
             parameters={"port": "/dev/ttyUSB0", "frame": f"{robot}/laser", "rate": 5.0},
         )
         for it, robot in zip(of_each(DRIVER), ROBOTS, strict=True)
@@ -90,6 +90,15 @@ def test_each_difference_is_named(change: dict[str, object], line: str) -> None:
     fleet = of_each(DRIVER._replace(**change))  # type: ignore[arg-type]
     (match,) = compare([DRIVER], fleet, ROBOTS).matches
     assert match.differs == (line,)
+
+
+@pytest.mark.parametrize(("name", "differs"), [("", ("parameter lost: a",)), ("driver", ())])
+def test_sections_of_a_node_without_a_name_are_asked_of_one_without(
+    name: str, differs: tuple[str, ...]
+) -> None:
+    vendor = Process("acme", "driver", parameters={"a": 1}, loose=frozenset("a"))
+    fleet = of_each(Process("acme", "driver", name=name))
+    assert compare([vendor], fleet, ROBOTS).matches[0].differs == differs
 
 
 def test_another_namespace_than_the_robots_is_named() -> None:
