@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 from tools.bringups import running
-from tools.bringups.choose import chosen, launch_files
+from tools.bringups.__main__ import Made, Verdict, details, table
+from tools.bringups.choose import Choice, chosen, launch_files
 from tools.bringups.compare import Comparison, compare
 from tools.bringups.install import install
 from tools.bringups.reading import read
@@ -306,3 +307,21 @@ def test_without_launch_the_stand_in_reads_what_would_start(tmp_path: Path) -> N
     assert (driver.label, driver.rules) == ("acme/driver (d)", (("scan", "/front"),))
     assert (driver.parameters, driver.words) == ({"a": 1}, ("-v",))
     assert [it.words for it in spawners] == [("a",), ("b",)]
+
+
+def test_the_table_counts_what_is_there_and_what_is_named() -> None:
+    choice = Choice("acme/robot", "work", "jazzy", "b.launch.py", ())
+    lost = [Process("acme", "told.py"), Process("acme", "told.pyc")]
+    found = compare([DRIVER, *lost], [*of_each(DRIVER), Process("a", "b")], ROBOTS)
+    verdict = Verdict(choice, found, Made("", "# not started: told.py (acme)", 1.5))
+    head, _, row, _ = table([verdict])
+    cells = dict(zip(head.strip("| ").split(" | "), row.strip("|").split("|"), strict=True))
+    counts = {name: it.strip() for name, it in cells.items()}
+    assert counts == {
+        **{"repository": "acme/robot", "processes": "3", "each": "1", "differ": "0", "once": "0"},
+        **{"named": "1", "silent": "1", "extra": "1", "seconds": "1.5", "why not": ""},
+    }
+    lines = list(details(verdict))
+    assert [it.split("  ")[0] for it in lines[1:]] == [
+        *("each", "missing, named", "missing, silent", "extra"),
+    ]
