@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 from tools.bringups import running
-from tools.bringups.choose import chosen, launch_files
+from tools.bringups.__main__ import Made, Verdict, details, table
+from tools.bringups.choose import Choice, chosen, launch_files
 from tools.bringups.compare import Comparison, compare
 from tools.bringups.install import install
 from tools.bringups.reading import read
@@ -62,7 +63,7 @@ def test_what_the_rename_map_does_is_no_difference() -> None:
     fleet = [
         it._replace(
             name=f"driver_{robot}",
-            rules=(("/scan", f"/{robot}/front/scan"), ("/tf", "tf")),
+            rules=(("/scan", f"/{robot}/front/scan"), ("/tf", "tf"), ("other:/map", "map")),
             parameters={"port": "/dev/ttyUSB0", "frame": f"{robot}/laser", "rate": 5.0},
         )
         for it, robot in zip(of_each(DRIVER), ROBOTS, strict=True)
@@ -90,6 +91,15 @@ def test_each_difference_is_named(change: dict[str, object], line: str) -> None:
     fleet = of_each(DRIVER._replace(**change))  # type: ignore[arg-type]
     (match,) = compare([DRIVER], fleet, ROBOTS).matches
     assert match.differs == (line,)
+
+
+@pytest.mark.parametrize(("name", "differs"), [("", ("parameter lost: a",)), ("driver", ())])
+def test_sections_of_a_node_without_a_name_are_asked_of_one_without(
+    name: str, differs: tuple[str, ...]
+) -> None:
+    vendor = Process("acme", "driver", parameters={"a": 1}, loose=frozenset("a"))
+    fleet = of_each(Process("acme", "driver", name=name))
+    assert compare([vendor], fleet, ROBOTS).matches[0].differs == differs
 
 
 def test_another_namespace_than_the_robots_is_named() -> None:
@@ -297,3 +307,21 @@ def test_without_launch_the_stand_in_reads_what_would_start(tmp_path: Path) -> N
     assert (driver.label, driver.rules) == ("acme/driver (d)", (("scan", "/front"),))
     assert (driver.parameters, driver.words) == ({"a": 1}, ("-v",))
     assert [it.words for it in spawners] == [("a",), ("b",)]
+
+
+def test_the_table_counts_what_is_there_and_what_is_named() -> None:
+    choice = Choice("acme/robot", "work", "jazzy", "b.launch.py", ())
+    lost = [Process("acme", "told.py"), Process("acme", "told.pyc")]
+    found = compare([DRIVER, *lost], [*of_each(DRIVER), Process("a", "b")], ROBOTS)
+    verdict = Verdict(choice, found, Made("", "# not started: told.py (acme)", 1.5))
+    head, _, row, _ = table([verdict])
+    cells = dict(zip(head.strip("| ").split(" | "), row.strip("|").split("|"), strict=True))
+    counts = {name: it.strip() for name, it in cells.items()}
+    assert counts == {
+        **{"repository": "acme/robot", "processes": "3", "each": "1", "differ": "0", "once": "0"},
+        **{"named": "1", "silent": "1", "extra": "1", "seconds": "1.5", "why not": ""},
+    }
+    lines = list(details(verdict))
+    assert [it.split("  ")[0] for it in lines[1:]] == [
+        *("each", "missing, named", "missing, silent", "extra"),
+    ]

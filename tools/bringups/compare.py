@@ -264,8 +264,9 @@ def _paths(text: str, robot: str) -> list[str]:
 
 
 def _rules(process: Process, other: Process, robot: str) -> Iterator[str]:
-    has = {(bare(old, robot), bare(new, robot)) for old, new in other.rules}
-    wanted = {(bare(old, ""), bare(new, "")) for old, new in process.rules}
+    # A rule may be for one node of a process: local_costmap:/scan:=scan
+    has = {(bare(old.rpartition(":")[2], robot), bare(new, robot)) for old, new in other.rules}
+    wanted = {(bare(old.rpartition(":")[2], ""), bare(new, "")) for old, new in process.rules}
     wanted = {(old, new) for old, new in wanted if old != new}
     for old, new in sorted(wanted - has):
         yield f"rule lost: {old}:={new}"
@@ -278,7 +279,9 @@ def _parameters(process: Process, other: Process, robot: str) -> Iterator[str]:
     wanted = {bare(name, ""): it for name, it in process.parameters.items()}
     has = {bare(name, robot): it for name, it in other.parameters.items()}
     loose = {bare(name, robot) for name in other.loose}
-    yield from _grouped("parameter lost", wanted.keys() - has.keys())
+    # Of a vendor's node without a name nobody knows which sections it reads.
+    unsure = {bare(name, "") for name in process.loose} if other.name else set()
+    yield from _grouped("parameter lost", wanted.keys() - has.keys() - unsure)
     for name in sorted(wanted.keys() & has.keys()):
         if value(has[name], robot) != value(wanted[name], ""):
             yield f"parameter changed: {name}: {_short(wanted[name])} -> {_short(has[name])}"
