@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -25,7 +26,7 @@ from multibot_rewrite.companions.params.rewrite import rewrite_params, rewrite_v
 from multibot_rewrite.companions.params.shared_defaults import all_sections, missing_defaults
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.sites import found_in
-from multibot_rewrite.companions.yaml_text import Splice, read_yaml
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, read_yaml
 from multibot_rewrite.description.own_ports import said_of_numbers
 from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
@@ -88,13 +89,17 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
     for group in group_robots(plan):
         evidence = plan.evidence_of(group.robots[0])
         once = {it.name for it in evidence.nodes if it.shared}
+        job = _values_job(plan, group)
+        given: dict[str, set[str]] = defaultdict(set)
+        for run in evidence.given:
+            given[run.node].update(run.values)
         for name, it in evidence.handed_on.items():
             if name in once:
                 # It is no robot's: its names stay.
                 values |= {(one.spec.name, name): it.values for one in group.robots if it.values}
                 continue
-            made = rewrite_values(_values_job(plan, group, name, it))
-            lacking = _lacking(plan, group, name, it)
+            made = rewrite_values(job._replace(document=_document(name, it)))
+            lacking = _lacking(group, name, it, job.known, given[name])
             if not (it.values or lacking):
                 continue
             file, line, *_ = it.place
@@ -112,17 +117,16 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
     return LaunchedValues(values, tuple(findings))
 
 
-def _lacking(plan: FleetPlan, group: RobotGroup, name: str, it: HandedOn) -> str:
+def _lacking(
+    group: RobotGroup, name: str, it: HandedOn, known: KnownNodes, given: Iterable[str]
+) -> str:
     """The names that a launched node has by default, where robots would share them, as parameters with
-    slots; none of a node of a stack: its section has them."""
-    known, _ = _known(plan, group)
-    evidence = plan.evidence_of(group.robots[0])
+    slots; none of a node of a stack: its section has them. ``given`` are those that its files set."""
     first, *_ = (*group.companions.get("params", ()), "")
     has_section = name in group.context.nodes and (not first or os.path.realpath(first) in it.files)
     if it.kind not in known.nodes or has_section or it.kind == STATIC:
         return ""
-    given = {key for run in evidence.given if run.node == name for key in run.values}
-    lines = missing_defaults(group.context, known.nodes[it.kind], given | it.values.keys())
+    lines = missing_defaults(group.context, known.nodes[it.kind], {*given, *it.values})
     return "".join(f"{line.path}: {line.value}\n" for line in lines)
 
 
@@ -134,16 +138,21 @@ def _section(text: str, file: str) -> Mapping[str, Any]:
     return dict(found)
 
 
-def _values_job(plan: FleetPlan, group: RobotGroup, name: str, it: HandedOn) -> ParamsJob:
+def _document(name: str, it: HandedOn) -> YamlText:
+    """The parameters that a launch file sets for a node, as a parameter file has them."""
     import yaml
 
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
     body = {it.kind or name: {"ros__parameters": dict(it.values)}}
     text = yaml.dump(body, None, dumper, sort_keys=False, allow_unicode=True)
-    document = read_yaml(text.encode(), it.place.file)
+    return read_yaml(text.encode(), it.place.file)
+
+
+def _values_job(plan: FleetPlan, group: RobotGroup) -> ParamsJob:
+    """What the parameters of a robot's nodes are rewritten with, yet without any."""
     known, bare = _known(plan, group)
     facts = facts_by_name(group.facts, plan.file.distro)
-    return ParamsJob(document, group.context, known, facts, (), bare)
+    return ParamsJob(read_yaml(b"", ""), group.context, known, facts, (), bare)
 
 
 def _known(plan: FleetPlan, group: RobotGroup) -> tuple[KnownNodes, frozenset[str]]:
