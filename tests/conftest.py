@@ -159,6 +159,8 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
+# Files whose tests build fleets for minutes.
+BUILDING_FILES = ("test_drawn_fleets.py", "test_cells_of_stacks.py")
 # Files whose tests start nodes.
 LIVE_FILES = (
     *("test_live_", "rcl", "test_docs", "test_examples", "test_recipes", "test_scripts"),
@@ -174,12 +176,15 @@ SOURCES_FILES = (
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
     """With ``-n 3`` the tests of a file stay together, all files with nodes: two of them at once would
-    meet in a domain, and those that need the same that costs much."""
+    meet in a domain, and those that need the same that costs much. Of files that build for minutes each
+    test is by itself."""
     from xdist.scheduler import LoadFileScheduling
 
     class Scheduling(LoadFileScheduling):
         def _split_scope(self, nodeid: str) -> str:
             file = nodeid.partition("::")[0]
+            if file.endswith(BUILDING_FILES):
+                return nodeid
             groups = {"live": LIVE_FILES, "sources": SOURCES_FILES}
             found = (it for it, words in groups.items() if any(word in file for word in words))
             return next(found, file)
