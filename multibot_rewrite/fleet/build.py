@@ -39,6 +39,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
 )
 from multibot_rewrite.fleet.outputs.params_style import check_style, in_style
 from multibot_rewrite.fleet.outputs.rviz_outputs import (
+    RVIZ,
     rviz_files,
     rviz_outputs,
     usual_windows,
@@ -112,12 +113,20 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         more = (*tables, *moveit_parameters(plan, files))
         files = sorted((*kept, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
-        starts = fleet_starts(plan, each, files, brought, shown, bool(configs))
+        starts = fleet_starts(
+            plan, each, files, brought, shown, bool(configs) or _starts_rviz(plan)
+        )
         files = sorted((*files, launch_file(starts)))
         told += one_launch_each(plan.file.apart, starts)
         _check_paths_differ(files)
         said = tuple(said_once(plan, [*findings, *told]))
         return Outputs(tuple(files), said, starts, planned)
+
+
+def _starts_rviz(plan: FleetPlan) -> bool:
+    """Does a launch file of the robots start RViz?"""
+    launched = ((it, one.handed_on) for one in plan.evidence.values() for it in one.nodes)
+    return any(it.kind == RVIZ and it.name in handed for it, handed in launched)
 
 
 def _check_paths_differ(files: Sequence[OutputFile]) -> None:

@@ -8,10 +8,10 @@ import json
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from waiting import wait_until
 
 from tools.bringups import running
 from tools.bringups.__main__ import Made, Verdict, details, table
@@ -194,9 +194,7 @@ def test_a_stub_writes_down_how_it_was_started(tmp_path: Path) -> None:
     (tmp_path / "rows").mkdir()
     command = [sys.executable, str(STUB), "p.yaml", "--x"]
     with subprocess.Popen(command, env=environ, cwd=tmp_path) as child:
-        until = time.monotonic() + 20
-        while not list((tmp_path / "rows").glob("*.json")) and time.monotonic() < until:
-            time.sleep(0.05)
+        wait_until(lambda: list((tmp_path / "rows").glob("*.json")))
         assert child.poll() is None  # it stays, as a node does
         child.terminate()
     (row,) = (json.loads(it.read_text()) for it in (tmp_path / "rows").iterdir())

@@ -317,10 +317,6 @@ def _frames(tf: TfSubscriptions, placed: Iterable[End]) -> Iterator[Edge]:
     return assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates())
 
 
-if __name__ == "__main__":
-    sys.exit(run_worker(main))
-
-
 # States and parameters change without the graph: nodes are asked for them again after so long.
 AGAIN_SECONDS = 10.0
 Ask = Callable[[Iterable[Question]], Iterable[Answer]]
@@ -350,3 +346,7 @@ class Answers:
             self._asked = now
         before, self.states = self.states, tuple(found[it] for it in sorted(found))
         return before != self.states
+
+
+if __name__ == "__main__":
+    sys.exit(run_worker(main))
