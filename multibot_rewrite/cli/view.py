@@ -10,8 +10,8 @@ from typing import Any
 
 from multibot_rewrite.base.model import InputError, MultibotError, UsageError
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
-from multibot_rewrite.cli.fleet import FLEET_FILES, check_own
-from multibot_rewrite.cli.output import deliver, note, status
+from multibot_rewrite.cli.fleet import FLEET_FILES, check_own, check_use
+from multibot_rewrite.cli.output import deliver, goes_to_file, note, status
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import asked_number, check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
@@ -36,6 +36,7 @@ from multibot_rewrite.system.records import System
 
 def run(options: argparse.Namespace) -> int:
     """Rewrite, load, write the page; returns the exit code."""
+    check_use(options, printed=not goes_to_file(options))
     plan = _plan(options)
     check_target(options.output, [*input_files(plan.file), *options.snapshot])
     scene = scene_of(plan, _graph(options))

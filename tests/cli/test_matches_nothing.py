@@ -91,6 +91,9 @@ BESIDE = "urdf-postfix params.yaml robot1 --urdf rover.urdf -o out/p.yaml"
                 "multibot check --from graph.json",
                 "multibot check fleet.yaml --from graph.json",
                 "multibot view fleet.yaml",
+                "multibot view rover.urdf r1",
+                "multibot rehearse fleet.yaml",
+                "multibot check-launch rover.urdf",
             )
         ),
         ("urdf-lint rover.urdf --ignore MB9999", "--ignore: no rule has the code 'MB9999'"),

@@ -108,7 +108,8 @@ WRONG: list[tuple[Sequence[str], str]] = [
     (["good.urdf", "nowhere"], "nowhere: there is no such file or folder"),
     (
         ["empty"],
-        "empty: no *.urdf or *.xacro or *.srdf or *.yaml or *.yml or *.rviz or *.lua or *.xml there",
+        "empty: no *.urdf or *.xacro or *.srdf or *.sdf or *.yaml or *.yml or *.rviz or *.lua or *.xml"
+        " there; name a file or another folder",
     ),
     (["good.urdf", "--select", "MB999"], "no rule has the code 'MB999'"),
     (["good.urdf", "--ignore", "MB2,nonsense"], "no rule has the code 'nonsense'"),

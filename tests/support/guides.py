@@ -4,6 +4,7 @@
 A block of code is a step, and the end of the paragraph before it says which:
 
     `FILE`:                 the block is the whole file (words may stand around the name)
+    `FILE` in `FOLDER`:     so it is, for a file that is in no repository yet
     At the end of `FILE`:   it is added there, behind a blank line or, in Python, two
     In `FILE`, below        it is there once already, and the next block is added below it
     (``sh``)                a script that has to succeed
@@ -36,6 +37,7 @@ _KINDS = (
     ("append", re.compile(r"At the end of `([\w./-]+)`:$")),
     ("anchor", re.compile(r"In `([\w./-]+)`, below$")),
     ("insert", re.compile(r"()add$")),
+    ("write", re.compile(r"`([\w.-]+)` in `([\w./-]+)`:$")),
     ("write", re.compile(r"`([\w./-]+)`[^`]*:$")),
 )
 _CODE = re.compile(r"\[exit code (\d+)\]\n")
@@ -59,7 +61,7 @@ def _step(before: str, language: str, text: str) -> Step:
         return Step(language, "", text)
     words = " ".join(before.split())
     found = ((kind, it) for kind, pattern in _KINDS if (it := pattern.search(words)))
-    kind, file = next(((kind, it[1]) for kind, it in found), ("", ""))
+    kind, file = next(((kind, "/".join(it.groups()[::-1])) for kind, it in found), ("", ""))
     return Step(kind, file, text)
 
 
