@@ -303,7 +303,7 @@ def test_a_manager_of_a_plugin_is_there_beside_another_description(tmp_path: Pat
     (tmp_path / "controllers.yaml").write_text(CONTROLLERS)
     for others in ("", "- {name: r2, description: cart.urdf, simulator: none}\n"):
         (tmp_path / "fleet.yaml").write_text(
-            "distro: jazzy\nsimulator: gazebo\n"
+            "distro: jazzy\nsimulator: gazebo\nlayout: frame-prefix\n"
             f"domains: {{r1: 7{', r2: 8' if others else ''}}}\n"
             f"robots:\n- {{name: r1, description: arm.urdf}}\n{others}"
         )
