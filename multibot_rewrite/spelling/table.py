@@ -111,10 +111,11 @@ def _without_controllers(run: Run) -> Run:
 
 def joined(table: Table, other: Table) -> Table:
     """Two tables of different robots as one; nodes for all robots are in it once."""
-    # Two descriptions may know other things of a node for all robots.
+    # Two descriptions may know other things of a node for all robots; of a robot's node both its stack
+    # and the plugin that makes it may tell.
     runs: dict[object, Run] = {}
-    for it in (*table.runs, *other.runs):
-        runs.setdefault((it.robot, it.node, it.full_name, it.rules), it)
+    for at, it in enumerate((*table.runs, *other.runs)):
+        runs.setdefault(at if it.robot else (it.node, it.full_name, it.rules), it)
     made = Table(table.layout, tuple(runs.values()), (), table.release)
     # The first robot of all is another one than the first of each.
     each = (it for it in (*table.problems, *other.problems) if it.code != NOT_TAKEN.code)

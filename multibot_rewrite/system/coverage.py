@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import OF_EVERY_NODE
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
+from multibot_rewrite.system.ownership import name_ownership
 from multibot_rewrite.system.records import (
     NOT_KNOWN_PROCESS,
     NOT_READ,
@@ -80,9 +81,10 @@ def coverage(system: System, graph: System | None = None) -> Coverage:
     there = {it.name for it in graph.nodes} if graph else set()
     answers = answering(graph) if graph and compared == SEEN else ()
     nodes: dict[str, list[Node]] = {it.name: [] for it in system.robots}
+    owned = name_ownership(system)
     # A name that is made at run time is that of a node's helper.
     for it in {it.name: it for it in system.nodes if "*" not in it.name}.values():
-        if not is_tool(it.name):
+        if not is_tool(owned.without_robot(it.name, it.robot)):
             nodes.setdefault(it.robot, []).append(it)
     rows = []
     for robot, own in nodes.items():

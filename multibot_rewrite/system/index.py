@@ -239,7 +239,8 @@ class Index(NamedTuple):
         """Is the node none of the robots', but one that comes and goes beside any?"""
         plan = self.expected
         if plan is None:
-            return is_tool(node)
+            # /amcl_bridge of a robot called bridge is none.
+            return is_tool(self.plain(node))
         return node not in plan.robot_of and is_tool(node, plan.system.ignored_nodes)
 
     @property

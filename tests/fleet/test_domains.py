@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import pytest
 import yaml
-from drawn_fleets import KINDS
+from drawn_fleets import CONTROLLERS, KINDS
 from fleet_folder import built_fleet, planned_fleet
 from nav2_graphs import ROVER
 
@@ -293,6 +293,23 @@ def test_a_plugin_is_where_its_simulator_is(tmp_path: Path) -> None:
     assert faults(tmp_path, "simulator: none\ndomains: {robot1: 11, robot2: 12}\n") == []
     # All in the simulator's domain.
     assert faults(tmp_path, "simulator: gazebo\ndomains: {robot1: 0, robot2: 0}\n") == []
+
+
+@pytest.mark.more
+def test_a_manager_of_a_plugin_is_there_beside_another_description(tmp_path: Path) -> None:
+    """gz_ros2_control makes it in the simulator, whatever the robot's parameter file says of it."""
+    (tmp_path / "cart.urdf").write_text('<robot name="cart"><link name="base_link"/></robot>')
+    (tmp_path / "arm.urdf").write_text(KINDS["gz arm"].text.replace("ROBOT", "arm"))
+    (tmp_path / "controllers.yaml").write_text(CONTROLLERS)
+    for others in ("", "- {name: r2, description: cart.urdf, simulator: none}\n"):
+        (tmp_path / "fleet.yaml").write_text(
+            "distro: jazzy\nsimulator: gazebo\nlayout: frame-prefix\n"
+            f"domains: {{r1: 7{', r2: 8' if others else ''}}}\n"
+            f"robots:\n- {{name: r1, description: arm.urdf}}\n{others}"
+        )
+        made = planned_fleet(tmp_path / "fleet.yaml")
+        (found,) = (it for it in closed_plan(made).gaps if it.code == "MF849")
+        assert (found.level, found.robots) == ("error", ("r1",)), others
 
 
 @pytest.mark.more

@@ -81,9 +81,14 @@ def _rehearsed(folder: Path, at: int, case: Case) -> CompletedProcess[str]:
 def test_what_a_release_hands_on_is_as_planned(
     case: Case, done: dict[Case, CompletedProcess[str]]
 ) -> None:
-    # That the rover has two senders of odometry, or of joint states, is said as well.
     assert done[case].returncode == 0, done[case].stdout
-    assert ": as planned" in done[case].stderr
+    # joint_state_publisher of robot_state may run beside the broadcaster of the plugin.
+    is_sent_twice = case == FORWARDED_TO_UNKNOWN
+    verdict = "no error, see the warnings" if is_sent_twice else "as planned"
+    assert f": {verdict} (" in done[case].stderr
+    codes = {word for word in done[case].stdout.split() if word.startswith("MG")}
+    assert "warning: MG324" in done[case].stdout or not is_sent_twice
+    assert codes <= ({"MG324"} if is_sent_twice else set()), done[case].stdout
     assert not {" MG1", " MG2"} & {it[:4] for it in done[case].stdout.split(":")}
 
 

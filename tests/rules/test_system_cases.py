@@ -120,6 +120,28 @@ def test_clocks(lines: tuple[str, ...], found: list[str]) -> None:
     assert said(*lines) == found
 
 
+@pytest.mark.parametrize(
+    ("has", "asks", "code"),
+    [
+        (f"publishes /left_arm/scan {SCAN}", f"subscribes /arm_left/scan {SCAN}", "MG303"),
+        ("serves /left_arm/dock acme/srv/Dock", "calls /arm_left/dock acme/srv/Dock", "MG304"),
+    ],
+)
+def test_what_another_robot_has_is_not_meant(has: str, asks: str, code: str) -> None:
+    """Robots left_arm and arm_left are two; where there are no such robots, it may be a slip."""
+    names = ("arm_left", "left_arm")
+    lines = (f"running: /left_arm/driver {has}", f"running: /arm_left/reader {asks}")
+    seen = read_system("\n".join(lines))
+
+    def robot(name: str) -> str:
+        return next((it for it in names if name.startswith(f"/{it}/")), "")
+
+    slips = judge(seen._replace(robots=(), robot=lambda _: "", memo={}))
+    of_two = judge(seen._replace(robots=names, robot=robot, memo={}))
+    assert (code, "error") in {(it.code, it.level) for it in slips}
+    assert code not in {it.code for it in of_two if it.level == "error"}
+
+
 DRIVERS = tuple(f"/robot{it}/driver subscribes /cmd_vel {TWIST}" for it in (1, 2))
 OWN = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
 

@@ -92,7 +92,8 @@ def _published_instead(
         return mine
 
     def is_of_another(it: str) -> bool:
-        return it in published and nodes_of(published[it].publishers) != (end.node,)
+        sent = it in published and nodes_of(published[it].publishers) != (end.node,)
+        return sent and not _is_of_other_robot(seen, end.name, it)
 
     bare = seen.plain(end.name)
     hidden = [_without_own_name(end), *_hiding(seen, end.name)]
@@ -101,6 +102,12 @@ def _published_instead(
     if found := next(filter(is_of_another, same), ""):
         return found
     return alike(end.name, _spelled(seen).get(end.type, NONE), end.type, is_of_another)
+
+
+def _is_of_other_robot(seen: Index, name: str, other: str) -> bool:
+    """Are these names of two robots? Robots ``left_arm`` and ``arm_left`` are two, however alike."""
+    robot, another = seen.robot(name), seen.robot(other)
+    return bool(robot and another) and robot != another
 
 
 @once
@@ -316,7 +323,9 @@ def _served_instead(seen: Index, end: End, served: _Served) -> str:
     own = [it for it in near if seen.robot(it) == robot]
     above = (it for it in _written_out(end.node, end.name) if it in served.names)
     first = (next(iter(it), "") for it in (own, near, above))
-    return next(filter(None, first), "") or alike(end.name, served.spelled, end.type)
+    return next(filter(None, first), "") or alike(
+        end.name, served.spelled, end.type, lambda it: not _is_of_other_robot(seen, end.name, it)
+    )
 
 
 def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:

@@ -136,7 +136,7 @@ def _passing(seen: Index) -> Mapping[str, tuple[list[Ends], list[Ends]]]:
             for at, side in enumerate((ends.subscribers, ends.publishers)):
                 for node in nodes_of(at_work(side)):
                     found[node][at].append(ends)
-    own = {it: both for it, both in found.items() if all(both) and not _is_bridge(it)}
+    own = {it: both for it, both in found.items() if all(both) and not _is_bridge(seen.plain(it))}
     return {it: (read, sent) for it, (read, sent) in own.items() if read[0].type == sent[0].type}
 
 

@@ -71,7 +71,7 @@ def _manager(seen: Index, node: str) -> str:
     """The node that changes the state of another one; empty for none."""
     ends = seen.by_name.get((SERVICE, f"{node}/change_state"))
     clients = (end.node for end in ends.clients) if ends else ()
-    return min((it for it in clients if not is_viewer(it) and not is_tool(it)), default="")
+    return min((it for it in clients if not _asks_for_a_person(seen, it)), default="")
 
 
 @system_rule("MG512", "interface-commanded-twice", ERROR)
@@ -128,7 +128,7 @@ def use_sim_time_differs(seen: Index) -> Iterator[Finding]:
     told, planned = {it.robot for it in mixed_clocks(seen)}, planned_clocks(seen)
     by_robot: dict[str, dict[bool, list[str]]] = defaultdict(lambda: defaultdict(list))
     for node, simulated in clocks(seen.system).items():
-        if not is_tool(node) and node not in planned:
+        if not is_tool(seen.plain(node)) and node not in planned:
             by_robot[seen.robot(node)][simulated].append(node)
     for robot, found in by_robot.items():
         if len(found) < 2 or robot in told:
@@ -192,7 +192,9 @@ def managed_twice(seen: Index) -> Iterator[Finding]:
     managed: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for (kind, name), ends in seen.by_name.items():
         if kind == SERVICE and name.endswith(_CHANGE_STATE):
-            clients = nodes_of(end for end in ends.clients if not _asks_for_a_person(end.node))
+            clients = nodes_of(
+                end for end in ends.clients if not _asks_for_a_person(seen, end.node)
+            )
             managed[clients].append(name.removesuffix(_CHANGE_STATE))
     for managers, nodes in managed.items():
         if len(managers) > 1:
@@ -205,8 +207,8 @@ def managed_twice(seen: Index) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _asks_for_a_person(node: str) -> bool:
-    return is_viewer(node) or is_tool(node)
+def _asks_for_a_person(seen: Index, node: str) -> bool:
+    return is_viewer(node) or is_tool(seen.plain(node))
 
 
 # What is done with it, what it is called besides its kind, and who does not give it.
