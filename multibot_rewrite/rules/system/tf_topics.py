@@ -73,8 +73,9 @@ def _frames_of_another(seen: Index) -> Iterator[Finding]:
     """One robot's frames on another one's topic, where none of its nodes is known to send there. That
     a robot sees the other one is no finding: it sends the other's frame below one of its own."""
     for tree in seen.trees:
-        owner, senders = seen.robot(tree.topic), {*map(seen.robot, tree.senders)}
-        if not owner or any(it in seen.relays for it in tree.senders):
+        owner, nodes = seen.robot(tree.topic), [it for it in tree.senders if seen.robot(it)]
+        senders = {*map(seen.robot, nodes)}
+        if not owner or any(it in seen.relays for it in nodes):
             continue
         found: dict[str, list[str]] = defaultdict(list)
         for edge in tree.edges:
