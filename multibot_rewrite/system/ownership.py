@@ -249,8 +249,10 @@ def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) 
         for w in plan.ends
         if likely
     }
-    every = (*in_code, *nodes.items(), *topics.items())
-    return _words({draft.without_robot(name, robot) for name, robot in every})
+    once = {draft.without_robot(*it) for it in (*in_code, *nodes.items())}
+    # Of what is below a link of its robot, the link has the robot's name, too.
+    twice = {draft.without_robot(draft.without_robot(*it), it[1]) for it in topics.items()}
+    return _words(once | twice)
 
 
 def frame_ownership(plan: System) -> NameOwnership:

@@ -226,7 +226,7 @@ def _read_record(
     if type(value) is kind:
         return value
     if type(value) in (Node, End, Qos):
-        value = cast(Any, value)._asdict()
+        value = plain_value(value)
     if not isinstance(value, dict):
         raise unexpected("an object", value)
     fields: dict[str, object] = {}

@@ -94,7 +94,7 @@ def test_every_robot_has_its_files_and_no_other(fleet: tuple[str, dict[str, str]
         "reach": {
             *("arm.urdf", "arm.srdf", "limits.yaml", "moveit_parameters.yaml", "one_robot.rviz")
         },
-        "grip": {"arm.urdf", "one_robot.rviz"},
+        "grip": {"arm.urdf", "arm.srdf", "one_robot.rviz"},
         "bare": {"rover.urdf", "one_robot.rviz"},
     }
     together = layout == "L2"

@@ -114,7 +114,7 @@ PLANTED: Mapping[str, tuple[Edit, str]] = {
     ),
     "a parameter file is not given": (
         node("robot1", "collision_monitor", lambda it: it.replace("*params, ", "")),
-        "MG102",
+        "MF823",
     ),
     "a lifecycle manager waits for nobody": (
         in_launch(lambda it: it.replace('  "smoother_server",', '  "smother_server",', 1)),

@@ -204,7 +204,7 @@ def test_parameters_that_nodes_were_started_with(needed: Mapping[str, str], tmp_
     (differs,) = [it for it in done.stdout.splitlines() if "MG132" in it]
     assert 'base_frame is "base_link", planned is "robot1/base_link"' in differs, done.stdout
     assert "robot1/nav2.yaml:1" in differs and "rate" not in differs
-    assert "/robot1/amcl: error: MG511 is inactive, planned is active" in done.stdout
+    assert "error: MG511 /robot1/amcl is inactive, not active (see the log" in done.stdout
     assert done.stdout.count("MG511") == 1
 
 

@@ -100,6 +100,7 @@ robots:
     companions: {moveit: limits.yaml}
   - name: grip
     description: arm.urdf.xacro
+    srdf: arm.srdf
     arguments: {tool: fork}
     stack: moveit
   - {name: bare, description: rover.urdf, pose: {x: 2}}

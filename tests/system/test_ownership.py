@@ -270,3 +270,13 @@ def test_a_plan_of_one_robot_without_its_namespace() -> None:
         parameters=(Parameter("/lidar", "a", "1"),),
         topics=(Topic("/scan", ("/lidar",)),),
     )  # fmt: skip
+
+
+def test_the_name_of_a_robot_in_a_link_of_a_topic_is_no_word() -> None:
+    """A topic below a link has the robot's name behind the link and at its end."""
+    robots = tuple(Robot(it, (f"base/{it}",), f"/tf/{it}") for it in ("r1", "r2"))
+    names = (f"/link/base/{it.name}/cmd_vel/{it.name}" for it in robots)
+    nodes = tuple(Node(f"/state_{it.name}", robot=it.name) for it in robots)
+    found = name_ownership(System(nodes, robots=robots, topics=tuple(map(Topic, names))))
+    assert not found.ambiguous_words
+    assert (found.robot("/r1/state"), found.robot("/link/base/r2/cmd_vel/r2")) == ("r1", "r2")

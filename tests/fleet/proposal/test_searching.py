@@ -31,7 +31,7 @@ KINDS = [
     ("p.yml", PARAMS, "params"),
     *(
         (f"b{at}.yaml", text, "bridge")
-        for at, text in enumerate(("- ros_topic_name: a", "-  gz_topic_name : a", "  topic_name: a"))
+        for at, text in enumerate(("- ros_topic_name: a", "-  gz_topic_name : a", "-\n  topic_name: a"))
     ),
     *(
         (f"{it}.yaml", "a: 1", "moveit")
