@@ -113,9 +113,8 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         more = (*tables, *moveit_parameters(plan, files))
         files = sorted((*kept, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
-        starts = fleet_starts(
-            plan, each, files, brought, shown, bool(configs) or _starts_rviz(plan)
-        )
+        are_opened = bool(configs) or (_starts_rviz(plan) and not any(name for name, _ in shown))
+        starts = fleet_starts(plan, each, files, brought, shown, are_opened)
         files = sorted((*files, launch_file(starts)))
         told += one_launch_each(plan.file.apart, starts)
         _check_paths_differ(files)
@@ -124,7 +123,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
 
 
 def _starts_rviz(plan: FleetPlan) -> bool:
-    """Does a launch file of the robots start RViz?"""
+    """Does a launch file of the robots start RViz? The plan has one for all of them."""
     launched = ((it, one.handed_on) for one in plan.evidence.values() for it in one.nodes)
     return any(it.kind == RVIZ and it.name in handed for it, handed in launched)
 

@@ -107,7 +107,7 @@ FAULTS: dict[str, tuple[Callable[[Topics], None], set[str], str]] = {
     "the other robot's transforms": (
         changed("/robot1/tf", edges=edges("robot2/odom robot2/base_link")),
         {"MG405", "MG412"},
-        "robot2/base_link of robot2 on /robot1/tf, which is of robot1",
+        "robot2/base_link of robot2 is on /robot1/tf, expected on /robot2/tf",
     ),
     "frames without the robot's name": (
         both(

@@ -512,25 +512,3 @@ def test_who_has_to_give_what_all_robots_wait_for_is_the_cause(sender: str, read
         )
     )
     assert [(it.code, it.node) for it in found] == [("MG102", "/robot1/giver")]
-
-
-@pytest.mark.parametrize(
-    ("parent", "codes"),
-    [
-        ("robot2/odom", {"MG405"}),
-        # It sees the other robot.
-        ("robot1/camera", set()),
-    ],
-)
-def test_frames_of_a_robot_that_another_one_sends(parent: str, codes: set[str]) -> None:
-    text = f"""\
-planned: frames of robot1 on /robot1/tf: robot1/base
-planned: frames of robot2 on /robot2/tf: robot2/base
-as planned: /robot1/driver publishes /robot1/tf {TF}
-as planned: /robot2/driver publishes /robot2/tf {TF}
-running: transform robot1/odom -> robot1/base on /robot1/tf by /robot1/driver
-running: transform robot2/odom -> robot2/base on /robot2/tf by /robot2/driver
-running: transform {parent} -> robot2/base on /robot1/tf by /robot1/driver
-"""
-    found = {it.code for it in check(*read_example(text))}
-    assert found & {"MG405"} == codes

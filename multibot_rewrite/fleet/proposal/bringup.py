@@ -177,9 +177,13 @@ def _others(it: LaunchArgument, passed: set[str]) -> list[str]:
 def _starts(graph: LaunchGraph, robot: Robot) -> bool:
     """Does a launch file start the publisher or spawner of the description, as far as it is known which
     one that is, and of one robot?"""
+    return any(map(_publishes, graph.nodes)) and not _is_of_another(graph, robot)
+
+
+def _is_of_another(graph: LaunchGraph, robot: Robot) -> bool:
+    """Does a launch file read another robot's description alone?"""
     read = _reads(graph)
-    of_another = read & robot.others and not read & robot.files
-    return any(map(_publishes, graph.nodes)) and not of_another
+    return bool(read & robot.others) and not read & robot.files
 
 
 def _reads(graph: LaunchGraph) -> set[str]:
@@ -198,7 +202,8 @@ def _is_bringup(graph: LaunchGraph, robot: Robot) -> bool:
 def _beside(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | None:
     """The only launch file that starts something of a robot, where none publishes its description: a
     build does that, but spawns no controllers."""
-    found = [it for it in roots if any(map(is_of_robot, it.graph.nodes))]
+    own = (it for it in roots if not _is_of_another(it.graph, robot))
+    found = [it for it in own if any(map(is_of_robot, it.graph.nodes))]
     if len(found) != 1 or robot.has_control:
         return None
     (read,) = read_as([LaunchOrder(found[0].file, trusted=trust)])

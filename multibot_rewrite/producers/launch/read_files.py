@@ -21,6 +21,8 @@ _KEPT = (".urdf", ".sdf", ".model", ".srdf", ".yaml", ".yml")
 _XACRO = ".xacro"
 _ENDS = (*_ENDINGS, *_KEPT, _XACRO)
 _LIMIT = 1 << 24
+# What this package reads for itself is no file of a robot.
+_OWN = os.path.abspath(__file__).removesuffix(os.path.join("producers", "launch", "read_files.py"))
 
 
 class Reads(NamedTuple):
@@ -36,8 +38,9 @@ def keep_reads() -> Reads:
     found = Reads([], [])
 
     def opened(event: str, words: tuple[Any, ...]) -> None:
-        if event == "open" and isinstance(words[0], str) and words[0].endswith(_ENDS):
-            found.paths.append(words[0])
+        path = words[0] if event == "open" else None
+        if isinstance(path, str) and path.endswith(_ENDS) and not path.startswith(_OWN):
+            found.paths.append(path)
 
     sys.addaudithook(opened)
     sys.meta_path.insert(0, _Xacro(found))

@@ -70,20 +70,16 @@ def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
 
 
 def _frames_of_another(seen: Index) -> Iterator[Finding]:
-    """One robot's frames on another one's topic, where none of its nodes is known to send there. That
-    a robot sees the other one is no finding: it sends the other's frame below one of its own."""
+    """One robot's frames on another one's topic, where it is not known who sends them."""
     for tree in seen.trees:
-        owner, nodes = seen.robot(tree.topic), [it for it in tree.senders if seen.robot(it)]
-        senders = {*map(seen.robot, nodes)}
-        if not owner or any(it in seen.relays for it in nodes):
+        owner = seen.robot(tree.topic)
+        if not owner or any(map(seen.robot, tree.senders)):
             continue
         found: dict[str, list[str]] = defaultdict(list)
         for edge in tree.edges:
-            robot = seen.frame_robot(edge.child)
-            if not senders or robot == seen.frame_robot(edge.parent):
-                found[robot].append(edge.child)
+            found[seen.frame_robot(edge.child)].append(edge.child)
         for robot, frames in found.items():
-            if robot not in ("", owner, *senders):
+            if robot not in ("", owner):
                 yield tf_on_two_topics.finding(
                     f"{shorten(frames)} of {robot} on {tree.topic}, which is of {owner}",
                     f"start its nodes in its own namespace, with the rules {_REMAP}",
