@@ -331,6 +331,18 @@ def test_a_namespace_of_the_code_is_not_that_of_the_launch(acme: Path) -> None:
     assert ["namespace" in it.text for it in facts.untold] == [True]
 
 
+def test_a_name_is_that_of_the_parameter_where_it_is_declared(acme: Path) -> None:
+    """rclpy's declare_parameter gives the parameter back, by its name and not by its default."""
+    (acme / "scripts" / "tool.py").write_text(
+        "import rclpy\nfrom std_msgs.msg import String\n"
+        "node = rclpy.create_node('tool')\n"
+        "topic = node.declare_parameter('scan_topic', 'scan').value\n"
+        "node.create_publisher(String, topic, 1)\n"
+    )
+    (end,) = read("tool", acme).facts.endpoints
+    assert (end.name, end.parameter) == ("scan", "scan_topic")
+
+
 def test_a_part_that_no_call_is_seen_to_reach_is_not_known(acme: Path) -> None:
     (acme / "scripts" / "tool.py").write_text(
         "import rclpy\nfrom std_msgs.msg import String\n"
