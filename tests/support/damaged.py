@@ -209,13 +209,9 @@ PLACES = (
 
 def whole_folder(folder: Path) -> Path:
     """A folder in which each of the commands works."""
-    fleet = (
-        mixed()
-        .replace(
-            "companions: {rviz: one_robot.rviz}",
-            "companions: {rviz: one_robot.rviz, lua: slam.lua, behavior_trees: [tree.xml]}",
-        )
-        .replace("arguments: {tool: fork}", "srdf: arm.srdf\n    arguments: {tool: fork}")
+    fleet = mixed().replace(
+        "companions: {rviz: one_robot.rviz}",
+        "companions: {rviz: one_robot.rviz, lua: slam.lua, behavior_trees: [tree.xml]}",
     )
     fleet_folder(folder, fleet)
     for name, text in {
