@@ -38,7 +38,7 @@ KINDS = {
     HEARD: "an own topic that has a subscriber: all that a launch starts",
     "missing": "a parameter that is not passed: its parameters",
     PROGRAM: "the executable that runs it: the launch file",
-    RELEASE: "releases of ROS, for the type of an endpoint: the release",
+    RELEASE: "releases of ROS, for an endpoint: the release",
     "run": "simulated or real: use_sim_time",
     UNSENT: "a topic that no other node of the robot sends: its other nodes",
     VERSION: "the package, and its version or a newer one: whoever installed it",

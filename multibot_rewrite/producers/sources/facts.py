@@ -204,10 +204,9 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
         if images and it.api.function != "advertise" and "<" not in name:
             info = f"{name.rpartition('/')[0]}/camera_info".lstrip("/" if name[:1] != "/" else "")
             own = end._replace(name=info, type="sensor_msgs/msg/CameraInfo", transport=False)
+            # Since then image_transport makes it of the image's name with its rules applied (#326).
             yield own._replace(
-                parameter="",
-                beside=name,
-                fixed=f"it is derived from the name that {name} is remapped to",
+                parameter="", beside=name if has_release("kilted+", release) else ""
             )
 
 
