@@ -167,8 +167,8 @@ def run_of(
 
 
 def _asked(endpoint: Endpoint, node: NodeFacts, at: tuple[str, str, Iterable[Rule]]) -> Endpoint:
-    """Return the endpoint under the name that its node asks for by the rules of the others; what is made
-    of another's name has to lead where the robot alone has it."""
+    """Return the endpoint under the name that its node asks for by the rules of the others; what is
+    made of another's name has to lead where the robot alone has it."""
     if not endpoint.beside:
         return endpoint
     name, namespace, rules = at

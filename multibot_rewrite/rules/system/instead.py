@@ -13,7 +13,15 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, ends_of, once, spaces
-from multibot_rewrite.system.records import CALLS, RUNS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
+from multibot_rewrite.system.records import (
+    CALLS,
+    PUBLISHES,
+    RUNS,
+    SERVICE,
+    SUBSCRIBES,
+    UNKNOWN_NODES,
+    End,
+)
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 _DIGITS = lazy_compile(r"_?\d+")
@@ -80,8 +88,15 @@ def _orphan(seen: Index, end: End) -> Ends | None:
 
 
 def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
-    """Is it made of what is missing, as slam_toolbox shows the scan that it reads?"""
-    readers = {it.node for it in ends_of(seen, end.name) if it.role == SUBSCRIBES}
+    """Is it made of what is missing, as slam_toolbox shows the scan that it reads, or by way of others
+    of its type, as an image is rectified of one that is debayered?"""
+    readers: set[str] = set()
+    names = [end.name]
+    for name in names:
+        own = {it.node for it in ends_of(seen, name) if it.role == SUBSCRIBES} - readers
+        readers |= own
+        sent = (it for node in own for it in seen.by_node[node] if it.role == PUBLISHES)
+        names += [it.name for it in sent if it.type == end.type]
     return bool(ends.publishers) and readers.issuperset(it.node for it in ends.publishers)
 
 

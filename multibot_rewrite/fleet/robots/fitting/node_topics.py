@@ -51,7 +51,9 @@ def plugins(member: Member) -> Iterator[NodeFacts]:
     """Yield the nodes that plugins of the description are, with the names that they have alone."""
     reading = read(member.source.source, member.source.file, member.vocabulary)
     for run in map(with_names, plugin_nodes(reading, "")):
-        yield run.fact._replace(endpoints=tuple(it._replace(remapped=name) for it, name in run.names))
+        yield run.fact._replace(
+            endpoints=tuple(it._replace(remapped=name) for it, name in run.names)
+        )
 
 
 def controllers(nodes: Iterable[NodeFacts]) -> Iterator[NodeFacts]:

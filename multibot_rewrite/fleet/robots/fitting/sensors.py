@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.steps.collect import collect
@@ -32,7 +32,7 @@ SENSED = (
 )
 # Who reads colours can do nothing with depths, which have the same type.
 DEPTHS = f"{IMAGE} of depths"
-_OF_CAMERAS = (IMAGE, DEPTHS, INFO)
+OF_CAMERAS = (IMAGE, DEPTHS, INFO)
 _DEPTH, _OF_COLOURS = "depth", ("rgb", "intensity")
 # The layout in which a description keeps its topics.
 _NAMING = make_naming("tf-per-robot")
@@ -62,14 +62,24 @@ def _images(found: Mapping[str, Sequence[str]]) -> Mapping[str, Sequence[str]]:
     return {IMAGE: [it for it in given if it not in depths], DEPTHS: depths}
 
 
-def _wanted(node: NodeFacts, end: Endpoint) -> str:
+def wanted(node: NodeFacts, end: Endpoint) -> str:
     """Return what an end hears; empty for none that a sensor sends, whatever else comes."""
     terms = (it for all_ in parse_condition(end.when) for it in all_)
-    if end.role != SUBSCRIBES or any(it.parameter != HEARD for it in terms):
-        return ""
+    is_asked = end.role == SUBSCRIBES and all(it.parameter == HEARD for it in terms)
+    return _kind(node, end) if is_asked else ""
+
+
+def _kind(node: NodeFacts, end: Endpoint) -> str:
     deep = _DEPTH in f"{node.package}/{end.name}"
     of_depths = end.type == IMAGE and deep and end.name.partition("/")[0] not in _OF_COLOURS
     return DEPTHS if of_depths else end.type
+
+
+def sent_as(nodes: Iterable[NodeFacts], kind: str) -> Collection[str]:
+    """Return the topics that nodes surely send, without images of another kind."""
+    every = ((node, it) for node in nodes for it in node.endpoints if it.role == PUBLISHES)
+    given = (it for it in every if not it[1].when and {kind, _kind(*it)} != {IMAGE, DEPTHS})
+    return {topic_of(*it) for it in given}
 
 
 def by_sensor(node: NodeFacts, offered: Mapping[str, Sequence[str]]) -> NodeFacts:
@@ -89,18 +99,18 @@ def by_sensor(node: NodeFacts, offered: Mapping[str, Sequence[str]]) -> NodeFact
 
 
 def hearing_sensors(
-    node: NodeFacts, nodes: Iterable[NodeFacts], offered: Mapping[str, Sequence[str]]
+    node: NodeFacts, nodes: Sequence[NodeFacts], offered: Mapping[str, Sequence[str]]
 ) -> NodeFacts:
     """Return the node with the robot's only topic of a sensor where it would hear one that nobody
     sends."""
-    sent = topics_of(nodes, PUBLISHES)
-    wanted = [_wanted(node, it) for it in node.endpoints]
+    kinds = [wanted(node, it) for it in node.endpoints]
     ends = []
-    for end, kind in zip(node.endpoints, wanted, strict=True):
+    for end, kind in zip(node.endpoints, kinds, strict=True):
         topics = offered.get(kind, ())
         # Of two cameras that it reads one alone is there.
-        one = len(topics) == 1 and (kind not in _OF_CAMERAS or wanted.count(kind) == 1)
-        lost = one and "<" not in end.name and topic_of(node, end) not in {*topics, *sent}
+        one = len(topics) == 1 and (kind not in OF_CAMERAS or kinds.count(kind) == 1)
+        there = {*topics, *sent_as(nodes, kind)} if one else ()
+        lost = one and "<" not in end.name and topic_of(node, end) not in there
         # No file says the name that its stack has.
         named = end.named_from or end.name
         ends.append(end._replace(name=named, remapped=topics[0]) if lost else end)
