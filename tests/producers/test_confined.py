@@ -91,6 +91,53 @@ def read(file: Path, trust: bool = False) -> LaunchGraph:
     return found
 
 
+# What is asked of a machine, what is seen of it, and what is named.
+MACHINE = (
+    ("os.listdir('/dev')", "[]", "/dev"),
+    ("[it.name for it in os.scandir('/dev/')]", "[]", "/dev"),
+    ("list(__import__('pathlib').Path('/dev').iterdir())", "[]", "/dev"),
+    ("__import__('glob').glob('/dev/tt*')", "[]", "/dev"),
+    ("__import__('glob').glob('/dev/tty')", "[]", "/dev/tty"),
+    ("[*os.walk('/sys/class/net')]", "[('/sys/class/net', [], [])]", "/sys/class/net"),
+    ("[*__import__('pathlib').Path('/sys/class').glob('n*')]", "[]", "/sys/class"),
+    ("os.path.exists('/dev/tty')", "False", "/dev/tty"),
+    ("os.path.isdir('/proc/self')", "False", "/proc/self"),
+    ("os.path.islink(b'/dev/../proc/self')", "False", "/proc/self"),
+    ("__import__('pathlib').Path('/dev/tty').exists()", "False", "/dev/tty"),
+    ("os.access('/dev/tty', os.R_OK)", "False", "/dev/tty"),
+    ("swallowed(lambda: __import__('socket').socket())", "None", "the network"),
+    ("swallowed(lambda: __import__('socket').gethostbyname('a'))", "None", "the network"),
+    ("os.path.exists(os.devnull)", "True", ""), ("os.path.exists(HERE)", "True", ""),
+    ("os.path.exists('/devices')", "False", ""), ("os.stat(0) is not None", "True", ""),
+)  # fmt: skip
+ASKS = """import os
+from launch import LaunchDescription
+from launch_ros.actions import Node
+HERE = os.path.dirname(__file__)
+def swallowed(call):
+    try:
+        call()
+    except OSError:
+        pass
+def generate_launch_description():
+    return LaunchDescription([Node(package="p", executable=repr(LINE))])
+"""
+
+
+@pytest.mark.parametrize(("line", "seen", "named"), MACHINE)
+def test_a_launch_file_sees_nothing_of_a_machine(
+    line: str, seen: str, named: str, kept: Path
+) -> None:
+    """Another one has other devices: the file is read as where none is there, and that is said."""
+    file = kept / "own/a.launch.py"
+    file.write_text(ASKS.replace("LINE", line))
+    found = read(file)
+    assert [it.executable for it in found.nodes] == [seen]
+    said = f"it looks at {named} of the machine, and sees nothing of it here; --trust shows it"
+    assert [(it.message, it.parameters) for it in found.notes] == ([(said, True)] if named else [])
+    assert not read(file, trust=True).notes
+
+
 def test_what_a_launch_file_may_do(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """All that is refused leaves everything as it was; all else is done."""
     if not fences.version():

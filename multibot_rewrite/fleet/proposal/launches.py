@@ -96,9 +96,11 @@ def _time(file: str) -> tuple[int, int]:
 
 
 def not_read(read: Iterable[Reading]) -> Iterator[Row]:
-    """Yield what of each launch file could not be read: the first of it."""
+    """Yield what of each launch file could not be read: the first of it. What is not known of one node
+    is told by the build, not what a launch file asks of the machine or of a program."""
     for it in read:
-        notes = [one for one in it.graph.notes if not (one.parameters or one.missing)]
+        notes = [one for one in it.graph.notes if not one.missing]
+        notes = [one for one in notes if not one.parameters or one.place.line == 1]
         if it.why:
             yield it.file, 1, it.why
         elif notes:
