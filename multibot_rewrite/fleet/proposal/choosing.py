@@ -14,11 +14,14 @@ from typing import NamedTuple
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.description.sources.expand import once_kept
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.description.sources.packages import package_of
+from multibot_rewrite.fleet.proposal.bringup import processes_of_robot
+from multibot_rewrite.fleet.proposal.launches import Reading
 from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import names_of_files
-from multibot_rewrite.fleet.proposal.searching import Found, home_of, text_of
+from multibot_rewrite.fleet.proposal.searching import Found, home_of, loaded_by, text_of
 
 # What descriptions of a part alone are called.
 _PART = lazy_compile(
@@ -45,7 +48,7 @@ class Undecided(UsageError):
         home = os.path.abspath(home_of(named[0]))
         folders = [it for it in found.folders if os.path.abspath(it) != home]
         shown = shorten(map(self.said, files), MOST_SHOWN)
-        command = f"multibot init {shlex.join([*folders, *named])}"
+        command = f"multibot init {shlex.join([*folders, *named, *found.words])}"
         super().__init__(f"{what}: {shown}; name one: {command}")
 
     def said(self, path: str) -> str:
@@ -54,12 +57,14 @@ class Undecided(UsageError):
 
 
 class Candidate(NamedTuple):
-    """A description and what speaks for it: how many launch files load it, whether its package is named
-    after it, how many of its names the files beside it have; ``part`` is whether it is called like a
-    part, or the package of another description uses its package."""
+    """A description and what speaks for it: how many launch files load it, how many processes one of
+    them starts, whether its package is named after it, how many of its names the files beside it have;
+    ``part`` is whether it is called like a part, or the package of another description uses its
+    package."""
 
     robot: Looked
     launched: int
+    started: int
     of_package: bool
     named: int
     part: bool
@@ -149,6 +154,7 @@ def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
     return Candidate(
         it,
         launches_of(it.path, found),
+        processes_with(it.path, found),
         names_its_package(it.path),
         len(said & (links | moving)),
         is_called_like_a_part(it.path),
@@ -180,20 +186,23 @@ def names_its_package(path: str) -> bool:
 
 
 def _rank(it: Candidate) -> tuple[object, ...]:
-    """By kind, launched, of its package, named; then what is no copy, for a simulator, has
-    ``<ros2_control>``, a short path."""
+    """By kind, launched, of its package, by what its launch file starts, named; then what is no copy,
+    for a simulator, has ``<ros2_control>``, a short path."""
     robot = it.robot
     is_copy = _COPY.search(os.path.basename(robot.path).lower()) is not None
     more = is_copy, robot.simulator == NO_SIMULATOR, not robot.control, len(robot.path), robot.path
-    return *it.kind, not it.launched, not it.of_package, -it.named, *more
+    launched = not it.started, not it.launched, not it.of_package, -it.started
+    return *it.kind, *launched, -it.named, *more
 
 
 def _is_behind(it: Candidate, best: Candidate) -> bool:
     if it.kind != best.kind or (it.moving < best.moving and not it.launched):
         return True
+    if best.started and not it.started:
+        return True
     if it.of_package != best.of_package and it.launched == best.launched:
         return best.of_package
-    if best.launched and not it.launched:
+    if best.started > it.started or (best.launched and not it.launched):
         return True
     return best.launched >= it.launched and best.share > _MORE * it.share
 
@@ -218,12 +227,26 @@ def launches_of(path: str, found: Found) -> int:
     )
 
 
-def launched_by(path: str, found: Found) -> list[str]:
-    """Return the launch files that load a description."""
+def processes_with(path: str, found: Found) -> int:
+    """How many processes of a robot the launch file starts that loads this description, and most."""
+    return max(map(processes_of_robot, launched_by(path, found)), default=0)
+
+
+def launched_by(path: str, found: Found) -> list[Reading]:
+    """Return the launch files that load a description: of one of which no description is known that it
+    loads, the text counts."""
     base = os.path.basename(path)
     alike = [it for it in found.every if os.path.basename(it) == base]
     pattern = re.compile(rf"""(?<![\w.-]){re.escape(base)}(?![\w.-])""")
-    return [it for it in found.launch if _loads(it, pattern, _own(path), len(alike) > 1)]
+    return [
+        it
+        for it, loads in once_kept(("loads", found), lambda: _loaded_by_each(found))
+        if (path in loads if loads else _loads(it.file, pattern, _own(path), len(alike) > 1))
+    ]
+
+
+def _loaded_by_each(found: Found) -> list[tuple[Reading, tuple[str, ...]]]:
+    return [(it, loaded_by(it.graph, found)) for it in found.read]
 
 
 def _own(path: str) -> str:

@@ -80,7 +80,9 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     left |= _with_others_names(robot, every)
     found = without(every, left)
     kinds = (it for it in KINDS if it not in ("params", "moveit"))
-    own = {package_of(it) for it in (robot.path, *launched_by(robot.path, found))}
+    own = {
+        package_of(it) for it in (robot.path, *(one.file for one in launched_by(robot.path, found)))
+    }
     strange = _of_other_packages(robot, found, own)
     left |= strange
     found = without(found, strange)

@@ -32,7 +32,6 @@ from multibot_rewrite.fleet.proposal.launches import (
     Reading,
     Row,
     not_read,
-    read_any,
     started,
 )
 from multibot_rewrite.fleet.proposal.looking import (
@@ -89,8 +88,8 @@ class Proposal(NamedTuple):
     their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
     ``refused`` files that do not go with the robots and ``broken`` descriptions that cannot be read,
     each with the reason. ``started`` is what launch files start where none of them is the robot's,
-    ``unread`` what could not be read of them. ``chosen`` is what is not as the files have it, so that
-    the fleet builds."""
+    ``unread`` what could not be read of those of the robots, ``others_unread`` of those near them.
+    ``chosen`` is what is not as the files have it, so that the fleet builds."""
 
     keys: Mapping[str, Choice]
     members: Sequence[Member]
@@ -100,6 +99,7 @@ class Proposal(NamedTuple):
     refused: Mapping[str, str] = {}
     started: tuple[Row, ...] = ()
     unread: tuple[Row, ...] = ()
+    others_unread: tuple[Row, ...] = ()
     broken: Mapping[str, str] = {}
     chosen: str = ""
 
@@ -247,11 +247,11 @@ def propose(
         **worlds_of(members),
     }
     poses = poses_of(members, wanted.apart)
-    every = read_any(found.launch)
+    every = found.read
     bringups = [it.bringup for it in robots if it.bringup]
     other = (one for it in every for one in it.graph.nodes if not bringups)
-    near = (it for it in every if _may_start(it.file, robots))
-    unread = (*(Reading(it.order, it.graph) for it in bringups), *near)
+    unread = dict.fromkeys(not_read(Reading(it.order, it.graph) for it in bringups))
+    near = dict.fromkeys(not_read(it for it in every if _may_start(it.file, robots)))
     return Proposal(
         keys,
         members,
@@ -260,7 +260,8 @@ def propose(
         _others(found, robots),
         refused,
         tuple(started(other)),
-        tuple(dict.fromkeys(not_read(unread))),
+        tuple(unread),
+        tuple(it for it in near if it not in unread),
     )
 
 

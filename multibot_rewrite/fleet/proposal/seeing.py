@@ -26,9 +26,10 @@ from multibot_rewrite.fleet.proposal.choosing import (
     may_be_partners,
     names_its_package,
     partner,
+    processes_with,
 )
 from multibot_rewrite.fleet.proposal.companions import srdf_of
-from multibot_rewrite.fleet.proposal.launches import Bringup, read_any
+from multibot_rewrite.fleet.proposal.launches import Bringup
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
     Looked,
@@ -96,9 +97,9 @@ def see(wanted: Wanted) -> Seen:
     that launch files load where it cannot be read.
     """
     wanted.tell(f"looking for robots in {', '.join(wanted.paths)}")
-    found = search(wanted.paths)
+    found = search(wanted.paths, wanted.launch or ())
     reach = Reach(trust=wanted.trust)
-    values = NeededValues(read_any(found.launch))
+    values = NeededValues(found.read)
     every = found.descriptions
     if len(every) > MOST:
         every = tuple(sorted(every, key=lambda it: -launches_of(it, found)))[:MOST]
@@ -108,7 +109,12 @@ def see(wanted: Wanted) -> Seen:
         wanted.tell(f"{at} of {len(every)} descriptions: {it}")
         looked.append(look_at(it))
     named = [it for it in looked if it.path in map(os.path.normpath, wanted.paths)]
-    return _named(wanted, found, named, look_at) if named else _likeliest(wanted, found, looked)
+    if named:
+        return _named(wanted, found, named, look_at)
+    seen = _likeliest(wanted, found, looked)
+    # What one launch file loads is of one robot.
+    loaded = found.named and all(launches_of(it.path, found) for it in looked)
+    return seen._replace(rivals=()) if loaded else seen
 
 
 def _named(
@@ -134,7 +140,8 @@ def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
     likeliest = best.order[0]
     rather = _rather(likeliest, looked, found)
     launched = any(launches_of(it.path, found) for it in rather[:1])
-    other = f"for another one: multibot init {shlex.quote(likeliest.robot.path)}"
+    words = shlex.join([likeliest.robot.path, *found.words])
+    other = f"for another one: multibot init {words}"
     _refuse(rather, f"; the launch files load it; {other}" if launched else f"; {other}")
     # The name of a model tells what it carries: x500_lidar.
     if likeliest.part and not likeliest.moving and likeliest.robot.tag == "robot":
@@ -173,16 +180,18 @@ def _with_partner(it: Looked, others: Sequence[Looked], wanted: Wanted) -> Looke
 
 
 def _rather(likeliest: Candidate, looked: Sequence[Looked], found: Found) -> list[Looked]:
-    """Return the descriptions that cannot be read, and are as likely to be the robot: as many launch
-    files load them; all where the likeliest cannot move."""
-    least = max(1, likeliest.launched), likeliest.of_package
+    """Return the descriptions that cannot be read, and are as likely to be the robot: their launch file
+    starts as much, and as many load them; all where the likeliest cannot move."""
+    least = likeliest.started, max(1, likeliest.launched), likeliest.of_package
     broken = _by_launches([it for it in looked if it.fault], found)
     if not likeliest.moving:
         return broken
     whole = (it for it in broken if not is_called_like_a_part(it.path))
-    return [
-        it for it in whole if (launches_of(it.path, found), names_its_package(it.path)) >= least
-    ]
+    return [it for it in whole if _weight(it.path, found) >= least]
+
+
+def _weight(path: str, found: Found) -> tuple[int, int, bool]:
+    return processes_with(path, found), launches_of(path, found), names_its_package(path)
 
 
 def _by_launches(looked: Iterable[Looked], found: Found) -> list[Looked]:
@@ -209,11 +218,10 @@ def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> li
     )
     own = [with_own_arguments(it, tree, reach) for it in launched]
     made = [in_its_world(it, _is_simulated(it, wanted), reach) for it in own]
-    values = NeededValues(read_any(found.launch))
-    return [
-        with_semantic_arguments(it, srdf_of(it, found), reach, values) if found.srdf else it
-        for it in made
-    ]
+    if not found.srdf:
+        return made
+    values = NeededValues(found.read)
+    return [with_semantic_arguments(it, srdf_of(it, found), reach, values) for it in made]
 
 
 def _bringup(it: Looked, wanted: Wanted, found: Found) -> Bringup | None:

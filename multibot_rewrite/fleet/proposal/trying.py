@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, by_place
 from multibot_rewrite.base.findings.formats.plain import said
@@ -13,6 +14,7 @@ from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
 from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.expand import once_kept
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.as_planned import is_of_sources
 from multibot_rewrite.fleet.checks.read_back import read_back
@@ -23,7 +25,7 @@ from multibot_rewrite.fleet.file.fleet_data import (
 )
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.looking import (
@@ -177,20 +179,33 @@ def errors_of(
     """Return why a fleet does not build: the file, if one is at fault, and a line each. What else is
     right is read back, as a build does: what that finds of the sources (``of_sources``) is in any
     layout."""
-    folder = os.path.abspath("out")
     try:
-        plan = plan_fleet(read_fleet(source, "", os.environ), trust=trust)
-        made = make_outputs(plan, folder)
-        found = {*made.findings, *plan.fleet.table.problems}
-        if not any(it.level == ERROR for it in found):
-            back = read_back(plan, made, folder)
-            asked = (it for it in back if of_sources or not _is_of_sources(it, found))
-            found |= {*asked}
+        built = once_kept((source, trust), lambda: _built(source, trust))
     except MultibotError as error:
         place = (source.path,) if isinstance(source, FleetText) else ()
         return [("", without_place(str(error), *place))]
-    errors = sorted((it for it in found if it.level == ERROR), key=by_place)
+    asked = (it for it in built.back if of_sources or not _is_of_sources(it, built.found))
+    errors = sorted((it for it in (*built.found, *asked) if it.level == ERROR), key=by_place)
+    plan = built.plan
     return [(_file(it), _line(it)) for it in grouped(plan.with_names(errors), plan.words)]
+
+
+class _Built(NamedTuple):
+    """A fleet as a build has it: what is found of it, and what is found where it is read back."""
+
+    plan: FleetPlan
+    found: frozenset[Finding]
+    back: frozenset[Finding]
+
+
+def _built(source: FleetSource, trust: bool) -> _Built:
+    folder = os.path.abspath("out")
+    plan = plan_fleet(read_fleet(source, "", os.environ), trust=trust)
+    made = make_outputs(plan, folder)
+    found = frozenset((*made.findings, *plan.fleet.table.problems))
+    wrong = any(it.level == ERROR for it in found)
+    back = frozenset(() if wrong else read_back(plan, made, folder)) - found
+    return _Built(plan, found, back)
 
 
 def _is_of_sources(it: Finding, told: Set[Finding]) -> bool:
