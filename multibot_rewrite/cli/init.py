@@ -24,12 +24,11 @@ from multibot_rewrite.cli.output import STANDARD, deliver, detail, goes_to_file,
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import asked_number, plain_words, xacro_args
 from multibot_rewrite.description.sources.expand import kept_expansions
-from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.launches import order_text
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import MEANT, Choice, Proposal, names_of, release_of
-from multibot_rewrite.fleet.proposal.searching import Found, is_below
+from multibot_rewrite.fleet.proposal.searching import Found, Undecided, is_below
 from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, see, with_arguments
 from multibot_rewrite.fleet.proposal.trying import (
     as_named,
@@ -168,8 +167,8 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
     deliver(options, text.encode(), FLEET)
     for line in (*made.notes, *filter(None, (made.chosen,))):
         say(line, PROGRAM)
-    for path, line, why in (*made.unread, *made.others_unread):
-        detail(options, f"{path}:{line}: {why}")
+    for path, at, why in (*made.unread, *made.others_unread):
+        detail(options, f"{path}:{at}: {why}")
     robots = sum(len(it.names) for it in made.members)
     files = {os.path.basename(it.looked.path) for it in made.members}
     what = f"{plural(robots, 'robot')} of {', '.join(sorted(files))}, {made.keys['layout'].value}"

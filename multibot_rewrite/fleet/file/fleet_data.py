@@ -108,7 +108,7 @@ def _file_and_rest(text: str) -> tuple[str, str]:
     words = shlex.shlex(text, posix=True)
     words.whitespace_split, words.commenters = True, ""
     with suppress(ValueError):  # it is told where the arguments are read
-        return words.get_token() or "", words.instream.read()
+        return words.get_token() or "", words.instream.read(-1)
     file, _, rest = text.partition(" ")
     return file, rest
 

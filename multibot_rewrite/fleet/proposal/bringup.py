@@ -104,10 +104,11 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
 
 
 def processes_of_robot(it: Reading) -> int:
-    """How many processes of a robot a launch file starts, none where it is a trial or publishes no
-    description. Raises nothing."""
-    is_likely = any(map(_publishes, it.graph.nodes)) and not _tries(it, True)
-    return len({*_own(it.graph)}) if is_likely else 0
+    """How many processes a launch file starts for a robot, its simulator as one; none where it is a
+    trial, or neither publishes a description nor simulates one. Raises nothing."""
+    simulates = _is_simulated(it.graph)
+    starts = simulates or any(map(_publishes, it.graph.nodes))
+    return len({*_own(it.graph)}) + simulates if starts and not _tries(it, True) else 0
 
 
 def _with_own_arguments(

@@ -21,7 +21,6 @@ from multibot_rewrite.companions.named_file import PARAMS
 from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.own_names import ROBOT
-from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_said
 from multibot_rewrite.fleet.file.robot_spec import REAL
@@ -44,7 +43,7 @@ from multibot_rewrite.fleet.proposal.looking import (
     with_controllers,
 )
 from multibot_rewrite.fleet.proposal.owners import of_other_robots
-from multibot_rewrite.fleet.proposal.searching import Found, text_of, without
+from multibot_rewrite.fleet.proposal.searching import Found, without
 from multibot_rewrite.fleet.proposal.seeing import Wanted
 from multibot_rewrite.rules.files.plugin_names import classes_of_other_releases
 from multibot_rewrite.rules.files.releases import elsewhere
@@ -88,7 +87,7 @@ class Proposal(NamedTuple):
     their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
     ``refused`` files that do not go with the robots and ``broken`` descriptions that cannot be read,
     each with the reason. ``started`` is what launch files start where none of them is the robot's,
-    ``unread`` what could not be read of those of the robots, ``others_unread`` of those near them.
+    ``unread`` what could not be read of those of the robots, ``others_unread`` of other ones.
     ``chosen`` is what is not as the files have it, so that the fleet builds."""
 
     keys: Mapping[str, Choice]
@@ -251,7 +250,7 @@ def propose(
     bringups = [it.bringup for it in robots if it.bringup]
     other = (one for it in every for one in it.graph.nodes if not bringups)
     unread = dict.fromkeys(not_read(Reading(it.order, it.graph) for it in bringups))
-    near = dict.fromkeys(not_read(it for it in every if _may_start(it.file, robots)))
+    others = dict.fromkeys(not_read(every))
     return Proposal(
         keys,
         members,
@@ -261,18 +260,7 @@ def propose(
         refused,
         tuple(started(other)),
         tuple(unread),
-        tuple(it for it in near if it not in unread),
-    )
-
-
-def _may_start(file: str, robots: Iterable[Looked]) -> bool:
-    """Is a launch file of the package of one of the robots, or does it name its description?"""
-    own = package_of(file) or os.path.dirname(os.path.abspath(file))
-    text = text_of(file)
-    return any(
-        own == (package_of(it.path) or os.path.dirname(os.path.abspath(it.path)))
-        or os.path.basename(it.path) in text
-        for it in robots
+        tuple(it for it in others if it not in unread),
     )
 
 

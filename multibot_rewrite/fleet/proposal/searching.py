@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -23,6 +23,7 @@ from multibot_rewrite.base.file_kinds import (
 )
 from multibot_rewrite.base.left_out import source_folders
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.sources.included_by import (
     MOST_FILES,
     TESTS,
@@ -42,6 +43,8 @@ from multibot_rewrite.fleet.proposal.launches import (
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 
 _BUILT = frozenset((MANIFEST, PLAN))
+# Files that are shown where nothing says which is meant.
+MOST_SHOWN = 6
 _ENDS = (
     ".urdf",
     ".sdf",
@@ -82,9 +85,8 @@ _MOVEIT = frozenset(
 class Found(NamedTuple):
     """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched.
 
-    ``descriptions`` are those that were named, if any were, else those that a launch file loads which
-    was named; ``every`` are all that are there. ``meant`` are files beside them that were named.
-    ``named`` is the launch file that was.
+    ``descriptions`` are those that were named, if any were; ``every`` are all that are there. ``meant``
+    are files beside them that were named, ``named`` is the launch file that was.
     """
 
     descriptions: tuple[str, ...] = ()
@@ -149,24 +151,21 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
     if files:
         kinds["descriptions"] = files
     fields = {kind: tuple(its) for kind, its in kinds.items() if kind}
-    found = Found(**fields, folders=tuple(homes), meant=tuple(meant))
-    if not launch:
-        return found
-    found = found._replace(launch=tuple(it.file for it in launch), named=tuple(launch))
-    own = [path for it in found.read for path in loaded_by(it.graph, found)]
-    return found if files or not own else found._replace(descriptions=(*dict.fromkeys(own),))
+    if launch:
+        fields["launch"] = tuple(it.file for it in launch)
+    return Found(**fields, folders=tuple(homes), meant=tuple(meant), named=tuple(launch))
 
 
-def loaded_by(graph: LaunchGraph, found: Found) -> tuple[str, ...]:
-    """The descriptions that a launch file loads: it reads the file, gives it to a node, or starts a
-    world with the model."""
+def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
+    """The descriptions that a launch file loads, by their real paths: it reads the file, gives it to a
+    node, or starts a world with the model."""
     known = {os.path.realpath(it): it for it in found.every}
     words = (it for node in graph.nodes for it in node.arguments if it.endswith(_ENDS))
     real = dict.fromkeys((*(it.file for it in graph.read), *map(os.path.realpath, words)))
     texts = [text_of(it) for it in real if it in map(os.path.realpath, found.worlds)]
-    models = [it for it in found.every if any(_is_in_world(it, text) for text in texts)]
-    own = (known.get(it) or (os.path.relpath(it) if _is_description(it) else "") for it in real)
-    return (*dict.fromkeys(filter(None, (*own, *models))),)
+    models = (it for it in known if any(_is_in_world(it, text) for text in texts))
+    own = {it: known.get(it) or os.path.relpath(it) for it in (*real, *models)}
+    return {it: path for it, path in own.items() if it in known or _is_description(it)}
 
 
 def _is_in_world(model: str, text: str) -> bool:
@@ -175,6 +174,24 @@ def _is_in_world(model: str, text: str) -> bool:
 
 def _is_description(path: str) -> bool:
     return os.path.isfile(path) and _kind(path, data_of_file(path)) == "descriptions"
+
+
+class Undecided(UsageError):
+    """Nothing says which of some files is meant: ``files`` have what is to be said of each."""
+
+    def __init__(self, what: str, files: Mapping[str, str], found: Found, *before: str) -> None:
+        """``before`` are files that are named beside the one that is meant, as are those that were."""
+        self.files = files
+        named = [*before, *found.meant, next(iter(files))]
+        home = os.path.abspath(home_of(named[0]))
+        folders = [it for it in found.folders if os.path.abspath(it) != home]
+        shown = shorten(map(self.said, files), MOST_SHOWN)
+        command = f"multibot init {shlex.join([*folders, *named, *found.words])}"
+        super().__init__(f"{what}: {shown}; name one: {command}")
+
+    def said(self, path: str) -> str:
+        """A file as it is shown."""
+        return f"{path} ({self.files[path]})" if self.files[path] else path
 
 
 def without(found: Found, paths: Container[str]) -> Found:

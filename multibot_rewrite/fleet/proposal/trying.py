@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, by_place
 from multibot_rewrite.base.findings.formats.plain import said
@@ -26,7 +25,6 @@ from multibot_rewrite.fleet.file.fleet_data import (
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleet.proposal.choosing import Undecided
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
@@ -41,7 +39,7 @@ from multibot_rewrite.fleet.proposal.propose import (
     propose,
     two_simulators,
 )
-from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.fleet.proposal.searching import Found, Undecided
 from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, with_arguments
 
 # Builds without files that turned out not to go with a robot, and descriptions that are tried.
@@ -180,32 +178,24 @@ def errors_of(
     right is read back, as a build does: what that finds of the sources (``of_sources``) is in any
     layout."""
     try:
-        built = once_kept((source, trust), lambda: _built(source, trust))
+        plan, found, back = once_kept((source, trust), lambda: _built(source, trust))
     except MultibotError as error:
         place = (source.path,) if isinstance(source, FleetText) else ()
         return [("", without_place(str(error), *place))]
-    asked = (it for it in built.back if of_sources or not _is_of_sources(it, built.found))
-    errors = sorted((it for it in (*built.found, *asked) if it.level == ERROR), key=by_place)
-    plan = built.plan
+    asked = (it for it in back if of_sources or not _is_of_sources(it, found))
+    errors = sorted((it for it in (*found, *asked) if it.level == ERROR), key=by_place)
     return [(_file(it), _line(it)) for it in grouped(plan.with_names(errors), plan.words)]
 
 
-class _Built(NamedTuple):
+def _built(source: FleetSource, trust: bool) -> tuple[FleetPlan, Set[Finding], Set[Finding]]:
     """A fleet as a build has it: what is found of it, and what is found where it is read back."""
-
-    plan: FleetPlan
-    found: frozenset[Finding]
-    back: frozenset[Finding]
-
-
-def _built(source: FleetSource, trust: bool) -> _Built:
     folder = os.path.abspath("out")
     plan = plan_fleet(read_fleet(source, "", os.environ), trust=trust)
     made = make_outputs(plan, folder)
     found = frozenset((*made.findings, *plan.fleet.table.problems))
     wrong = any(it.level == ERROR for it in found)
     back = frozenset(() if wrong else read_back(plan, made, folder)) - found
-    return _Built(plan, found, back)
+    return plan, found, back
 
 
 def _is_of_sources(it: Finding, told: Set[Finding]) -> bool:

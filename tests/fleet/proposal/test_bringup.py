@@ -429,6 +429,8 @@ def robots(package: Path) -> Path:
         (SPAWNS.format("dolly"), "rover/dolly/model.sdf"),
         (SPAWNS.format("cart"), "rover/cart/model.sdf"),
         (PLAYS, "rover/cart/model.sdf"),
+        (READS.format("other", "other.urdf.xacro").replace("'xacro '", "'ros2 run own make -i '"),
+         "other/urdf/other.urdf.xacro"),
         (RSP.format(f", arguments=[{PATH.format('urdf/rover.urdf.xacro')}]"),
          "rover/urdf/rover.urdf.xacro"),
     ],
