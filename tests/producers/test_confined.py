@@ -251,3 +251,40 @@ def test_without_fences_nothing_of_it_runs(kept: Path) -> None:
     first, second = done.stdout.splitlines()
     assert "not both Landlock and seccomp" in first and "--trust" in first
     assert second.startswith("LaunchGraph") and (kept / "made").exists()
+
+
+WITHOUT = """\
+import os, yaml
+import acme_tools
+from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch_ros.actions import Node
+def generate_launch_description():
+    texts = [dump({"a": acme_tools.make()}) for dump in (yaml.safe_dump, yaml.dump)]
+    kinds = [type(yaml.safe_load(it)["a"]).__name__ for it in texts]
+    inner = PythonLaunchDescriptionSource(os.path.join(os.path.dirname(__file__), "b.launch.py"))
+    return LaunchDescription([
+        Node(package="p", executable=" ".join(kinds)),
+        IncludeLaunchDescription(inner, launch_arguments=acme_tools.Given().items()),
+    ])
+"""
+INNER = """\
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+def generate_launch_description():
+    own = Node(package="q", executable=LaunchConfiguration("name"))
+    return LaunchDescription([DeclareLaunchArgument("name"), own])
+"""
+
+
+def test_what_a_package_makes_that_is_not_here_stops_nothing(kept: Path) -> None:
+    """In YAML it is a text; the arguments of an include that it makes may be those that are given."""
+    (kept / "own/a.launch.py").write_text(WITHOUT)
+    (kept / "own/b.launch.py").write_text(INNER)
+    order = LaunchOrder(str(kept / "own/a.launch.py"), (("name", "x"),))
+    (found,) = read_launch_files([order], 60.0)
+    assert isinstance(found, LaunchGraph), found
+    assert {(it.package, it.executable) for it in found.nodes} == {("p", "str str"), ("q", "x")}

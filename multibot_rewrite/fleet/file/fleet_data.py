@@ -11,6 +11,7 @@ import shlex
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import cache
+from io import StringIO
 from typing import Any, NamedTuple, TypeAlias
 
 import yaml
@@ -105,12 +106,13 @@ def _launch_path(folder: str, text: str) -> str:
 
 def _file_and_rest(text: str) -> tuple[str, str]:
     """The first word of what follows ``ros2 launch``, as a shell has it, and what follows that."""
-    words = shlex.shlex(text, posix=True)
+    rest = StringIO(text)
+    words = shlex.shlex(rest, posix=True)
     words.whitespace_split, words.commenters = True, ""
     with suppress(ValueError):  # it is told where the arguments are read
-        return words.get_token() or "", words.instream.read(-1)
-    file, _, rest = text.partition(" ")
-    return file, rest
+        return words.get_token() or "", rest.read()
+    file, _, more = text.partition(" ")
+    return file, more
 
 
 def _joined(folder: str, path: str) -> str:
