@@ -368,6 +368,23 @@ def test_the_info_beside_an_image(
     assert infos == {info}
 
 
+@pytest.mark.parametrize(
+    ("guard", "condition"),
+    [
+        ("if (debug_) ", "debug = true"), ("if (!debug_) ", "debug unset or debug = false"),
+        # What no parameter says may be so: it is sent.
+        ("if (frame_.size() > 3) ", ""),
+    ],
+)  # fmt: skip
+def test_a_transform_is_sent_where_its_parameter_says_so(
+    guard: str, condition: str, acme: Path
+) -> None:
+    """Another node, as a filter, sends it where it is switched off."""
+    unit, call = acme / "src/driver.cpp", "broadcaster_->sendTransform"
+    unit.write_text(unit.read_text().replace(call, f"{guard}{call}"))
+    assert [it.condition for it in read("driver_node", acme).facts.sends] == [condition]
+
+
 def test_a_program_of_an_install_rule(acme: Path) -> None:
     facts = read("tool", acme).facts
     assert (facts.name, [it.name for it in facts.endpoints]) == ("tool", ["x"])

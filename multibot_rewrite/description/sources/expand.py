@@ -105,8 +105,8 @@ def kept_expansions() -> Iterator[None]:
         _KEPT.reset(before)
 
 
-def _once(key: object, expanded: Callable[[], _T]) -> _T:
-    """Return what was expanded for this key before, or raise the same error."""
+def once_kept(key: object, expanded: Callable[[], _T]) -> _T:
+    """Return what was made for this key before in the block, or raise the same error."""
     kept = _KEPT.get()
     if kept is None:
         return expanded()
@@ -143,7 +143,7 @@ def expand_whole(
         _tell_missing(reach, result.fences)
         return Expanded(_text(path, result, Trace(result, sources, path)), sources.texts)
 
-    return _once((path, frozenset(arguments.items()), find, reach), expanded)
+    return once_kept((path, frozenset(arguments.items()), find, reach), expanded)
 
 
 def expand_traced(
@@ -170,7 +170,7 @@ def expand_traced(
         return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts), Pieces(trace))
 
     given = frozenset(arguments.items()), frozenset(changed.items())
-    return _once((path, data, *given, find, reach, in_pieces), expanded)
+    return once_kept((path, data, *given, find, reach, in_pieces), expanded)
 
 
 def _text(path: str, result: Result, trace: Trace) -> bytes:

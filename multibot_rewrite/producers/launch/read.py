@@ -9,7 +9,12 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from multibot_rewrite.producers.launch.commands import faults, read_commands, start_nothing
+from multibot_rewrite.producers.launch.commands import (
+    faults,
+    read_commands,
+    see_no_machine,
+    start_nothing,
+)
 from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit, changed_environment
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import (
@@ -63,6 +68,8 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     keep_sources()
     lines, reads = read_commands(), keep_reads()
     unsure = [] if order.trusted else start_nothing(lines)
+    if not order.trusted:
+        see_no_machine(unsure)
     # A launch file may look at the command line itself.
     sys.argv = order.command_line
     missing: list[str] = []

@@ -10,14 +10,19 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any, cast
 
+import yaml
+
 from multibot_rewrite.producers.launch.door import of_launch
 from multibot_rewrite.system.parameters import ANY_NAME
 
 
 def add_unknown(name: str) -> None:
     """Make a Python package importable, with every module below it; the Python of a launch file alone
-    is to have it."""
+    is to have it. In YAML that the launch file writes, what is taken of it is a text."""
     sys.meta_path.append(_Finder(name))
+    for dumper in ("Dumper", "SafeDumper", "CDumper", "CSafeDumper"):
+        if made := getattr(yaml, dumper, None):
+            made.add_representer(Unknown, lambda it, _: it.represent_str(STOOD_FOR))
 
 
 def is_unknown(value: object) -> bool:

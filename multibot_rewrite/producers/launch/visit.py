@@ -153,6 +153,11 @@ def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
         return None
     include = included(entity, seen)
     seen.includes.append(include)
+    if is_unknown(entity.launch_arguments):
+        # Made by a package that is not here: it may hand on all that is set.
+        own = "launch_arguments" in vars(entity)
+        name = "launch_arguments" if own else "_IncludeLaunchDescription__launch_arguments"
+        setattr(entity, name, tuple(seen.context.launch_configurations.items()))
     found = _execute(entity, seen)
     unread_of(path_of(entity, seen.context), dict(include.arguments), seen)
     return found

@@ -347,7 +347,10 @@ def _sends(
             continue
         words = [_frame_word(rows[0].text) for rows in pair]
         if all(words) and words[0] != words[1]:
-            sends.append(SentTransform(words[0], words[1]))
+            # That a callback may never run is no switch.
+            asked = "&".join(it for it in sent.asked.split("&") if it != OTHERWISE)
+            switch = _condition(names, sent.spot, asked)
+            sends.append(SentTransform(words[0], words[1], "" if switch == PERHAPS else switch))
             frames += [_frame_of(names, rows[0], it) for rows, it in zip(pair, words, strict=True)]
     return tuple(dict.fromkeys(sends)), tuple(frames)
 
