@@ -177,9 +177,11 @@ def test_lint_and_build_say_the_same(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("rule", IN_BOTH, ids=lambda it: it.code)
 def test_an_example_is_found_by_both(rule: Rule, tmp_path: Path) -> None:
     distro = str(rule.options.get("distro", NEWEST_LTS))
-    linted, built = by_both(rule.formats[0], rule.bad, tmp_path, {rule.code}, rule.beside, distro)
+    linted, built = by_both(
+        rule.formats[0], rule.page.bad, tmp_path, {rule.code}, rule.page.beside, distro
+    )
     assert linted == built
-    assert [int(it.split(":")[1]) for it in built] == [rule.line]
+    assert [int(it.split(":")[1]) for it in built] == [rule.page.line]
 
 
 def test_a_comment_silences_both(tmp_path: Path) -> None:

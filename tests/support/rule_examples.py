@@ -61,7 +61,7 @@ def found(
 ) -> list[Finding]:
     """Return what the rule finds in an example, with the files that are beside it (its own by
     default)."""
-    _write(folder, rule.beside if beside is None else beside)
+    _write(folder, rule.page.beside if beside is None else beside)
     run = beside_example if _is_alone(rule) else RUNNERS[_format(rule)]
     findings = run(rule, example, folder)
     return [it for it in findings if it.code == rule.code]
@@ -162,7 +162,7 @@ def _fleet(
     description: str = DESCRIPTION,
 ) -> list[Finding]:
     """What is found in a fleet file of ``text`` and, where that says nothing of them, ``keys``."""
-    if "robot.urdf" not in rule.beside:
+    if "robot.urdf" not in rule.page.beside:
         _write(folder, {"robot.urdf": description})
     said = yaml.safe_load(text) or {}
     options = {it: value for it, value in rule.options.items() if it != BUILT}
