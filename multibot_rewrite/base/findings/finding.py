@@ -218,8 +218,9 @@ _TITLE = lazy_compile(r"(Bad|Fixed|Good|Beside it, `[^`]+`)(?: \(line ([0-9]+)\)
 
 
 class RulePage(NamedTuple):
-    """The words and examples of a rule: ``bad`` has the finding exactly once, in line ``line``, ``good``
-    has none; ``fixed`` is what the fix makes of it, if there is one; ``beside`` are files by name."""
+    """The words and examples of a rule: ``bad`` has the finding exactly once, in line ``line``, and
+    ``good`` has none; ``fixed`` is what the fix makes of it, if there is one; ``beside`` are files by
+    name."""
 
     what: str = ""
     why: str = ""
