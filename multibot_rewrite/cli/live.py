@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the commands get a graph from: saved snapshots, a Zenoh router, or the live graph of ROS.
 
-The options are those of ``SOURCE`` in ``declared/shared.py``. What reads a source is imported when that
+The options are in ``declared/shared.txt``. What reads a source is imported when that
 one is asked for.
 """
 

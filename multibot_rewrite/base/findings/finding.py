@@ -173,31 +173,6 @@ class Rule(NamedTuple):
         """The page with the examples."""
         return rule_page(self.examples or self.code)
 
-    @property
-    def bad(self) -> str:
-        """A text that has the finding exactly once, in line ``line``."""
-        return self.page.bad
-
-    @property
-    def good(self) -> str:
-        """A text that does not have the finding."""
-        return self.page.good
-
-    @property
-    def fixed(self) -> str:
-        """What the fix makes of ``bad``; empty where there is none."""
-        return self.page.fixed
-
-    @property
-    def line(self) -> int:
-        """The line of ``bad`` with the finding."""
-        return self.page.line
-
-    @property
-    def beside(self) -> Mapping[str, str]:
-        """The files beside the example, by name."""
-        return self.page.beside
-
     def finding(self, message: str, hint: str = "", **place: Any) -> Finding:
         """A finding of this rule; ``place`` are the other fields of ``Finding``; one of a line alone
         is at its first column."""
@@ -243,7 +218,9 @@ _TITLE = lazy_compile(r"(Bad|Fixed|Good|Beside it, `[^`]+`)(?: \(line ([0-9]+)\)
 
 
 class RulePage(NamedTuple):
-    """The words and examples of a rule."""
+    """The words and examples of a rule: ``bad`` has the finding exactly once, in line ``line``, and
+    ``good`` has none; ``fixed`` is what the fix makes of it, if there is one; ``beside`` are files by
+    name."""
 
     what: str = ""
     why: str = ""
