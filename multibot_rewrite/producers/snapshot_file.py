@@ -11,7 +11,7 @@ from multibot_rewrite.base.file_kinds import KINDS, PLAN
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.rosgraph.reading import from_message, from_yaml, is_message
-from multibot_rewrite.system.environment import unfinished
+from multibot_rewrite.system.environment import WITHOUT_READERS, unfinished
 from multibot_rewrite.system.json import from_value, json_value
 from multibot_rewrite.system.merging import Look, merged
 from multibot_rewrite.system.records import System
@@ -39,7 +39,7 @@ def _judged_anew(system: System) -> System:
     around = system.environment
     known = {it.code for it in around.caveats}
     found = unfinished(system.nodes, system.ends, around.discovery_server) if around.rmw else ()
-    new = tuple(it for it in found if it.code not in known)
+    new = tuple(it for it in found if it.code == WITHOUT_READERS and it.code not in known)
     return system._replace(environment=around._replace(caveats=(*around.caveats, *new)))
 
 

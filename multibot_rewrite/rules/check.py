@@ -143,7 +143,7 @@ def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Fin
 
 def _inconclusive(finding: Finding) -> Finding:
     hint = "the view of the graph may be incomplete: the line `incomplete:` says why"
-    return finding._replace(level=INCONCLUSIVE, hint=hint, file="", line=0)
+    return finding._replace(level=INCONCLUSIVE, hint=hint, file="", line=0, remaps=())
 
 
 _MISSING = frozenset((missing_node.code, missing_robot.code))

@@ -47,7 +47,8 @@ KNOWN_RMW = (
 # So many participants of a machine are found by unicast: under LOCALHOST, of a peer under SUBNET.
 LOCAL_LIMIT, PEER_LIMIT = 32, 4
 # The caveats of ``unfinished``.
-UNFINISHED = ("nodes-without-endpoints", "nodes-without-readers", "node-name-unknown")
+WITHOUT_READERS = "nodes-without-readers"
+UNFINISHED = ("nodes-without-endpoints", WITHOUT_READERS, "node-name-unknown")
 # So many nodes have parameter services in a system where all have them, and this part of all.
 SERVING, SERVING_PART = 5, 0.8
 # How the process of a Fast DDS participant starts: the vendor, then four digits for its machine.
@@ -245,7 +246,7 @@ def unfinished(
             f"nodes that only publish and have no parameter services, as the others have:"
             f" {shorten(half, SEVERAL)}; their other endpoints may not be seen yet, look again"
         )
-        yield Caveat("nodes-without-readers", True, text)
+        yield Caveat(WITHOUT_READERS, True, text)
     unknown = sorted({end.name for end in endpoints if UNKNOWN_NODE in end.node})
     if unknown:
         text = f"endpoints whose node is not known yet: {shorten(unknown, SEVERAL)}; look again"
