@@ -156,7 +156,7 @@ def with_states(
 
     asked = list(questions(seen, parameters))
     found = ask(asked, ANSWER_SECONDS, environ(options.domain))
-    seen = with_answers(seen, found)
+    seen = with_answers(seen, found, asked)
     note_answers(options, seen)
     return seen
 

@@ -151,6 +151,9 @@ def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None
 
     library = built_in(release_here(options.distro))
     for folder, seen in zip(_folders(options, each), each.values(), strict=True):
+        if doubts(seen.graph):
+            say(f"nothing is written to {folder}: the view is incomplete, look again", PROGRAM)
+            continue
         texts = {os.path.join(folder, it): one for it, one in suggestion(seen, library).items()}
         schemas = {os.path.join(folder, it): one for it, one in SCHEMAS.items()}
         files = (with_schema(it, one.encode(), schemas.get(it, "")) for it, one in texts.items())

@@ -11,6 +11,7 @@ from multibot_rewrite.base.file_kinds import KINDS, PLAN
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.rosgraph.reading import from_message, from_yaml, is_message
+from multibot_rewrite.system.environment import WITHOUT_READERS, unfinished
 from multibot_rewrite.system.json import from_value, json_value
 from multibot_rewrite.system.merging import Look, merged
 from multibot_rewrite.system.records import System
@@ -30,7 +31,16 @@ def read_snapshot(path: str) -> System:
     system = from_value(value, path)
     if system.layout:
         raise InputError(f"{path}: {KINDS[PLAN].words}; {KINDS[PLAN].use}")
-    return system
+    return _judged_anew(system)
+
+
+def _judged_anew(system: System) -> System:
+    """Return the system with what its ends show of the view; an older look may not have said it."""
+    around = system.environment
+    known = {it.code for it in around.caveats}
+    found = unfinished(system.nodes, system.ends, around.discovery_server) if around.rmw else ()
+    new = tuple(it for it in found if it.code == WITHOUT_READERS and it.code not in known)
+    return system._replace(environment=around._replace(caveats=(*around.caveats, *new)))
 
 
 def read_snapshots(paths: Sequence[str]) -> System:

@@ -117,6 +117,8 @@ NOT_READ = "MF823"
 NOT_KNOWN_PROCESS = "MF859"
 # The code of a caveat: a node that was waited for did not come.
 WAITED_FOR = "expected-not-seen"
+# That of nodes that were asked for their state and did not answer.
+SILENT = "silent-nodes"
 
 
 class Qos(NamedTuple):
@@ -401,6 +403,11 @@ def doubts(system: System) -> tuple[Caveat, ...]:
     That an expected node did not come is not one of them: once the graph is quiet it is missing.
     """
     return tuple(caveat for caveat in incomplete(system) if caveat.code != WAITED_FOR)
+
+
+def unseen(system: System) -> tuple[Caveat, ...]:
+    """Return the doubts about whether all nodes and ends are seen; those of a silent node are."""
+    return tuple(caveat for caveat in doubts(system) if caveat.code != SILENT)
 
 
 def clocks(system: System) -> dict[str, bool]:

@@ -59,6 +59,14 @@ def _characters(text: bytes) -> int:
     return len(text) if text.isascii() else len(text.translate(None, _FOLLOWING))
 
 
+class Remap(NamedTuple):
+    """A remap rule ``old:=new`` for a node of a graph; all are full names."""
+
+    node: str
+    old: str
+    new: str
+
+
 class Finding(NamedTuple):
     """Something that a person should know, and where.
 
@@ -70,7 +78,8 @@ class Finding(NamedTuple):
 
     In a fleet or graph, ``robot`` and ``node`` say who it is about (either may be empty) and
     ``names`` which topics, services, actions or frames. ``robots`` are all of which it is true, that of
-    its words first, where it is one for several or is known by its line.
+    its words first, where it is one for several or is known by its line. ``remaps`` mend it: the rules
+    that the hint names.
     """
 
     code: str
@@ -87,6 +96,7 @@ class Finding(NamedTuple):
     node: str = ""
     names: tuple[str, ...] = ()
     robots: tuple[str, ...] = ()
+    remaps: tuple[Remap, ...] = ()
 
     @property
     def place(self) -> str:

@@ -27,7 +27,7 @@ from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 _DIGITS = lazy_compile(r"_?\d+")
 # So alike that it is a slip: cmd_vel_smoth, not cmd_vel_ui beside cmd_vel_nav.
 _SLIP = 0.85
-_MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
+MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
 # Every node serves them, or many do: another one of such a type says nothing.
 COMMON = (
     "rcl_interfaces/",
@@ -265,7 +265,7 @@ def in_other_namespace(seen: Index, end: End) -> str:
 def listed_in_vain(seen: Index, end: End) -> str:
     """The node that a lifecycle manager has in its list and nothing starts; empty for none."""
     node = end.name.rpartition("/")[0]
-    manager = end.kind == SERVICE and last_word(end.node).startswith(_MANAGER)
+    manager = end.kind == SERVICE and last_word(end.node).startswith(MANAGER)
     return node if manager and end.name.endswith(_CHANGE) and node not in seen.nodes else ""
 
 

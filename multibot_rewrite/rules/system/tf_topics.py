@@ -15,7 +15,7 @@ from multibot_rewrite.rules.system.tf_trees import (
     home_of,
     taken_elsewhere,
 )
-from multibot_rewrite.rules.system.transforms import collide
+from multibot_rewrite.rules.system.transforms import collide, tf_remaps
 from multibot_rewrite.system.index import Index, Tree
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, incomplete
 from multibot_rewrite.system.tf_copies import static_topic
@@ -71,6 +71,7 @@ def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
                 f"start it with -r {tree.topic}:={sent[0]}"
                 f" -r {static_topic(tree.topic)}:={static_topic(sent[0])}, one for each robot",
                 level=WARNING, robot=seen.robot(rviz[0]), node=rviz[0], names=(tree.topic,),
+                remaps=tf_remaps(rviz, tree.topic, sent[0]),
             )  # fmt: skip
 
 
@@ -239,15 +240,13 @@ def _elsewhere(
 ) -> Finding:
     does = f"{verb}s" if len(nodes) == 1 else verb
     message = f"{shorten(nodes)} {does} tf on {topic}, but the tf of {robot} is on {home}"
-    return tf_on_two_topics.finding(
-        message, _remap(seen, robot, home, topic), robot=robot, node=nodes[0], names=(topic, home)
-    )
-
-
-def _remap(seen: Index, robot: str, home: str, topic: str) -> str:
     other = seen.robot(topic)
-    if other not in ("", robot):
-        return f"a namespace or remap rule of {robot} names {other}"
-    target = "tf" if home.startswith(f"/{robot}/") else home
-    rules = f"-r {topic}:={target} -r {static_topic(topic)}:={static_topic(target)}"
-    return f"pass {rules}: to the whole process, where the node shares one"
+    hint, remaps = f"a namespace or remap rule of {robot} names {other}", tf_remaps((), "", "")
+    if other in ("", robot):
+        target = "tf" if home.startswith(f"/{robot}/") else home
+        rules = f"-r {topic}:={target} -r {static_topic(topic)}:={static_topic(target)}"
+        hint = f"pass {rules}: to the whole process, where the node shares one"
+        remaps = tf_remaps(nodes, topic, home)
+    return tf_on_two_topics.finding(
+        message, hint, robot=robot, node=nodes[0], names=(topic, home), remaps=remaps
+    )
