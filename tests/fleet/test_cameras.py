@@ -37,12 +37,14 @@ def robot(folder: Path, *cameras: str) -> Path:
     return file
 
 
-def built(folder: Path, release: str, layout: str, stack: str, description: Path) -> Path:
+def built(
+    folder: Path, release: str, layout: str, stack: str, description: Path, more: str = ""
+) -> Path:
     """The folder that is built for two robots, without an error."""
     fleet, out = folder / "fleet.yaml", folder / "out"
     fleet.write_text(
         f"distro: {release}\nlayout: {layout}\nsimulator: gazebo\nstack: [{stack}]\n"
-        f"description: {description}\n"
+        f"description: {description}\n{more}"
         "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]\n"
     )
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
@@ -124,6 +126,26 @@ def test_a_node_that_waits_for_ever_is_told(
     assert f"nothing sends image_raw, camera_info to {nodes} of 'robot1'" in told
     assert has in told
     assert heard(out, "/robot1/debayer_node", IMAGE) == {"/robot1/image_raw"}
+
+
+OWN = """\
+stacks:
+  seen:
+    about: The front camera alone
+    nodes:
+      - {node: DebayerNode, as: debayer_node, remaps: {image_raw: front/image_raw}}
+"""
+
+
+def test_one_of_several_cameras_is_named_in_a_stack_of_ones_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What the hint says can be done."""
+    (tmp_path / "nodes.yaml").write_text(OWN)
+    description = robot(tmp_path, camera("front/image_raw"), camera("rear/image_raw"))
+    out = built(tmp_path, "humble", "both", "seen", description, "nodes: nodes.yaml\n")
+    assert heard(out, "/robot1/debayer_node", IMAGE) == {"/robot1/front/image_raw"}
+    assert WAITS not in capsys.readouterr().err
 
 
 def test_of_two_ends_none_is_surely_the_one_camera(
