@@ -83,11 +83,25 @@ def test_a_debayer_and_its_rectifiers_hear_the_camera(
     assert f"('{asked}', {target})" in (out / "fleet.launch.py").read_text()
 
 
-def test_the_stem_of_a_classic_camera_is_renamed(tmp_path: Path) -> None:
-    """gazebo_ros_camera.cpp: its topics are below its camera_name, which is front_robot1 here."""
-    out = built(tmp_path, "humble", "postfix", "image_proc", CLASSIC)
-    assert heard(out, "/debayer_node_robot2", IMAGE) == {"/front_robot2/image_raw"}
-    assert heard(out, "/rectify_mono_node_robot2", INFO) == {"/front_robot2/camera_info"}
+@pytest.mark.parametrize(
+    ("space", "layout", "node", "camera"),
+    [
+        ("", "postfix", "/{}_robot2", "/front_robot2/"),
+        ("demo", "postfix", "/{}_robot2", "/demo/front_robot2/"),
+        ("demo", "both", "/robot2/{}", "/robot2/demo/front/"),
+        ("demo", "tf-per-robot", "/robot2/{}", "/robot2/demo/front/"),
+    ],
+)
+def test_the_topics_of_a_classic_camera_are_below_its_name(
+    space: str, layout: str, node: str, camera: str, tmp_path: Path
+) -> None:
+    """gazebo_ros_camera.cpp: they are below its camera_name, in the namespace of its node."""
+    name, file = "<camera_name>front</camera_name>", tmp_path / "rover.urdf"
+    within = f"<ros><namespace>{space}</namespace></ros>" if space else ""
+    file.write_text(CLASSIC.read_text().replace(name, f"{within}{name}"))
+    out = built(tmp_path, "humble", layout, "image_proc", file)
+    assert heard(out, node.format("debayer_node"), IMAGE) == {f"{camera}image_raw"}
+    assert heard(out, node.format("rectify_mono_node"), INFO) == {f"{camera}camera_info"}
 
 
 @pytest.mark.parametrize("release", ["humble", "lyrical"])
