@@ -96,11 +96,11 @@ def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
 
 
 @once
-def _readers(seen: Index) -> Callable[[str, str], Set[str]]:
+def _readers(seen: Index) -> Callable[[str, str], frozenset[str]]:
     return cache(partial(_waiting, seen))
 
 
-def _waiting(seen: Index, name: str, type_: str) -> Set[str]:
+def _waiting(seen: Index, name: str, type_: str) -> frozenset[str]:
     """Return the nodes that read a topic, and those that read what these make of it."""
     readers: set[str] = set()
     names = [name]
@@ -109,7 +109,7 @@ def _waiting(seen: Index, name: str, type_: str) -> Set[str]:
         readers |= own
         sent = (one for node in own for one in seen.by_node[node] if one.role == PUBLISHES)
         names += [one.name for one in sent if one.type == type_]
-    return readers
+    return frozenset(readers)
 
 
 def _is_costmap(ends: Ends) -> bool:
