@@ -249,25 +249,29 @@ def places_of(robot: str, nodes: Iterable[NodeFacts], naming: Naming) -> Places:
 
 def _heads(robot: str, runs: Iterable[Run], naming: Naming) -> Places:
     """Return what topics of the plugins of a robot's description begin with, a node or the stem of a
-    camera, by what they begin with where the robot is alone."""
+    camera, by what they begin with where the robot is alone; both end with a slash."""
     found: dict[str, str] = {}
-    ends = [(it, end.name.partition("/")) for it in runs for end in it.fact.endpoints]
-    heads = {run.name if head == "~" else head for run, (head, slash, _) in ends if slash and head}
-    for kind in ("node", "stem"):
-        there = affix(naming, kind, "x")
-        mark = there.spell("", robot) if there and naming.topics != NAMESPACE else ""
-        for head in heads:
-            bare = head.removesuffix(mark).removeprefix(mark)
-            if bare not in ("", head):
-                found[bare] = f"/{spelled(naming, PROBE, kind, bare)}"
+    for end, name in (one for run in runs for one in with_names(run).names):
+        head, _, rest = end.name.partition("/")
+        kind = "node" if head == "~" else "stem"
+        above, _, word = name.removesuffix(f"/{rest}").rpartition("/")
+        there = affix(naming, kind, "x") if rest and name.endswith(f"/{rest}") else None
+        mark = there.spell("", robot) if there else ""
+        bare = word.removesuffix(mark).removeprefix(mark)
+        if naming.topics != NAMESPACE and bare not in ("", word) and head in ("~", word):
+            found[f"{above[1:]}/{bare}/".lstrip("/")] = (
+                f"{above}/{spelled(naming, PROBE, kind, bare)}/"
+            )
     return found
 
 
 def _below(name: str, naming: Naming, others: Places) -> str:
     """The target for a name below another node of the robot, such as a private service of it, if that
-    node is renamed; else empty."""
-    head, slash, rest = name.strip("/").partition("/")
-    place = others.get(head, "")
+    node is renamed, or for a topic of a plugin; else empty."""
+    bare = name.strip("/")
+    head = next((it for it in others if it[-1:] == "/" and bare.startswith(it)), "")
+    head, slash, rest = (head[:-1], "/", bare[len(head) :]) if head else bare.partition("/")
+    place = others.get(f"{head}/", others.get(head, "")).rstrip("/")
     if naming.topics == NAMESPACE or not slash or not place:
         return ""
     relative = not name.startswith("/") and place.count("/") == 1

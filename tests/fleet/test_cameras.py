@@ -37,12 +37,14 @@ def robot(folder: Path, *cameras: str) -> Path:
     return file
 
 
-def built(folder: Path, release: str, layout: str, stack: str, description: Path) -> Path:
+def built(
+    folder: Path, release: str, layout: str, stack: str, description: Path, more: str = ""
+) -> Path:
     """The folder that is built for two robots, without an error."""
     fleet, out = folder / "fleet.yaml", folder / "out"
     fleet.write_text(
         f"distro: {release}\nlayout: {layout}\nsimulator: gazebo\nstack: [{stack}]\n"
-        f"description: {description}\n"
+        f"description: {description}\n{more}"
         "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]\n"
     )
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
@@ -81,11 +83,25 @@ def test_a_debayer_and_its_rectifiers_hear_the_camera(
     assert f"('{asked}', {target})" in (out / "fleet.launch.py").read_text()
 
 
-def test_the_stem_of_a_classic_camera_is_renamed(tmp_path: Path) -> None:
-    """gazebo_ros_camera.cpp: its topics are below its camera_name, which is front_robot1 here."""
-    out = built(tmp_path, "humble", "postfix", "image_proc", CLASSIC)
-    assert heard(out, "/debayer_node_robot2", IMAGE) == {"/front_robot2/image_raw"}
-    assert heard(out, "/rectify_mono_node_robot2", INFO) == {"/front_robot2/camera_info"}
+@pytest.mark.parametrize(
+    ("space", "layout", "node", "camera"),
+    [
+        ("", "postfix", "/{}_robot2", "/front_robot2/"),
+        ("demo", "postfix", "/{}_robot2", "/demo/front_robot2/"),
+        ("demo", "both", "/robot2/{}", "/robot2/demo/front/"),
+        ("demo", "tf-per-robot", "/robot2/{}", "/robot2/demo/front/"),
+    ],
+)
+def test_the_topics_of_a_classic_camera_are_below_its_name(
+    space: str, layout: str, node: str, camera: str, tmp_path: Path
+) -> None:
+    """gazebo_ros_camera.cpp: they are below its camera_name, in the namespace of its node."""
+    name, file = "<camera_name>front</camera_name>", tmp_path / "rover.urdf"
+    within = f"<ros><namespace>{space}</namespace></ros>" if space else ""
+    file.write_text(CLASSIC.read_text().replace(name, f"{within}{name}"))
+    out = built(tmp_path, "humble", layout, "image_proc", file)
+    assert heard(out, node.format("debayer_node"), IMAGE) == {f"{camera}image_raw"}
+    assert heard(out, node.format("rectify_mono_node"), INFO) == {f"{camera}camera_info"}
 
 
 @pytest.mark.parametrize("release", ["humble", "lyrical"])
@@ -124,6 +140,26 @@ def test_a_node_that_waits_for_ever_is_told(
     assert f"nothing sends image_raw, camera_info to {nodes} of 'robot1'" in told
     assert has in told
     assert heard(out, "/robot1/debayer_node", IMAGE) == {"/robot1/image_raw"}
+
+
+OWN = """\
+stacks:
+  seen:
+    about: The front camera alone
+    nodes:
+      - {node: DebayerNode, as: debayer_node, remaps: {image_raw: front/image_raw}}
+"""
+
+
+def test_one_of_several_cameras_is_named_in_a_stack_of_ones_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What the hint says can be done."""
+    (tmp_path / "nodes.yaml").write_text(OWN)
+    description = robot(tmp_path, camera("front/image_raw"), camera("rear/image_raw"))
+    out = built(tmp_path, "humble", "both", "seen", description, "nodes: nodes.yaml\n")
+    assert heard(out, "/robot1/debayer_node", IMAGE) == {"/robot1/front/image_raw"}
+    assert WAITS not in capsys.readouterr().err
 
 
 def test_of_two_ends_none_is_surely_the_one_camera(

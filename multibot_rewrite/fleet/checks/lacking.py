@@ -82,21 +82,21 @@ def without_camera(plan: FleetPlan) -> Iterator[Finding]:
         hears = [(it, end, kind) for it in waiting for end, kind in _of_cameras(it)]
         offered = offered_topics(robot.member, robot.spec) if hears else {}
         lost = [
-            (it.name, topic_of(it, end))
+            (it.name, topic_of(it, end), kind)
             for it, end, kind in hears
             if topic_of(it, end) not in {*offered.get(kind, ()), *sent_as(nodes, kind)}
         ]
         if lost:
+            who, what, kinds = (dict.fromkeys(it) for it in zip(*lost, strict=True))
             images = [topic for kind in OF_CAMERAS[:2] for topic in offered.get(kind, ())]
-            has = (
-                f"its cameras send {shorten(images)}" if images else "its description has no camera"
-            )
-            who, what = (", ".join(dict.fromkeys(it)) for it in zip(*lost, strict=True))
-            message = f"nothing sends {what} to {who} of {robot.spec.name!r}: {has}"
-            yield at_robot(NO_CAMERA, robot, message, _HEAR if images else _TAKE)
+            has = f"its cameras send {shorten(images)}" if images else _NONE
+            hint = _HEAR if any(offered.get(it) for it in kinds) else _TAKE
+            waits = f"nothing sends {', '.join(what)} to {', '.join(who)} of {robot.spec.name!r}"
+            yield at_robot(NO_CAMERA, robot, f"{waits}: {has}", hint)
 
 
-_TAKE = "take a description that has one, or leave the stack out"
+_NONE = "its description has no camera"
+_TAKE = "take a description with a camera that does, or leave the stack out"
 _HEAR = "say which one in `remaps` of a stack of your own (docs/stacks.md), or leave the stack out"
 
 

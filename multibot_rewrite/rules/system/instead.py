@@ -7,6 +7,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from functools import cache, partial
 
 from multibot_rewrite.base.conventions import chooses, is_from_outside, team
 from multibot_rewrite.base.lazy import lazy_compile
@@ -90,14 +91,25 @@ def _orphan(seen: Index, end: End) -> Ends | None:
 def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
     """Is it made of what is missing, as slam_toolbox shows the scan that it reads, or by way of others
     of its type, as an image is rectified of one that is debayered?"""
-    readers: set[str] = set()
-    names = [end.name]
-    for name in names:
-        own = {it.node for it in ends_of(seen, name) if it.role == SUBSCRIBES} - readers
-        readers |= own
-        sent = (it for node in own for it in seen.by_node[node] if it.role == PUBLISHES)
-        names += [it.name for it in sent if it.type == end.type]
+    readers = _readers(seen)(end.name, end.type)
     return bool(ends.publishers) and readers.issuperset(it.node for it in ends.publishers)
+
+
+@once
+def _readers(seen: Index) -> Callable[[str, str], frozenset[str]]:
+    return cache(partial(_waiting, seen))
+
+
+def _waiting(seen: Index, name: str, type_: str) -> frozenset[str]:
+    """Return the nodes that read a topic, and those that read what these make of it."""
+    readers: set[str] = set()
+    names = [name]
+    for it in names:
+        own = {one.node for one in ends_of(seen, it) if one.role == SUBSCRIBES} - readers
+        readers |= own
+        sent = (one for node in own for one in seen.by_node[node] if one.role == PUBLISHES)
+        names += [one.name for one in sent if one.type == type_]
+    return frozenset(readers)
 
 
 def _is_costmap(ends: Ends) -> bool:
