@@ -27,7 +27,6 @@ from multibot_rewrite.cli.watch import Look, follow
 from multibot_rewrite.live.diagnose import Diagnosis, diagnose, diagnose_domains, survey
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.watching import Outcome, Verdict, final, final_words, verdict_words
-from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
 from multibot_rewrite.rules.system.planned_nodes import missing_robot
 from multibot_rewrite.system.coverage import Coverage
@@ -42,6 +41,8 @@ def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
     if options.watch:
         return _watch(options, domains)
     if options.bag:
+        from multibot_rewrite.producers.bags.read import read_bag
+
         recording = read_bag(options.bag)
         return report_on(options, diagnose(as_snapshot(recording), counted(recording)))
     views = live.graphs(options, domains) if domains else _saved(options)

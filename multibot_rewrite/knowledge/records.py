@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is known of a node: its endpoints, frames, transforms and claims, before any remap rule."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -93,9 +91,9 @@ class Branch(NamedTuple):
     """Paths by their next segment: ``exact``, ``numbered`` (a stem with digits), ``wild`` (what the
     segment is, if any word is allowed); ``params`` are those whose path ends here."""
 
-    exact: dict[str, Branch]
-    numbered: dict[str, Branch]
-    wild: dict[str, Branch]
+    exact: dict[str, "Branch"]
+    numbered: dict[str, "Branch"]
+    wild: dict[str, "Branch"]
     params: list[Param]
 
 
