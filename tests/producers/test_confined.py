@@ -253,7 +253,7 @@ def test_without_fences_nothing_of_it_runs(kept: Path) -> None:
     assert second.startswith("LaunchGraph") and (kept / "made").exists()
 
 
-WITHOUT = """\
+WITHOUT_TOOLS = """\
 import os, yaml
 import acme_tools
 class Tools(acme_tools.Tools):
@@ -292,7 +292,7 @@ def generate_launch_description():
 def test_what_a_package_makes_that_is_not_here_stops_nothing(kept: Path) -> None:
     """A class may have it for its base, in YAML it is a text. The arguments of an include that it makes
     may be those that are given; what else is needed is not known."""
-    (kept / "own/a.launch.py").write_text(WITHOUT)
+    (kept / "own/a.launch.py").write_text(WITHOUT_TOOLS)
     (kept / "own/b.launch.py").write_text(INNER)
     order = LaunchOrder(str(kept / "own/a.launch.py"), (("name", "x"),))
     (found,) = read_launch_files([order], 60.0)
