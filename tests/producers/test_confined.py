@@ -253,19 +253,27 @@ def test_without_fences_nothing_of_it_runs(kept: Path) -> None:
     assert second.startswith("LaunchGraph") and (kept / "made").exists()
 
 
-WITHOUT = """\
+WITHOUT_TOOLS = """\
 import os, yaml
 import acme_tools
+class Tools(acme_tools.Tools):
+    def __init__(self, name):
+        super().__init__(name, more=1)
+        self.name = name
+class Kept(acme_tools.Tools):
+    def __init__(self):
+        self.made = self.make()
 from launch import LaunchDescription
 from launch.actions import IncludeLaunchDescription
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch_ros.actions import Node
 def generate_launch_description():
-    texts = [dump({"a": acme_tools.make()}) for dump in (yaml.safe_dump, yaml.dump)]
+    made = [acme_tools.make(), Tools("a").make(Kept().made), Tools("a"), Kept()]
+    texts = [dump({"a": it}) for dump in (yaml.safe_dump, yaml.dump) for it in made]
     kinds = [type(yaml.safe_load(it)["a"]).__name__ for it in texts]
     inner = PythonLaunchDescriptionSource(os.path.join(os.path.dirname(__file__), "b.launch.py"))
     return LaunchDescription([
-        Node(package="p", executable=" ".join(kinds)),
+        Node(package="p", executable=f"{Tools('b').name} {set(kinds)}"),
         IncludeLaunchDescription(inner, launch_arguments=acme_tools.Given().items()),
     ])
 """
@@ -276,15 +284,19 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 def generate_launch_description():
     own = Node(package="q", executable=LaunchConfiguration("name"))
-    return LaunchDescription([DeclareLaunchArgument("name"), own])
+    return LaunchDescription([
+        DeclareLaunchArgument("name"), DeclareLaunchArgument("mode"), own])
 """
 
 
 def test_what_a_package_makes_that_is_not_here_stops_nothing(kept: Path) -> None:
-    """In YAML it is a text; the arguments of an include that it makes may be those that are given."""
-    (kept / "own/a.launch.py").write_text(WITHOUT)
+    """A class may have it for its base, in YAML it is a text. The arguments of an include that it makes
+    may be those that are given; what else is needed is not known."""
+    (kept / "own/a.launch.py").write_text(WITHOUT_TOOLS)
     (kept / "own/b.launch.py").write_text(INNER)
     order = LaunchOrder(str(kept / "own/a.launch.py"), (("name", "x"),))
     (found,) = read_launch_files([order], 60.0)
     assert isinstance(found, LaunchGraph), found
-    assert {(it.package, it.executable) for it in found.nodes} == {("p", "str str"), ("q", "x")}
+    assert {(it.package, it.executable) for it in found.nodes} == {("p", "b {'str'}"), ("q", "x")}
+    said = "a package that is not here makes the arguments of the include"
+    assert said in {it.message for it in found.notes if it.parameters}

@@ -22,7 +22,7 @@ def add_unknown(name: str) -> None:
     sys.meta_path.append(_Finder(name))
     for dumper in ("Dumper", "SafeDumper", "CDumper", "CSafeDumper"):
         if made := getattr(yaml, dumper, None):
-            made.add_representer(Unknown, lambda it, _: it.represent_str(STOOD_FOR))
+            made.add_multi_representer(Unknown, lambda it, _: it.represent_str(STOOD_FOR))
 
 
 def is_unknown(value: object) -> bool:
@@ -45,6 +45,11 @@ class Unknown:
         # launch asks for its own class where it takes texts.
         found: type = of_launch().Substitution
         return found
+
+    def __mro_entries__(self, _: tuple[object, ...]) -> tuple[type]:
+        """A class that has it for its base: what it takes of the base is unknown."""
+        own = {"_multibot_module": self._multibot_module, "__init__": lambda *_, **__: None}
+        return (type("Base", (Unknown,), own),)
 
     def __getattr__(self, name: str) -> Unknown:
         if name.startswith("__"):
