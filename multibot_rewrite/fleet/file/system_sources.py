@@ -153,7 +153,7 @@ def system_of_graph(
     settings(around)
     seen = observe(Request(seconds, headers=True), around)
     asked = [*questions(seen)] if states else []
-    return with_answers(seen, ask(asked, ANSWER_SECONDS, around) if asked else (), asked)
+    return with_answers(seen, ask(asked, ANSWER_SECONDS, around) if states else (), asked)
 
 
 def judge(system: System) -> list[Finding]:
