@@ -40,7 +40,7 @@ def types_differ(seen: Index) -> Iterator[Finding]:
         types = {(end.type, end.type_hash) for end in every}
         if len(types) == 1 and (not planned or every[0].type in planned):
             continue
-        if planned and not planned.issuperset(it for it, _ in types):
+        if planned and not planned >= {it for it, _ in types}:
             asked = (it for it in every if it.role != SUBSCRIBES or not seen.is_tool(it.node))
             if apart := _apart(asked, {(it, "") for it in planned}):
                 yield from (_not_as_planned(seen, ends, own, planned) for own in apart.values())

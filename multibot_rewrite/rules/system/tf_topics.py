@@ -145,7 +145,7 @@ def _has_names_of(
     if not plan or not seen.nodes or any(it.child not in children for it in edges):
         return False
     there = frames_by_topic(seen)[tree.topic]
-    return any(not there.issuperset(plan.declared[it].frames) for it in owners)
+    return any(not there >= {*plan.declared[it].frames} for it in owners)
 
 
 def _frames_beside(
