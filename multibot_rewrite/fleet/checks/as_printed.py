@@ -104,7 +104,7 @@ def _text_of(path: str) -> str:
 
 def _launches(starts: FleetStarts) -> list[Launching]:
     """Return launches in which every launch argument has two values, and every way to choose robots
-    is taken."""
+    is taken: the first two, and two more by name; all of them are in the others."""
     usual = {name: default for name, default, _ in launch_arguments(starts)}
     clock = str(not starts.use_sim_time).lower()
     off = {"use_sim_time": clock, "rviz": "false", "simulator": "false"}
@@ -114,7 +114,7 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     launches = (
         Launching({}, frozenset({BRIDGE})),
         Launching({name: it for name, it in off.items() if name in usual}),
-        *(Launching({"robots": ",".join(it), **told}) for it in (names[:2], names[2:]) if it),
+        *(Launching({"robots": ",".join(it), **told}) for it in (names[:2], names[2:][-2:]) if it),
         Launching({"robots": "1", "use_sim_time": "1"}),
     )
     every = (starts.environment, *(it.environment for it in starts.every))
