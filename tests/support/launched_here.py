@@ -52,7 +52,8 @@ def _read(order: LaunchOrder, folder: Path) -> LaunchGraph | InputError:
             kept.setattr(kind, method, getattr(kind, method))
         kept.setattr(tempfile, "tempdir", tempfile.mkdtemp(dir=folder))
         kept.setattr(sys, "argv", sys.argv)
-        kept.setattr(os, "system", os.system)
+        for name in ("system", "listdir", "scandir", "stat", "lstat", "access"):
+            kept.setattr(os, name, getattr(os, name))
         kept.setattr(subprocess, "Popen", subprocess.Popen)
         kept.setattr(sys, "path", [*sys.path])
         before = {**os.environ}
