@@ -26,6 +26,7 @@ from multibot_rewrite.fleet.launch.launched_files import (
     with_launched_files,
     with_one_map,
 )
+from multibot_rewrite.fleet.launch.launched_simulator import with_launched_world
 from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
 from multibot_rewrite.fleet.robots.joined_robots import with_joined
@@ -101,7 +102,7 @@ def plan_fleet(
     """
     file, joined = with_joined(file, trust)
     file, notes = with_launched_files(_trusted(with_shape(file)) if trust else with_shape(file))
-    file = with_one_map(with_bridge_namespaces(file))
+    file = with_launched_world(with_one_map(with_bridge_namespaces(file)))
     with gc_paused():
         naming = make_naming(**file.policy)
         said: Mapping[str, Sequence[Finding]] = {}

@@ -4,6 +4,7 @@ it."""
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
@@ -18,6 +19,8 @@ from multibot_rewrite.spelling.ways import (
     spawner_arguments,
 )
 
+# The share folder of a package, as launch files in XML have it.
+_SHARE = re.compile(r"\$\(find-pkg-share ([\w-]+)\)")
 # These need no ``ros2 run``.
 _COMMANDS = {("rviz2", "rviz2"): ("rviz2",)}
 
@@ -125,6 +128,11 @@ class Led(NamedTuple):
     start: Start
     followers: tuple[Any, ...] = ()
 
+    @property
+    def always(self) -> list[Led]:
+        """Return what starts without it where its condition does not hold."""
+        return [it for it in self.followers if self.start.condition != it.start.condition]
+
     def at(self, event: str) -> list[Led]:
         """Return what starts at an event."""
         return [it for it in self.followers if EVENTS[it.start.process.event] == event]
@@ -132,12 +140,12 @@ class Led(NamedTuple):
 
 def in_order(starts: Sequence[Start]) -> Iterator[Led]:
     """Yield the processes with those that wait for them; one that waits for what is not there, or runs
-    under another condition, waits for nothing."""
+    under a condition that this one has not, waits for nothing."""
     leaders = {it.number: at for at, it in enumerate(starts) if it.number >= 0 and _leads(it)}
     below: dict[int, list[int]] = {}
     for at, it in enumerate(starts):
         leader = leaders.get(it.process.after, -1) if it.process.event in EVENTS else -1
-        alike = leader >= 0 and _switches(it) == _switches(starts[leader])
+        alike = leader >= 0 and _switches(it) in (_switches(starts[leader]), ("", ""))
         below.setdefault(leader if alike and leader != at else -1, []).append(at)
 
     def led(at: int) -> Led:
@@ -211,6 +219,11 @@ def with_rest(text: str, rest: Any) -> Any:
     if text[:1] == ":":
         return [rest, text]
     return [text, rest] if text[-1:] == ":" else text
+
+
+def in_shares(text: str) -> list[str]:
+    """Return a text cut at the share folders of packages: each second part is a package."""
+    return _SHARE.split(text)
 
 
 def path_of(it: str | File) -> str:

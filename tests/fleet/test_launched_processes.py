@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.cli.multibot import main
@@ -28,6 +29,8 @@ robots:
   - {{name: robot1, description: robot.urdf}}
   - {{name: robot2, description: robot.urdf}}
 """
+WEIGHED = """<link name="{}"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>"""
 LAUNCH = """\
 from launch import LaunchDescription
 from launch.actions import *
@@ -61,14 +64,26 @@ def actions(
 ) -> list[Action]:
     """What the launch file of a build does, but for its own arguments."""
     text = LAUNCH.replace("SETUP", setup).replace("BODY", body)
-    (folder / "robot.urdf").write_text(DESCRIPTION)
+    description = DESCRIPTION
+    for link in ("base_link", "lidar_link", "wheel") if "gazebo" in more else ():
+        description = description.replace(f'<link name="{link}"/>', WEIGHED.format(link))
+    (folder / "robot.urdf").write_text(description)
     (folder / "up.launch.py").write_text(text)
     (folder / "fleet.yaml").write_text(FLEET.format(more=more, layout=layout, affix=AFFIX[layout]))
     assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out")]) == 0
+    lasts(folder / "out")
     launches = [Launching(given or {"robots": "robot2"})]
     (done,) = performed(str(folder / "out/fleet.launch.py"), launches)
     assert not done.error
     return [it for it in done.actions if it.kind != "DeclareLaunchArgument"]
+
+
+def lasts(folder: Path) -> None:
+    """Nothing that is written has what is there only while launch files are read."""
+    files = [it for it in folder.rglob("*") if it.is_file()]
+    texts = [it.read_text(errors="replace") for it in files]
+    for word in ("multibot_launch_", "python/object", "unknown_modules", "made_by_the_launch"):
+        assert not [it for it, text in zip(files, texts, strict=True) if word in text], word
 
 
 def told(found: Sequence[Action]) -> list[str]:
@@ -478,9 +493,55 @@ def test_what_stands_for_a_package_is_no_value(
     setup = "import acme_params, yaml; made = yaml.dump({'a': acme_params.make('x')})"
     found = actions(tmp_path, "here('n', parameters=[{'text': made, 'b': 2}]),", setup)
     assert of(found, "n")["parameters"][0] == {"b": 2}
-    assert "the parameter text is made of a package that is not here" in capsys.readouterr().err
-    for name in ("fleet.launch.py", "plan.yaml"):
-        assert "unknown_modules" not in (tmp_path / "out" / name).read_text()
+    assert (
+        "the parameter text of n is made of a package that is not here" in capsys.readouterr().err
+    )
+
+
+UNKNOWN = """
+        SetEnvironmentVariable('LIBS', get_package_prefix('acme_here') + '/lib'),
+        SetEnvironmentVariable('DATA', get_package_share_directory('acme_cfg')),
+        here('n', arguments=['--x', made, '-v', '--file', CFG + '/a.yaml', str(made)],
+            remappings=[('a', made), ('b', 'c')], additional_env={'E': f'{made}', 'F': 'f'},
+            parameters=[{'a': made, 'b': 3}, Parameter('c', made), {'d': {'e': made, 'f': 1}},
+                {'g': ParameterValue(made), 'where': CFG}, made]),
+        here('m', namespace=made, name=made),
+        ExecuteProcess(cmd=['run', '--from', CFG, made]), ExecuteProcess(cmd=[f'x {made}']),
+""".replace("CFG", "get_package_share_directory('acme_cfg')")
+
+
+def test_of_what_is_not_known_only_that_is_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The node is started with all else; the share folder of a package is asked for when it starts."""
+    (tmp_path / "acme_here").mkdir()
+    (tmp_path / "acme_here/package.xml").write_text("<package><name>acme_here</name></package>")
+    setup = """import acme_params; made = acme_params.make('x')
+    from ament_index_python.packages import get_package_prefix, get_package_share_directory
+    from launch_ros.parameter_descriptions import Parameter, ParameterValue"""
+    found = actions(tmp_path, UNKNOWN, setup, more="simulator: none\nlaunch_roots: [.]")
+    own, share = of(found, "n"), "/acme_cfg/share/acme_cfg"
+    assert own["arguments"] == ["-v", "--file", f"{share}/a.yaml"]
+    assert ["b", "c"] in own["remappings"] and "a" not in dict(own["remappings"])
+    assert own["additional_env"] == {"F": "f"}
+    values = {
+        key: it for row in own["parameters"] if isinstance(row, dict) for key, it in row.items()
+    }
+    assert values == {"b": 3, "d.f": 1, "where": share, "use_sim_time": False}
+    assert of(found, "m")["namespace"] == "/robot2"
+    assert of(found, "run")["cmd"] == ["run", "--from", share]
+    assert own["environment"] == {"DATA": share}
+    assert "x" not in told(found)
+    assert "of this kind in the file, at lines" in capsys.readouterr().err
+    named = (tmp_path / "out/plan.yaml").read_text()
+    of_n = (
+        "an argument of acme n --x",
+        "a remap rule of a",
+        "variable E",
+        "the parameter d.e of n",
+    )
+    for word in (*of_n, "variable LIBS", "the namespace of acme m", "the name of acme m"):
+        assert word in named, word
 
 
 def test_words_of_ros2_name_what_the_robot_has(tmp_path: Path) -> None:
@@ -488,11 +549,19 @@ def test_words_of_ros2_name_what_the_robot_has(tmp_path: Path) -> None:
         ExecuteProcess(cmd=['ros2', 'topic', 'pub', '/arm/cmd', 'std_msgs/msg/String', '{}']),
         ExecuteProcess(cmd=['/opt/ros/bin/ros2', 'lifecycle', 'set', '/amcl', 'configure']),
         ExecuteProcess(cmd=['cat', '/amcl']),
+        ExecuteProcess(cmd=['ros2', 'control', 'load_controller', '-c', '/controller_manager', 'a']),
+        ExecuteProcess(cmd=['ros2', 'topic', 'pub', 'cmd_vel', 'geometry_msgs/msg/Twist', '{}']),
+        ExecuteProcess(cmd=['bash', '-c', 'sleep 5 && ros2 service call /go a/srv/B; ls /go']),
+        ExecuteProcess(cmd=['ros2 param set /amcl alpha1 0.5'], shell=True),
     """
     found = actions(tmp_path, body, layout="tf-per-robot")
     words = [it.values["cmd"] for it in found if it.kind == "ExecuteProcess"]
     assert [it[3] for it in words[:2]] == ["/robot2/arm/cmd", "/robot2/amcl"]
     assert words[2] == ["cat", "/amcl"]
+    assert words[3][3:] == ["-c", "/robot2/controller_manager", "a"]
+    assert words[4][3:5] == ["/robot2/cmd_vel", "geometry_msgs/msg/Twist"]
+    assert words[5][2] == "sleep 5 && ros2 service call /robot2/go a/srv/B; ls /go"
+    assert words[6] == ["ros2 param set /robot2/amcl alpha1 0.5"]
 
 
 def test_spawners_wait_for_each_other_as_in_the_launch_file(tmp_path: Path) -> None:
@@ -547,3 +616,97 @@ def test_a_controller_manager_gets_the_description_that_its_launch_file_gives_it
     assert {"update_rate": 50} in manager
     (text,) = (it["robot_description"] for it in manager if "robot_description" in it)
     assert "robot2" in text and text.startswith("<")
+
+
+BRIDGED = """
+        Node(package='ros_gz_bridge', executable='parameter_bridge', name='sensor_bridge',
+            arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock',
+                '/model/bot/imu@sensor_msgs/msg/Imu[gz.msgs.IMU',
+                '/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist'],
+            remappings=[('/model/bot/imu', '/imu/out')]),
+        Node(package='ros_gz_bridge', executable='parameter_bridge', name='head', namespace='head',
+            arguments=['points@sensor_msgs/msg/PointCloud2[gz.msgs.PointCloudPacked']),
+        Node(package='ros_gz_image', executable='image_bridge', arguments=['/eye/image']),
+"""
+
+
+def test_topics_of_the_bridges_of_a_launch_file_are_bridged_for_each_robot(tmp_path: Path) -> None:
+    """Its clock once; under the rules and in the namespace of each bridge."""
+    found = actions(tmp_path, BRIDGED, more="simulator: gazebo", given={"robots": "2"})
+    assert told(found).count("parameter_bridge") == 3
+    assert "image_bridge" not in told(found)
+    rows = {
+        name: yaml.safe_load((tmp_path / "out" / name / "bridge.yaml").read_text())
+        for name in ("", "robot2")
+    }
+    assert [it["topic_name"] for it in rows[""]] == ["/clock"]
+    both = [
+        (it.get("ros_topic_name", it.get("topic_name")), it.get("gz_topic_name"), it["direction"])
+        for it in rows["robot2"]
+    ]
+    assert both == [
+        ("/robot2/imu/out", "/model/robot2/imu", "GZ_TO_ROS"),
+        ("/robot2/cmd_vel", None, "ROS_TO_GZ"),
+        ("/robot2/head/points", "/robot2/points", "GZ_TO_ROS"),
+        ("/robot2/eye/image", None, "GZ_TO_ROS"),
+    ]
+
+
+GZ = """
+        IncludeLaunchDescription([FindPackageShare('ros_gz_sim'), '/launch/gz_sim.launch.py'],
+            launch_arguments={'gz_args': 'ARGS'}.items()),
+        TimerAction(period=5.0, actions=[create]),
+"""
+CREATE = "create = Node(package='ros_gz_sim', executable='create', arguments=['-world', 'w'])"
+
+
+@pytest.mark.parametrize(
+    ("words", "given", "headless"),
+    [
+        ("-r -v 4 -s --headless-rendering WORLD", "-r -v 4 --headless-rendering ", "true"),
+        ("-r -v4 WORLD", "-r -v4 ", "false"),
+        ("WORLD -v", "-r -v ", "false"),
+    ],
+)
+def test_the_simulator_has_the_options_and_the_world_of_its_launch_file(
+    words: str, given: str, headless: str, tmp_path: Path
+) -> None:
+    world = tmp_path / "maze.sdf"
+    world.write_text('<sdf version="1.8"><world name="maze"/></sdf>')
+    body = GZ.replace("ARGS", words.replace("WORLD", str(world)))
+    found = actions(tmp_path, body, CREATE, more="simulator: gazebo")
+    (gz,) = (dict(it.values["launch_arguments"]) for it in found if "launch_arguments" in it.values)
+    silent = "-s " if headless == "true" else ""
+    assert gz["gz_args"] == f'{given}{silent}"{tmp_path}/out/world.sdf"'
+    assert 'name="maze"' in (tmp_path / "out/world.sdf").read_text()
+    assert (
+        f"'headless',\n                default_value='{headless}'"
+        in (tmp_path / "out/fleet.launch.py").read_text()
+    )
+    assert [it.values for it in found if it.kind == "TimerAction"] == [{"period": 5.0}]
+    assert of(found, "create")["arguments"][-2:] == ["-world", "w"]
+
+
+@pytest.mark.parametrize("simulator", ["true", "false"])
+def test_spawners_start_when_the_robot_is_in_its_simulator(simulator: str, tmp_path: Path) -> None:
+    """Without the simulator of the launch file they do not wait for it."""
+    text = "{a: {type: T}, b: {type: T}}".replace(
+        "T", "joint_state_broadcaster/JointStateBroadcaster"
+    )
+    (tmp_path / "c.yaml").write_text(f"controller_manager:\n  ros__parameters: {text}\n")
+    body = """
+        Node(package='controller_manager', executable='ros2_control_node',
+            parameters=['FOLDER/c.yaml']),
+        create,
+        RegisterEventHandler(OnProcessExit(target_action=create, on_exit=[a])),
+        RegisterEventHandler(OnProcessExit(target_action=a, on_exit=[
+            Node(package='controller_manager', executable='spawner', arguments=['b'])])),
+    """.replace("FOLDER", str(tmp_path))
+    setup = f"""{CREATE}
+    a = Node(package='controller_manager', executable='spawner', arguments=['a'])"""
+    given = {"robots": "robot2", "simulator": simulator}
+    found = told(actions(tmp_path, body, setup, more="simulator: gazebo", given=given))
+    inside = ["OnProcessExit of spawner", "spawner", "end", "spawner"]
+    waits = ["OnProcessExit of create", *inside, "end", "create"]
+    started = [it for it in found if it in waits]
+    assert started == (waits if simulator == "true" else inside)

@@ -13,7 +13,7 @@ from multibot_rewrite.producers.launch import commands
 from multibot_rewrite.producers.launch.failures import failure
 from multibot_rewrite.producers.launch.include_arguments import not_among, unread
 from multibot_rewrite.producers.launch.install_rules import link_share
-from multibot_rewrite.producers.launch.kept_paths import lasting
+from multibot_rewrite.producers.launch.kept_paths import GONE, lasting, real_paths
 
 CMAKE = """\
 install(DIRECTORY config/ DESTINATION share/${PROJECT_NAME}/params)
@@ -100,15 +100,42 @@ def test_arguments_that_differ_in_their_number() -> None:
 def test_a_file_that_the_launch_makes_is_kept_as_a_text(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    made, sources, real = tmp_path / "made", tmp_path / "made" / "sources", tmp_path / "real"
+    made = tmp_path / "made"
     made.mkdir()
     (made / "r.sdf").write_text("<sdf/>")
-    write(real, "a.world")
-    sources.symlink_to(real)
     monkeypatch.setattr("tempfile.tempdir", str(made))
-    words = ["-file", str(made / "r.sdf"), "-name", "r", str(sources / "a.world"), "/tf/"]
-    kept = ["-string", "<sdf/>", "-name", "r", str(real / "a.world"), "/tf/"]
-    assert list(lasting(words)) == kept
+    file, text = str(made / "r.sdf"), ["-string", "<sdf/>"]
+    assert list(lasting(["-file", file, "-name", "r", "/tf/"])) == [*text, "-name", "r", "/tf/"]
+    assert list(lasting(["-x", f"--file={file}", file])) == ["-x", *text, file]
+
+
+def test_paths_of_the_reader_become_those_that_stay(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a package with install rules the share folder is one of links."""
+    top = tmp_path / "multibot_launch_x"
+    share, source = top / "0/sources/share", tmp_path / "ws" / "acme"
+    write(source, "worlds/a.world")
+    write(source, "package.xml")
+    write(tmp_path / "other" / "plain", "package.xml")
+    (share / "acme").mkdir(parents=True)
+    (share / "ament_index").mkdir()
+    (share / "plain").symlink_to(tmp_path / "other" / "plain")
+    (share / "acme/package.xml").symlink_to(source / "package.xml")
+    (share / "acme/maps").symlink_to(source / "worlds")
+    (top / "1").mkdir()
+    (top / "1/sources").symlink_to(top / "0/sources")
+    monkeypatch.setattr("tempfile.tempdir", str(top / "1"))
+    there = f"{top}/1/sources/share"
+    assert real_paths(f"{there}/acme/maps/a.world") == f"{source}/worlds/a.world"
+    assert real_paths(f"<m file='{top}/0/sources/share/plain/x.stl'/> '{there}/acme'") == (
+        f"<m file='{tmp_path}/other/plain/x.stl'/> '{source}'"
+    )
+    assert {*real_paths(there).split(":")} == {f"{tmp_path}/ws", f"{tmp_path}/other"}
+    assert real_paths(f"{top}/1/not_installed/share/n2/a/b.yaml") == "$(find-pkg-share n2)/a/b.yaml"
+    assert real_paths(f"{top}/1/tmpa.yaml:{top}/1/sources/lib") == (
+        f"{GONE}/tmpa.yaml:{GONE}/sources/lib"
+    )
 
 
 def raised(text: str) -> BaseException:

@@ -38,6 +38,7 @@ from multibot_rewrite.spelling.start import (
     Start,
     Text,
     in_order,
+    in_shares,
     keywords,
     path_of,
     with_rest,
@@ -170,8 +171,11 @@ class _Planned(NamedTuple):
         for it in in_order(starts):
             if it.start in missing[:1]:
                 yield Action("LogInfo", {"msg": otherwise})
-            elif it.start in missing or (it.start.condition and not self.is_on(it.start.condition)):
+            elif it.start in missing:
                 continue
+            elif it.start.condition and not self.is_on(it.start.condition):
+                for one in it.always:
+                    yield from self.led(one, robot, time)
             else:
                 yield from self.led(it, robot, time)
 
@@ -194,7 +198,7 @@ class _Planned(NamedTuple):
         """Return the include that starts a simulator."""
         package, file = _INCLUDED[name].split("/")
         world, headless = self.arguments["world"], self.is_on("headless")
-        given = [["gz_args", f'-r {"-s " if headless else ""}"{world}"']]
+        given = [["gz_args", f'-r {self.starts.options}{"-s " if headless else ""}"{world}"']]
         if name == CLASSIC:
             given = [["gui", "false" if headless else "true"], ["world", world]]
         source = f"{share(package)}/launch/{file}.launch.py"
@@ -228,6 +232,7 @@ class _Planned(NamedTuple):
         own = {
             name: "".join(with_rest(it, _REST)) if there else it.strip(":") for name, it in every
         }
+        own = {name: _with_shares(it) for name, it in own.items()}
         return {**there, **own, **domain}
 
     def other(self, it: Start, robot: str) -> Action:
@@ -247,7 +252,8 @@ class _Planned(NamedTuple):
         scope = {"namespace": it.namespace.rstrip("/"), "remappings": self.value(it.remappings)}
         more = {name: one for name, one in scope.items() if one}
         return Action(
-            _INCLUDE, {**values, **more, "environment": {**environment, **it.environment}}
+            _INCLUDE,
+            {**values, **more, "environment": {**environment, **self.value(it.environment)}},
         )
 
     def value(self, it: Any) -> Any:
@@ -258,7 +264,14 @@ class _Planned(NamedTuple):
             return _text_of(it.path)
         if isinstance(it, Mapping):
             return {key: self.value(one) for key, one in it.items()}
+        if isinstance(it, str):
+            return _with_shares(it)
         return [self.value(one) for one in it] if isinstance(it, list | tuple) else it
+
+
+def _with_shares(text: str) -> str:
+    """Return a text with the share folders of packages."""
+    return "".join(share(it) if at % 2 else it for at, it in enumerate(in_shares(text)))
 
 
 def _given(it: Start, there: Mapping[str, str]) -> dict[str, Any]:

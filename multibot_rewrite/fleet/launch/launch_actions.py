@@ -8,6 +8,7 @@ to the reader: they are named in the file.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
@@ -46,6 +47,7 @@ from multibot_rewrite.knowledge.programs import (
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
+from multibot_rewrite.producers.launch.bridges import is_of_images
 from multibot_rewrite.producers.launch.handed_on import (
     DESCRIPTION,
     SEMANTIC,
@@ -83,7 +85,9 @@ _NO_NAME = "unnamed"
 # What of MoveIt's parameters has names of joints, links and controllers.
 _NAMED = ("robot_description", "moveit_simple_controller_manager", "moveit_ros_control_interface")
 # The words of ros2 behind which nodes stand, and those with topics, services and actions.
-_OF_NODES, _OF_NAMES = ("lifecycle", "param"), ("topic", "service", "action")
+_OF_NODES, _OF_NAMES = ("lifecycle", "param", "control", "node"), ("topic", "service", "action")
+# Where the first name stands behind ros2, its verb and what that does; what ends a command of a shell.
+_FIRST, _NEXT = 3, ("&&", "||", ";", "|", "&")
 _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
 _DOMAIN_BRIDGE = ("domain_bridge", "domain_bridge")
 
@@ -164,6 +168,8 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
     something else."""
     naming, file = given.plan.fleet.naming, given.plan.file
     relayed = {it.run.node for it in relays(given.robot.spec.namespace, naming, file)}
+    handed = given.plan.evidence_of(given.robot).handed_on
+    relayed |= {name for name, it in handed.items() if is_of_images(it.program)}
     for name in given.names.started:
         it = given.facts.get(name)
         if name in relayed or not {name, it.kind if it else ""}.isdisjoint(_BY_HAND):
@@ -269,10 +275,26 @@ def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
 
 
 def _of_one(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
-    """The words of a process; a command of ``ros2`` asks for nodes and topics of its robot."""
-    if it.package or os.path.basename(it.executable) != "ros2" or not it.arguments:
-        return it.arguments
-    return tuple(_named_for(word, it.arguments[0], space, naming) for word in it.arguments)
+    """The command and its words; those of ``ros2`` ask for nodes and topics of its robot, in a line for
+    a shell, too."""
+    words, verb = (it.executable, *it.arguments), ""
+    found: list[str] = []
+    for at, word in enumerate(words):
+        if any(one.isspace() for one in word) and "ros2" in word:
+            verb, parts = "", re.split(r"(\s+)", word)
+            for number, part in enumerate(parts):
+                before = parts[number - 2] if number > 1 else ""
+                verb = part if os.path.basename(before) == "ros2" else verb
+                verb = "" if part in _NEXT or before.endswith(";") else verb
+                parts[number] = _named_for(part, verb, space, naming)
+            found.append("".join(parts))
+            continue
+        verb = word if at == 1 and os.path.basename(words[0]) == "ros2" else verb
+        # ros2 takes a name without a slash for one in the root.
+        own = word if at != _FIRST or word[:1] in ("-", "/") or not verb else f"/{word}"
+        named = _named_for(own, verb, space, naming)
+        found.append(word if named == own else named)
+    return tuple(found)
 
 
 def _named_for(word: str, verb: str, space: str, naming: Naming) -> str:
@@ -306,12 +328,15 @@ def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) ->
     if made.process.is_include and naming is not None:
         topics = ((f"/{it}", target_of(f"/{it}", TOPIC, space, naming)) for it in TF_TOPICS)
         rules = tuple((old, new) for old, new in topics if new)
-    is_node, words = bool(made.package), _of_one(made, space, naming) if naming else made.arguments
+    is_node, words, program = bool(made.package), made.arguments, made.executable
+    if naming and not is_node:
+        program, *own_words = _of_one(made, space, naming)
+        words = tuple(own_words)
     if made.process.is_include:
         words = tuple(part for word in words for part in word.split(":=", 1))
     return Start(
         made.package,
-        made.executable,
+        program,
         namespace if is_node else "",
         name,
         (given,) if given else (),
@@ -371,12 +396,22 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
 
 
 def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, frozenset[str]]]:
-    """The parameter files that launch files name, each with the nodes that get it."""
-    handed = plan.evidence_of(robot).handed_on
+    """The parameter files that launch files name, each with the nodes that get it: none has what is
+    for a spawner or for a launch file that is not here."""
+    evidence = plan.evidence_of(robot)
+    words = (
+        word
+        for it in evidence.processes
+        if it.node.process.is_include
+        for word in it.node.arguments
+    )
+    others = {os.path.realpath(it.partition(":=")[2]) for it in words}
+    others |= {it.source for one in evidence.spawned.values() for it in one.parameters}
+    handed = evidence.handed_on
     for it in robot.spec.companions.get("params", ()) if handed else ():
         path = os.path.realpath(it)
         nodes = frozenset(node for node, own in handed.items() if path in own.files)
-        if nodes:
+        if nodes or path in others:
             yield path_for(robot, it), nodes
 
 
@@ -446,8 +481,11 @@ def _spawned(given: _Given) -> Iterator[Start]:
     if not is_simulated(robot):
         return
     (it,) = spawn.in_folder(given.plan)
-    number = given.plan.evidence_of(robot).placing
-    yield spawn.spawner(it, spawn.is_classic(robot))._replace(number=number)
+    made, own = spawn.spawner(it, spawn.is_classic(robot)), given.plan.evidence_of(robot).placing
+    if own is not None:
+        delay = own.process.delay if not own.process.event else 0.0
+        made = made._replace(number=own.number, process=made.process._replace(delay=delay))
+    yield made
     path = gz_bridge_path(robot)
     if path in given.files:
         spaces = {it.namespace for it in given.names.nodes.values()}

@@ -12,6 +12,7 @@ from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_actions
 from multibot_rewrite.fleet.launch.launch_python import to_python
+from multibot_rewrite.fleet.launch.launched_simulator import launched_simulator
 from multibot_rewrite.fleet.launch.starts import GZ, RVIZ, FleetStarts, RobotStarts
 from multibot_rewrite.fleet.outputs import spawn, teleop, world_file
 from multibot_rewrite.fleet.outputs.companion_files import launched_values
@@ -52,6 +53,7 @@ def fleet_starts(
     count = plural(len(plan.robots), "robot")
     opened = [(name, it._replace(condition=RVIZ)) for name, it in shown if are_opened]
     names = {it.name for it in robots}
+    launched = launched_simulator(plan.file)
     return FleetStarts(
         f"Start {count} of {source}{facts_of_release(plan.file.distro)}.",
         simulators,
@@ -60,10 +62,12 @@ def fleet_starts(
         [window for name, window in opened if name not in names],
         bool(simulators) or _is_simulated(plan) if clock is None else clock,
         [shell_line(it.start) for one in each for it in teleop.teleops(one)],
-        _world(simulators, paths),
+        _world(simulators, paths, launched.world),
         domains_of(plan),
         [window for _, window in shown],
         environment,
+        "".join(f"{it} " for it in launched.options),
+        launched.headless,
     )
 
 
@@ -114,8 +118,8 @@ def _with_windows(it: RobotStarts, opened: Sequence[tuple[str, Start]]) -> Robot
     return it._replace(starts=(*it.starts, *(own for name, own in opened if name == it.name)))
 
 
-def _world(simulators: Collection[str], paths: Collection[str]) -> File | str:
-    """The world of the build, else that of Gazebo."""
+def _world(simulators: Collection[str], paths: Collection[str], launched: str) -> File | str:
+    """The world of the build, else that of the launch files, else that of Gazebo."""
     if simulators and world_file.FILE in paths:
         return File(world_file.FILE)
-    return "empty.sdf" if GZ in simulators else ""
+    return launched or ("empty.sdf" if GZ in simulators else "")

@@ -36,7 +36,7 @@ _IMPORTS = {
         *("GroupAction", "IncludeLaunchDescription", "LogInfo", "OpaqueFunction"),
         *("RegisterEventHandler", "SetEnvironmentVariable", "TimerAction"),
     ),
-    "launch.conditions": ("IfCondition",),
+    "launch.conditions": ("IfCondition", "UnlessCondition"),
     "launch.event_handlers": ("OnProcessExit", "OnProcessStart"),
     "launch.events": ("matches_action",),
     "launch.substitutions": (
@@ -205,7 +205,8 @@ def _description(it: FleetStarts) -> Iterator[str]:
         yield f"            SetEnvironmentVariable('ROS_DOMAIN_ID', {number}),"
     yield from (f"            {line}" for line in _environment(it))
     for simulator in it.simulators:
-        yield from (f"            {line}" for line in _part(f"{simulator} simulator"))
+        rows = (line.replace("{options}", it.options) for line in _part(f"{simulator} simulator"))
+        yield from (f"            {line}" for line in rows)
     yield from actions(it.shared, 12)
     yield "            OpaqueFunction(function=chosen),"
     yield from actions(it.windows, 12)

@@ -20,9 +20,10 @@ from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile
-from multibot_rewrite.fleet.file.robot_spec import RobotSpec
+from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
+from multibot_rewrite.producers.launch.bridges import rows_in_words
 from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.of_robot import is_of_robot
 from multibot_rewrite.producers.launch.once import once_for_all
@@ -61,7 +62,8 @@ def with_launched_files(file: FleetFile) -> LaunchedFiles:
     first = {it.launch: it for it in reversed(file.robots) if it.launch}
     named = {launch: tuple(_named(spec)) for launch, spec in first.items()}
     found = [_with(it, named.get(it.launch, ())) for it in file.robots]
-    robots = tuple(it for it, _ in found)
+    bridged = {launch: _bridged(spec) for launch, spec in first.items()}
+    robots = tuple(_with_bridges(it, bridged.get(it.launch, {})) for it, _ in found)
     return LaunchedFiles(file._replace(robots=robots), {it.name: notes for it, notes in found})
 
 
@@ -82,6 +84,30 @@ def _given_to(node: LaunchedNode) -> Iterator[ParameterText]:
         path = os.path.realpath(word.partition(":=")[2])
         if path.endswith((".yaml", ".yml")) and os.path.isfile(path):
             yield ParameterText(path, yaml_of(path).text, path)
+
+
+def _bridged(spec: RobotSpec) -> dict[str, str]:
+    """The topics in the words of bridges, as files of bridges have them, by the launch file that starts
+    them; the first row of each bridge is in its line there."""
+    words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
+    found: dict[str, str] = {}
+    nodes = launch_of(spec.launch, spec.words[0]).nodes
+    for it in sorted(nodes, key=lambda one: one.place):
+        program, above = f"{it.package}/{it.executable}", _below(it, words)
+        if rows := rows_in_words(program, it.arguments, it.remappings, above):
+            text = found.get(it.place.file, "")
+            gap = "\n" * max(it.place.line - 1 - text.count("\n"), 0)
+            found[it.place.file] = f"{text}{gap}{rows}"
+    return found
+
+
+def _with_bridges(spec: RobotSpec, found: Mapping[str, str]) -> RobotSpec:
+    """The robot with what its launch files bridge, beside the files that it has."""
+    if not found or spec.simulator == REAL:
+        return spec
+    own = (*spec.companions.get("bridge", ()), *found)
+    companions = {**spec.companions, "bridge": own}
+    return spec._replace(companions=companions, filled=(*spec.filled, *found.items()))
 
 
 def _sets_parameters(path: str) -> bool:

@@ -9,7 +9,17 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 from multibot_rewrite.fleet.launch.each_robot import FLAG, Code
-from multibot_rewrite.spelling.start import EVENTS, HOW, File, Led, Start, Text, in_order, with_rest
+from multibot_rewrite.spelling.start import (
+    EVENTS,
+    HOW,
+    File,
+    Led,
+    Start,
+    Text,
+    in_order,
+    in_shares,
+    with_rest,
+)
 
 # What stays in one line.
 _SHORT = 66
@@ -36,10 +46,13 @@ def actions(
     switches = groupby(ordered, lambda it: (it.start.condition, it.start.needs))
     for (condition, needs), several in switches:
         if condition:
-            inner = _processes(several, indent + 8, own)
-            yield from (f"{space}GroupAction(", f"{space}    [", *inner, f"{space}    ],")
-            yield f"{space}    condition=IfCondition(LaunchConfiguration({value(condition)})),"
-            yield f"{space}),"
+            every = [*several]
+            rest = [one for it in every for one in it.always]
+            for led, holds in ((every, "If"), (rest, "Unless")) if rest else ((every, "If"),):
+                inner = _processes(led, indent + 8, own)
+                yield from (f"{space}GroupAction(", f"{space}    [", *inner, f"{space}    ],")
+                asked = f"{holds}Condition(LaunchConfiguration({value(condition)}))"
+                yield from (f"{space}    condition={asked},", f"{space}),")
         elif needs:
             given = (f"{space}    {value(it)}," for it in (needs, otherwise))
             inner = _processes(several, indent + 8, own)
@@ -213,7 +226,17 @@ def value(it: Any) -> str:
         return "{" + ", ".join(f"{value(key)}: {value(one)}" for key, one in it.items()) + "}"
     if isinstance(it, list):
         return f"[{', '.join(map(value, it))}]"
-    return repr(it)
+    return _text(it) if isinstance(it, str) else repr(it)
+
+
+def _text(it: str) -> str:
+    """Return the Python of a text; the share folder of a package is asked for when it starts."""
+    parts = in_shares(it)
+    if len(parts) == 1:
+        return repr(it)
+    parts[::2] = map(repr, parts[::2])
+    parts[1::2] = (f"FindPackageShare({one!r})" for one in parts[1::2])
+    return f"[{', '.join(one for one in parts if one != repr(''))}]"
 
 
 def comment(text: str) -> str:

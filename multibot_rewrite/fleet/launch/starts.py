@@ -39,7 +39,8 @@ class FleetStarts(NamedTuple):
     type; ``world`` is the simulator's by default, ``domains`` has that of each robot by its name, and
     of all (empty name), where they are not in one. ``shown`` are all windows, those that a fleet
     without any config has among them: the launch file does not open these. ``environment`` is that of
-    all processes; a value with ``:`` in front or at the end is added to what is there."""
+    all processes; a value with ``:`` in front or at the end is added to what is there. ``options`` are
+    further ones of gz-sim, ``headless`` is whether it has no window by default."""
 
     head: str
     simulators: Sequence[str]
@@ -52,6 +53,8 @@ class FleetStarts(NamedTuple):
     domains: Mapping[str, int] = TOGETHER
     shown: Sequence[Start] = ()
     environment: Mapping[str, str] = NOTHING
+    options: str = ""
+    headless: bool = False
 
     @property
     def every(self) -> Iterator[Start]:
@@ -81,5 +84,5 @@ def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
         yield RVIZ, "true", "whether to open RViz"
     if it.simulators:
         yield SIMULATOR, "true", "whether to start the simulator and to spawn the robots in it"
-        yield "headless", "false", "whether the simulator has no window"
+        yield "headless", str(it.headless).lower(), "whether the simulator has no window"
         yield "world", it.world, "the world of the simulator"

@@ -30,8 +30,8 @@ from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
     OutputFile,
     gz_bridge_path,
+    own_yaml,
     path_for,
-    yaml_of,
 )
 from multibot_rewrite.fleet.outputs.spawn import simulators
 from multibot_rewrite.fleet.robots.member import line_of
@@ -82,8 +82,9 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
 
 def _read(group: RobotGroup) -> GroupBridges:
     paths = group.companions.get("bridge", ())
-    above = group.robots[0].spec.bridge_namespace_of
-    made = {it: rewrite_bridge(yaml_of(it), group.context, above=above(it)) for it in paths}
+    spec = group.robots[0].spec
+    above = spec.bridge_namespace_of
+    made = {it: rewrite_bridge(own_yaml(spec, it), group.context, above=above(it)) for it in paths}
     return GroupBridges(group, made)
 
 

@@ -8,6 +8,7 @@ Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spaw
 from __future__ import annotations
 
 from collections.abc import Iterator, Set
+from itertools import pairwise
 from typing import NamedTuple
 
 from lxml import etree
@@ -28,6 +29,8 @@ from multibot_rewrite.system.records import PUBLISHES
 
 GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")
 FLAGS = {"x": "-x", "y": "-y", "z": "-z", "roll": "-R", "pitch": "-P", "yaw": "-Y"}
+# Options that a launch file may have besides.
+_FURTHER = ("-timeout", "-spawn_service_timeout", "-package_to_model", "-world")
 DESCRIPTION = "/robot_description"
 # File names of Gazebo Classic plugins that are ROS nodes start like this.
 CLASSIC_PLUGIN = "libgazebo_ros"
@@ -37,7 +40,8 @@ class Spawn(NamedTuple):
     """A robot to be spawned from a topic, a file or its text.
 
     ``namespace`` is for the spawner of Gazebo Classic; it is empty if the
-    plugins of the description have one, which the spawner would overwrite."""
+    plugins of the description have one, which the spawner would overwrite. ``further`` are options of
+    its launch file."""
 
     robot: str
     model: str
@@ -46,6 +50,7 @@ class Spawn(NamedTuple):
     namespace: str
     file: str = ""
     text: str = ""
+    further: tuple[str, ...] = ()
 
     @property
     def source(self) -> tuple[str, str | File]:
@@ -62,7 +67,10 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
     findings: list[Finding] = []
     for robot in plan.robots:
         known = fleet_topics(plan.fleet.table, plan.fleet.facts, robot.spec.namespace)
-        made.append(spawn(robot, known.get(DESCRIPTION, "")))
+        own = plan.evidence_of(robot).placing
+        pairs = pairwise(own.arguments if own else ())
+        further = tuple(word for it in pairs if it[0] in _FURTHER for word in it)
+        made.append(spawn(robot, known.get(DESCRIPTION, ""))._replace(further=further))
         findings += _half(robot)
         findings += _other_models(robot)
         findings += _of_ros_1(robot)
@@ -119,7 +127,9 @@ def spawner(it: Spawn, classic: bool) -> Start:
     program, named = (CLASSIC, "-entity") if classic else (GZ, "-name")
     last = ["-robot_namespace", f"/{it.namespace}"] if it.namespace else []
     more = last if classic else ["-allow_renaming=false"]
-    return Start(*program, arguments=(named, it.model, *it.source, *_pose(it.pose), *more))
+    return Start(
+        *program, arguments=(named, it.model, *it.source, *_pose(it.pose), *more, *it.further)
+    )
 
 
 def either(it: Spawn, robot: RewrittenRobot) -> str:

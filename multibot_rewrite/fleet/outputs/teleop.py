@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.companions.names.robot_topics import robot_topic
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.output_file import yaml_of
+from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.fitting.node_topics import CommandEnd, entry_of, relays_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.knowledge.records import Endpoint
@@ -102,7 +102,7 @@ def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]
     """The topics that go to the simulator, with their types: those of the robot's bridge files, then
     those of the bridge that is made."""
     for path in robot.spec.companions.get("bridge", ()):
-        for end in bridge_ends(yaml_of(path), robot.spec.bridge_namespace_of(path)):
+        for end in bridge_ends(own_yaml(robot.spec, path), robot.spec.bridge_namespace_of(path)):
             if end.role == SUBSCRIBES:
                 yield robot_topic(robot.topics, end.name), end.type
     fleet = plan.fleet

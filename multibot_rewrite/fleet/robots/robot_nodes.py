@@ -58,7 +58,7 @@ from multibot_rewrite.producers.launch.of_robot import (
     Launched,
     without_robot,
 )
-from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
 from multibot_rewrite.spelling.records import Run
@@ -87,7 +87,7 @@ class RobotEvidence(NamedTuple):
     start all of its nodes and no simulator, the arguments of all that they start, the frames that it
     has in the place of defaults, the transforms that a simulator sends, whether a node of its files
     sends one of these, which no bridge file of its own has, what its launch files hand on to nodes, the
-    processes of these that are no nodes, the environment of all, and the number of what places it."""
+    processes of these that are no nodes, the environment of all, and what places it."""
 
     given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]
@@ -102,7 +102,7 @@ class RobotEvidence(NamedTuple):
     handed_on: Mapping[str, HandedOn] = NOTHING
     processes: tuple[Passing, ...] = ()
     environment: tuple[tuple[str, str], ...] = ()
-    placing: int = -1
+    placing: LaunchedNode | None = None
 
 
 def robot_nodes(

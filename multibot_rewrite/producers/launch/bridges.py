@@ -75,15 +75,36 @@ def expands(it: Run) -> bool:
 
 def told_rows(it: Run) -> str:
     """The topics in the arguments of a bridge, as its file would have them; nothing for no such row."""
-    found = [_ROW.fullmatch(word) for word in it.arguments] if it.program in _BRIDGES else []
-    rows = [one for one in found if one and one["way"] and "/srv/" not in one["type"]]
+    return rows_in_words(it.program, it.arguments) if it.program in _BRIDGES else ""
+
+
+def rows_in_words(
+    program: str, words: Sequence[str], rules: Sequence[tuple[str, str]] = (), above: str = ""
+) -> str:
+    """The same for any bridge, under its remap rules and in the namespace ``above``."""
+    renamed = {expand(old, f"/{above}", ""): expand(new, f"/{above}", "") for old, new in rules}
     ways = {word: name for name, word in _WAYS.items()}
-    entries = [
-        {BOTH: one["name"], "ros_type_name": one["type"], "gz_type_name": one["gz"]}
-        | {"direction": ways[one["way"]]}
-        for one in rows
-    ]
+    rows = (_ROW.fullmatch(word) for word in words if program in _BRIDGES)
+    found = [it.groups() for it in rows if it and it["way"] and "/srv/" not in it["type"]]
+    images = (word for word in words if program in _OF_IMAGES and _is_name(word))
+    found += [(word, _IMAGE, "[", "gz.msgs.Image") for word in images]
+    entries = []
+    for name, type_, way, gz in found:
+        own = expand(name, f"/{above}", "") if above else name
+        ros = renamed.get(f"/{own.lstrip('/')}", own)
+        names = {BOTH: name} if ros == name else {ROS: ros, GZ: name}
+        kinds = {"ros_type_name": type_, "gz_type_name": gz, "direction": ways[way]}
+        entries.append(names | kinds)
     return yaml.safe_dump(entries, sort_keys=False) if entries else ""
+
+
+def _is_name(word: str) -> bool:
+    return bool(word) and "@" not in word and word[0] != "-"
+
+
+def is_of_images(program: Sequence[str]) -> bool:
+    """Is it a bridge of images, which the robot's own bridge stands for?"""
+    return "/".join(program) in _OF_IMAGES
 
 
 def refused_rows(it: Run) -> Iterator[str]:

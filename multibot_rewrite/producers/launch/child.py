@@ -18,6 +18,7 @@ from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.file_kinds import LAUNCH, refuse_others
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.producers.launch.kept_paths import FOLDER
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, graph_of
 from multibot_rewrite.producers.launch.system_model import is_system_model, read_system_model
 
@@ -51,7 +52,7 @@ def read_launch_files(
     orders: Sequence[LaunchOrder], seconds: float
 ) -> list[LaunchGraph | InputError]:
     """What each of some launch files starts, or why it cannot be read; each has so many seconds."""
-    with tempfile.TemporaryDirectory(prefix="multibot_launch_") as folder:
+    with tempfile.TemporaryDirectory(prefix=FOLDER) as folder:
         said = _run(json.dumps([seconds, orders]), folder)
     try:
         answers = load_json(said)

@@ -24,12 +24,15 @@ from multibot_rewrite.producers.launch.failures import (
     missing_package,
 )
 from multibot_rewrite.producers.launch.kept_paths import (
+    GONE,
     LIMIT,
+    NOT_KNOWN,
     is_made,
     kept_file,
+    known_words,
     lasting,
-    lasting_folders,
     read_text,
+    real_paths,
 )
 from multibot_rewrite.producers.launch.made_files import source_of
 from multibot_rewrite.producers.launch.places import place_of
@@ -43,7 +46,7 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
 from multibot_rewrite.producers.launch.spawners import controller_files
-from multibot_rewrite.producers.launch.unknown_modules import STOOD_FOR
+from multibot_rewrite.producers.launch.unknown_modules import STOOD_FOR, UnknownError
 from multibot_rewrite.spelling.start import Process
 from multibot_rewrite.system.records import Place
 
@@ -122,29 +125,55 @@ def is_wanted(action: Any, context: Any) -> bool:
 
 
 def text(value: Any, context: Any) -> str:
-    """The value of substitutions; empty for none."""
+    """The value of substitutions; empty for none. Raises UnknownError for what is made of a package
+    that is not here."""
     if value is None:
         return ""
     utilities = of_launch("utilities")
     parts = utilities.normalize_to_list_of_substitutions(value)
-    return str(utilities.perform_substitutions(context, parts))
+    made = str(utilities.perform_substitutions(context, parts))
+    if STOOD_FOR in made:
+        raise UnknownError("unknown")
+    return made
+
+
+def _text(value: Any, here: Visit) -> str:
+    """The same; GONE for what is made of a package that is not here."""
+    try:
+        return text(value, here.context)
+    except UnknownError:
+        return GONE
+
+
+def _known(value: Any, here: Visit, what: str = "") -> str:
+    """The same; empty for what is made of such a package, and ``what`` that is is said."""
+    made = _text(value, here)
+    if made != GONE:
+        return made
+    if what:
+        _left_out(what, here)
+    return ""
+
+
+def _left_out(what: str, here: Visit) -> None:
+    here.note(f"{what} {NOT_KNOWN}", parameters=True)
 
 
 def node(action: Any, here: Visit) -> LaunchedNode:
     """The node of launch_ros's Node, or of an action that extends it."""
-    words = _words(action, here.context)
-    given = ros_arguments(words)
     package, executable = (
         text(_kept(action, it), here.context) for it in ("package", "node_executable")
     )
-    rules = [*_rules(_kept(action, "remappings"), here.context), *given.rules]
+    who = f"of {package} {executable}"
+    given = ros_arguments([*_words(action, who, here)])
+    rules = [*_rules(_kept(action, "remappings"), here), *given.rules]
     own = _kept(action, "parameters") or ()
     files = (*given.files, *controller_files(f"{package}/{executable}", given.own))
     return LaunchedNode(
         package,
         executable,
-        text(_kept(action, "node_name"), here.context) or given.name,
-        given.namespace or namespace_of(_kept(action, "node_namespace"), here.context),
+        _known(_kept(action, "node_name"), here, f"the name {who}") or given.name,
+        given.namespace or _namespace(_kept(action, "node_namespace"), who, here),
         tuple(rules),
         (
             *_described(package, given.own),
@@ -165,9 +194,11 @@ def _environment(action: Any, here: Visit) -> tuple[tuple[str, str], ...]:
     as it is given."""
     given = getattr(action, "additional_env", None) or ()
     pairs = given.items() if isinstance(given, Mapping) else given
-    own = {text(name, here.context): text(value, here.context) for name, value in pairs}
+    own = {text(name, here.context): _text(it, here) for name, it in pairs}
     told = {name: _added(value, here.before.get(name, "")) for name, value in own.items()}
-    return tuple({**changed_environment(here), **told}.items())
+    for name in (it for it, value in own.items() if value == GONE):
+        _left_out(f"a part of the environment variable {name}", here)
+    return tuple({**changed_environment(here), **_there(told)}.items())
 
 
 def changed_environment(here: Visit) -> dict[str, str]:
@@ -177,18 +208,31 @@ def changed_environment(here: Visit) -> dict[str, str]:
     found = {name: _added(value, here.before.get(name, "")) for name, value in changed.items()}
     # Another machine may have some of it.
     lists = {it for it in found if it.endswith("PATH") and not here.before.get(it)}
-    return {
-        name: f":{value.strip(':')}" if name in lists else value for name, value in found.items()
-    }
+    every = _there(found).items()
+    return {name: f":{value.strip(':')}" if name in lists else value for name, value in every}
+
+
+def _there(found: Mapping[str, str]) -> dict[str, str]:
+    """Variables without those of which all parts are gone when the launch is over."""
+    return {name: value for name, value in found.items() if value.strip(":") or not value}
 
 
 def _added(value: str, before: str) -> str:
     """A value of the environment, without what was there before."""
     if before and value.startswith(f"{before}{os.pathsep}"):
-        return f":{lasting_folders(value.removeprefix(before).strip(':'))}"
+        return f":{_folders(value.removeprefix(before).strip(':'))}"
     if before and value.endswith(f"{os.pathsep}{before}"):
-        return f"{lasting_folders(value.removesuffix(before).strip(':'))}:"
-    return lasting_folders(value)
+        return f"{_folders(value.removesuffix(before).strip(':'))}:"
+    return _folders(value)
+
+
+def _folders(text_: str) -> str:
+    """A list of folders as they are when the launch is over, each once; another text as it is."""
+    real = real_paths(text_)
+    if real == text_ and GONE not in real:
+        return text_
+    parts = dict.fromkeys(it for it in real.split(os.pathsep) if GONE not in it)
+    return os.pathsep.join(parts) or os.pathsep
 
 
 def how_it_runs(action: Any, here: Visit) -> Process:
@@ -199,7 +243,7 @@ def how_it_runs(action: Any, here: Visit) -> Process:
         given = getattr(action, f"_ExecuteLocal__{name}", None)
         return getattr(action, name, None) if given is None else given
 
-    prefix, cwd = lasting(_told(getattr(told, it, None), here) for it in ("prefix", "cwd"))
+    prefix, cwd = (_told(getattr(told, it, None), here) for it in ("prefix", "cwd"))
     return here.waits._replace(
         prefix=prefix,
         respawn=_is_true(own("respawn"), here),
@@ -212,7 +256,7 @@ def how_it_runs(action: Any, here: Visit) -> Process:
 def _told(value: Any, here: Visit) -> str:
     """A text of an action; empty where only a run tells it."""
     with suppress(Exception):
-        return str(value) if isinstance(value, bool | int | float) else text(value, here.context)
+        return str(value) if isinstance(value, bool | int | float) else _known(value, here)
     return ""
 
 
@@ -239,12 +283,13 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
     """A component that is loaded into a container."""
     own = getattr(it, "parameters", None) or ()
     package, plugin = text(it.package, here.context), text(it.node_plugin, here.context)
+    who = f"of {package} {plugin}"
     return LaunchedNode(
         package,
         plugin,
-        text(it.node_name, here.context),
-        namespace_of(it.node_namespace, here.context),
-        tuple(_rules(it.remappings or (), here.context)),
+        _known(it.node_name, here, f"the name {who}"),
+        _namespace(it.node_namespace, who, here),
+        tuple(_rules(it.remappings or (), here)),
         tuple(_parameters(own, here)),
         f"/{container.lstrip('/')}",
         (),
@@ -255,12 +300,12 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
 
 def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
     """The node of a ``ros2 run`` line, a simulator, or else the command."""
-    line = [text(it, here.context) for it in getattr(action, "cmd", ())]
+    line = [*_told_words(getattr(action, "cmd", ()), "of a command", here)]
     words = [word for it in line for word in it.split()]
     run = ros2_run(words) or _simulator(words)
     more = here.later, here.place, _environment(action, here), how_it_runs(action, here)
     if run is None:
-        program, *own = lasting(line) or [""]
+        program, *own = line or [""]
         if program:
             yield LaunchedNode("", program, "", "/", (), (), "", tuple(own), *more)
         return
@@ -276,8 +321,8 @@ def _kept_words(package: str, executable: str, words: Iterable[str]) -> tuple[st
     """The own words of a program; those of a spawner each by itself, with one dash (gflags takes
     ``--name=a``, too)."""
     if f"{package}/{executable}" not in programs().spawners:
-        return (*lasting(words),)
-    return (*lasting(part for it in words for part in _flag(it)),)
+        return (*words,)
+    return tuple(part for it in words for part in _flag(it))
 
 
 def _flag(word: str) -> list[str]:
@@ -295,10 +340,19 @@ def _kept(action: Any, name: str) -> Any:
     return getattr(action, f"_Node__{name}", None)
 
 
-def _words(action: Any, context: Any) -> list[str]:
-    own = [text(it, context) for it in _kept(action, "arguments") or ()]
-    ros = [text(it, context) for it in _kept(action, "ros_arguments") or ()]
-    return [*own, "--ros-args", *ros] if ros else own
+def _words(action: Any, who: str, here: Visit) -> Iterator[str]:
+    own, ros = (
+        [*_told_words(_kept(action, it) or (), who, here)] for it in ("arguments", "ros_arguments")
+    )
+    yield from (*own, "--ros-args", *ros) if ros else own
+
+
+def _told_words(given: Iterable[Any], who: str, here: Visit) -> Iterator[str]:
+    """The words of a program that are known; with one that is not the flag before it is left out."""
+    words, lost = known_words(lasting(_text(it, here) for it in given))
+    for flag in lost:
+        _left_out(f"an argument {who} {flag}".rstrip(), here)
+    yield from words
 
 
 def namespace_of(value: Any, context: Any) -> str:
@@ -310,9 +364,22 @@ def namespace_of(value: Any, context: Any) -> str:
     return full or "/"
 
 
-def _rules(rules: Iterable[Any], context: Any) -> Iterator[tuple[str, str]]:
-    yield from context.launch_configurations.get("ros_remaps", ())
-    yield from ((text(old, context), text(new, context)) for old, new in rules)
+def _namespace(value: Any, who: str, here: Visit) -> str:
+    try:
+        return namespace_of(value, here.context)
+    except UnknownError:
+        _left_out(f"the namespace {who}", here)
+        return namespace_of(None, here.context)
+
+
+def _rules(rules: Iterable[Any], here: Visit) -> Iterator[tuple[str, str]]:
+    yield from here.context.launch_configurations.get("ros_remaps", ())
+    for pair in rules:
+        old, new = (_text(it, here) for it in pair)
+        if GONE in (old, new):
+            _left_out(f"a remap rule of {new if old == GONE else old}", here)
+        else:
+            yield old, new
 
 
 def _parameters(own: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
@@ -342,6 +409,8 @@ def _each(given: Any) -> Iterator[Any]:
 def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
     try:
         (found,) = of_launch_ros("utilities").evaluate_parameters(here.context, [given])
+        if not isinstance(found, dict | pathlib.PurePath):
+            found = dict([found.evaluate(here.context)])
     except Exception as error:
         # A value may be the output of a program that is not started; other ones fail in a launch, too.
         if _FAILS in str(error) or is_unset(error):
@@ -357,30 +426,31 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
             names = (text(name, here.context) for name in given)
             yield from (_values({})._replace(untold=name) for name in names)
         return
-    if isinstance(found, dict) and STOOD_FOR in repr(found):
-        # The launch file has written down what stands for a package that is not here.
-        for name in found:
-            here.note(
-                f"the parameter {name} is made of a package that is not here", parameters=True
-            )
-            yield _values({})._replace(untold=name)
-    elif isinstance(found, dict):
-        yield _values(found)
-        yield from _made(found.values(), here)
-        _keep_files(found.values(), here)
-    elif isinstance(found, pathlib.PurePath):
+    if isinstance(found, pathlib.PurePath):
         yield from _file(str(found), here)
     else:
-        name, value = found.evaluate(here.context)
-        yield _values({name: value})
-        _keep_files([value], here)
+        yield from _of_values(found, here)
 
 
-def _made(values: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
-    """The texts of files that the launch makes and names in values, such as that of a bridge."""
-    for path in (it for it in values if isinstance(it, str)):
-        if os.path.isfile(path) and not kept_file(path):
-            yield from _file(path, here)
+def _of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterText]:
+    """Values as a parameter file has them, and the texts of files that the launch makes and names in
+    one, such as that of a bridge."""
+    made = [path for path in found.values() if isinstance(path, str) and is_made(path)]
+    for path in filter(os.path.isfile, made):
+        yield from _file(path, here)
+    # The launch file has written down what stands for a package that is not here, or what is gone.
+    texts = {name: repr(value) for name, value in found.items()}
+    gone = [name for name, it in texts.items() if STOOD_FOR in it or _is_gone(it)]
+    yield from (_values({})._replace(untold=name) for name in gone)
+    rest = {name: value for name, value in found.items() if name not in gone}
+    if rest or not found:
+        yield _values(rest)
+    _keep_files(rest.values(), here)
+
+
+def _is_gone(text_: str) -> bool:
+    """Does it name what the launch makes? A description may do so: it is rewritten."""
+    return GONE in real_paths(text_) and "<" not in text_
 
 
 def _keep_files(values: Iterable[Any], here: Visit) -> None:
@@ -402,7 +472,7 @@ def _plain(value: Any) -> Any:
         return {str(name): _plain(it) for name, it in value.items()}
     if isinstance(value, str):
         # The folder with links to sources is gone when this is read.
-        return kept_file(value) or lasting((value,))[0]
+        return kept_file(value) or value
     if isinstance(value, bytes) or not hasattr(value, "__iter__"):
         return value
     return [_plain(it) for it in value]

@@ -10,6 +10,7 @@ from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, WARNING, 
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing
+from multibot_rewrite.producers.launch.kept_paths import NOT_KNOWN as LEFT_OUT
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.sources.syntax import or_read
 from multibot_rewrite.system.records import NOT_KNOWN_PROCESS, NOT_READ, Place
@@ -46,6 +47,10 @@ def launch_findings(
         )
         hint = _WITHOUT_VALUES if note.parameters else hint
         yield NOT_WHOLE.finding(note.message, hint, **_place(note.place))
+    for node in graph.nodes:
+        for key in dict.fromkeys(it.untold for it in node.parameters if it.untold):
+            message = f"the parameter {key} of {node.name or node.executable} {LEFT_OUT}"
+            yield NOT_WHOLE.finding(message, _WITHOUT_VALUES, **_place(node.place))
     for name, it in unknown.items():
         message = f"node {name} ({it.package} {it.executable}) is not known"
         hint = f"describe it in a file of nodes (docs/stacks.md){or_read()}"
@@ -53,9 +58,9 @@ def launch_findings(
         if handed[name].names:
             hint = f"{hint}, build hands on {shorten(handed[name].names)}"
         yield NOT_KNOWN.finding(message, hint, **_place(it.place))
-    for node in left:
-        if not node.when:
-            message = f"{node.name} of {node.origin} is not launched; it is left out"
+    for one in left:
+        if not one.when:
+            message = f"{one.name} of {one.origin} is not launched; it is left out"
             hint = "leave out the stack, or name the launch file that starts it, too"
             place = Place(next((it.place.file for it in graph.nodes), ""), 1)
             yield NOT_LAUNCHED.finding(message, hint, **_place(place))

@@ -92,10 +92,8 @@ def _bridge(given: Mapping[str, str], here: Visit) -> Iterator[LaunchedNode]:
 
 def included(include: Any, here: Visit) -> LaunchInclude:
     """The file of an include, and its arguments."""
-    (file,) = lasting((path_of(include, here.context),))
-    file = file.rpartition(f"{NOT_INSTALLED}/share/")[2]
-    words = given(include, here.context)
-    return LaunchInclude(here.place, file, tuple(zip(words, lasting(words.values()), strict=True)))
+    file = path_of(include, here.context).rpartition(f"{NOT_INSTALLED}/share/")[2]
+    return LaunchInclude(here.place, file, tuple(given(include, here.context).items()))
 
 
 def unread_of(path: str, names: Collection[str], here: Visit) -> None:

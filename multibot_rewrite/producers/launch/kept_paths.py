@@ -4,27 +4,57 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from collections.abc import Iterable
+from typing import Any
+
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED, SOURCES
 
 LIMIT = 1 << 24
+# What the folder is called in which launch files are read.
+FOLDER = "multibot_launch_"
+# The folder of what is gone when the launch is over.
+GONE = "/made_by_the_launch"
+NOT_KNOWN = "is made of a package that is not here, or by the launch itself; it is left out"
+_REST = r"[^\s'\"<>:;,|)]*"
 
 
 def is_made(path: str) -> bool:
     """Is it a file of the launch itself?"""
-    return os.path.realpath(path).startswith(os.path.realpath(tempfile.gettempdir()) + os.sep)
+    return os.path.realpath(path).startswith(os.path.realpath(_top()) + os.sep)
+
+
+def _top() -> str:
+    """Return the folder of what is made for launch files: each has its own in it."""
+    own = tempfile.gettempdir()
+    above = os.path.dirname(own)
+    return above if os.path.basename(above).startswith(FOLDER) else own
 
 
 def lasting(words: Iterable[str]) -> list[str]:
-    """Words with paths that are there when the launch is over: the folder with links to sources is gone
-    then. Of a file that the launch makes its text is kept (``-string``)."""
-    kept = list(words)
-    for at, word in enumerate(kept):
-        if at and kept[at - 1] == "-file" and is_made(word) and os.path.isfile(word):
-            kept[at - 1 : at + 1] = "-string", read_text(word)
-        elif word.startswith(tempfile.gettempdir() + os.sep) and not is_made(word):
-            kept[at] = os.path.realpath(word)
+    """Words of a program; of a file that the launch makes the text is kept (``-string``)."""
+    kept: list[str] = []
+    for word in words:
+        flag, _, path = word.partition("=") if word.startswith("-") else ("", "", word)
+        flag = flag or (kept[-1] if kept else "")
+        if flag.lstrip("-") == "file" and is_made(path) and os.path.isfile(path):
+            kept[len(kept) - (path == word) :] = "-string", read_text(path)
+        else:
+            kept.append(word)
     return kept
+
+
+def known_words(words: Iterable[str]) -> tuple[tuple[str, ...], list[str]]:
+    """The words of a program without those that are gone, each with the flag before it; these flags."""
+    kept: list[str] = []
+    lost: list[str] = []
+    for word in words:
+        if GONE not in word:
+            kept.append(word)
+            continue
+        lost.append(kept.pop() if kept and kept[-1].startswith("-") else "")
+    return tuple(kept), lost
 
 
 def read_text(path: str) -> str:
@@ -38,12 +68,47 @@ def kept_file(path: str) -> str:
     return os.path.realpath(path) if os.path.isfile(path) and not is_made(path) else ""
 
 
-def lasting_folders(text: str) -> str:
-    """A list of folders, as they are when the launch is over: in the place of one with links to the
-    sources of packages the folders of these, each once."""
-    found: dict[str, None] = {}
-    for it in lasting(text.split(os.pathsep)):
-        links = [one.path for one in os.scandir(it)] if is_made(it) and os.path.isdir(it) else []
-        found |= dict.fromkeys(os.path.dirname(os.path.realpath(one)) for one in links)
-        found |= {} if links else {it: None}
-    return os.pathsep.join(found)
+def with_real_paths(it: Any) -> Any:
+    """Return a value with the paths in its texts as they are when the launch is over: in the place of
+    links to the sources of packages the sources, and the launch file's name for a package that is not
+    here (``$(find-pkg-share NAME)``)."""
+    if isinstance(it, str):
+        return real_paths(it)
+    if isinstance(it, dict):
+        return {with_real_paths(key): with_real_paths(one) for key, one in it.items()}
+    if hasattr(it, "_fields"):
+        return type(it)(*map(with_real_paths, it))
+    return type(it)(map(with_real_paths, it)) if isinstance(it, list | tuple) else it
+
+
+def real_paths(text: str) -> str:
+    """Return a text in which the paths are there when the launch is over."""
+    top = _top()
+    if top not in text:
+        return text
+    return re.sub(rf"{re.escape(top)}(?:/\d+)?({_REST})", lambda it: _real(it[0], it[1]), text)
+
+
+def _real(path: str, below: str) -> str:
+    """Return what a path stands for that is ``below`` the folder of a launch file."""
+    first, *inside = below.strip("/").split("/")
+    if first == NOT_INSTALLED and len(inside) > 1:
+        return "/".join((f"$(find-pkg-share {inside[1]})", *inside[2:]))
+    if first != SOURCES or inside[:1] != ["share"]:
+        return "/".join((GONE, first, *inside))
+    if len(inside) == 1:
+        every = (_behind(it.path) for it in os.scandir(path))
+        return os.pathsep.join(dict.fromkeys(os.path.dirname(it) for it in every if it))
+    real = os.path.realpath(path)
+    return real if not is_made(real) else _behind(path) or GONE
+
+
+def _behind(folder: str) -> str:
+    """Return the sources of what is a link, or a folder of links; empty for another one."""
+    if os.path.islink(folder):
+        real = os.path.realpath(folder)
+        return "" if is_made(real) else real
+    manifest = os.path.join(folder, "package.xml")
+    names = [manifest] if os.path.exists(manifest) else []
+    names += [it.path for it in os.scandir(folder)] if os.path.isdir(folder) else []
+    return next((os.path.dirname(it) for it in map(_behind, names) if it), "")

@@ -31,6 +31,7 @@ from multibot_rewrite.producers.launch.handed_on import (
     handed_on,
     process_name,
 )
+from multibot_rewrite.producers.launch.kept_paths import NOT_KNOWN, known_words
 from multibot_rewrite.producers.launch.known_node import (
     check_names,
     guessed_name,
@@ -40,7 +41,12 @@ from multibot_rewrite.producers.launch.known_node import (
 from multibot_rewrite.producers.launch.once import once_for_all
 from multibot_rewrite.producers.launch.parameter_texts import OWN, document_of, has_sections
 from multibot_rewrite.producers.launch.programs import programs
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
+from multibot_rewrite.producers.launch.records import (
+    LaunchedNode,
+    LaunchGraph,
+    LaunchNote,
+    ParameterText,
+)
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.producers.launch.static_transforms import (
@@ -70,8 +76,8 @@ class Launched(NamedTuple):
     """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
     its name, the controllers that are spawned by theirs, if that is all that runs, findings, if they
     start a simulator, or what is for one, what each of them is given by its name, and the processes
-    that are no nodes. ``environment`` is what all processes have, ``placing`` is the number of what
-    puts the robot into its simulator."""
+    that are no nodes. ``environment`` is what all processes have, ``placing`` is what puts the robot
+    into its simulator."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[Run, ...]
@@ -83,7 +89,7 @@ class Launched(NamedTuple):
     handed_on: Mapping[str, HandedOn] = NOTHING
     processes: tuple[Passing, ...] = ()
     environment: tuple[tuple[str, str], ...] = ()
-    placing: int = -1
+    placing: LaunchedNode | None = None
 
 
 class _Pair(NamedTuple):
@@ -103,7 +109,7 @@ def with_launched(
 ) -> Launched:
     """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
     spawned, notes = spawned_in(graph.nodes)
-    graph = graph._replace(notes=(*graph.notes, *notes))
+    graph = _lasting(graph._replace(notes=(*graph.notes, *notes)))
     each = [(number, it) for number, it in enumerate(graph.nodes) if not passes(it)]
     pairs, twice = _each_once(_pair(number, it, stack, known, words) for number, it in each)
     spawned, lost = under_managers(spawned, _managers(pairs) if graph.whole else ())
@@ -122,7 +128,7 @@ def with_launched(
     unknown = {it.facts.name: it.node for it in pairs if not it.facts.is_known}
     of_all = graph.environment
     handed = {it.facts.name: _handed(it, of_all, _is_own(it, release)) for it in pairs}
-    numbered = (it._replace(number=at) for at, it in enumerate(graph.nodes))
+    numbered = [it._replace(number=at) for at, it in enumerate(graph.nodes)]
     processes = (
         it
         for it in numbered
@@ -140,8 +146,20 @@ def with_launched(
         handed,
         passing,
         graph.environment,
-        next((at for at, it in enumerate(graph.nodes) if _program(it) in programs().spawners), -1),
+        next((it for it in numbered if _program(it) in programs().spawners), None),
     )
+
+
+def _lasting(graph: LaunchGraph) -> LaunchGraph:
+    """What launch files start, without the words that name what only a launch makes."""
+    nodes: list[LaunchedNode] = []
+    notes: list[LaunchNote] = []
+    for it in graph.nodes:
+        words, lost = known_words(it.arguments)
+        nodes.append(it._replace(arguments=words))
+        said = (f"an argument of {it.executable} {flag}".rstrip() for flag in lost)
+        notes += [LaunchNote(it.place, f"{one} {NOT_KNOWN}", parameters=True) for one in said]
+    return graph._replace(nodes=tuple(nodes), notes=(*graph.notes, *notes))
 
 
 def _each_once(pairs: Iterable[_Pair]) -> tuple[list[_Pair], list[Finding]]:

@@ -219,6 +219,8 @@ class _Seen(NamedTuple):
         if isinstance(it, Mapping):
             return {self.plain(key): self.plain(one) for key, one in it.items()}
         if isinstance(it, list | tuple):
+            if any(isinstance(one, FindPackageShare) for one in it):
+                return text_of(self.context, it)
             return [self.plain(one) for one in it]
         return self.of_action(it)
 

@@ -27,7 +27,7 @@ from multibot_rewrite.producers.launch.failures import (
     not_installed,
 )
 from multibot_rewrite.producers.launch.includes import unread_of
-from multibot_rewrite.producers.launch.kept_paths import lasting
+from multibot_rewrite.producers.launch.kept_paths import GONE, real_paths, with_real_paths
 from multibot_rewrite.producers.launch.made_files import keep_sources
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.read_files import descriptions_in, files_read, keep_reads
@@ -37,8 +37,14 @@ from multibot_rewrite.producers.launch.records import (
     LaunchNote,
     LaunchOrder,
 )
-from multibot_rewrite.producers.launch.source_packages import add_empty, add_file, add_sources
-from multibot_rewrite.producers.launch.stand_in import standing_in
+from multibot_rewrite.producers.launch.source_packages import (
+    NOT_INSTALLED,
+    add_empty,
+    add_file,
+    add_sources,
+)
+from multibot_rewrite.producers.launch.stand_in import contents, standing_in
+from multibot_rewrite.producers.launch.stand_in.packages import FindPackageShare
 from multibot_rewrite.producers.launch.unknown_modules import add_unknown
 from multibot_rewrite.producers.launch.visit import ASKED, visit_all
 from multibot_rewrite.system.records import Place
@@ -76,11 +82,12 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     # What the launch files of these start is known without them.
     said = (*_lost(graph.notes), *SIMULATORS)
     unsaid = [it for it in missing if it not in said]
-    whole = Place(os.path.abspath(order.file), 1)
+    place = Place(os.path.abspath(order.file), 1)
     more = (*map(not_installed, unsaid), *dict.fromkeys(unsure))
-    own = (LaunchNote(whole, it, parameters=it in unsure) for it in more)
+    own = (LaunchNote(place, it, parameters=it in unsure) for it in more)
     notes = (*graph.notes, *own)
-    return graph._replace(notes=notes, files=files, read=files_read(lines, reads))
+    whole = graph._replace(notes=notes, files=files, read=files_read(lines, reads))
+    return with_real_paths(whole)  # type: ignore[no-any-return]
 
 
 def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph | None:
@@ -129,15 +136,27 @@ def read_own(file: str, folder: str) -> LaunchGraph:
     """The same of a launch file that ``build`` wrote, read by the stand-in in this process; ``folder``
     is for temporary files. Raises as ``read_graph``."""
     before, order = tempfile.tempdir, LaunchOrder(file)
-    with standing_in():
+    name = "launch_ros.substitutions"
+    with standing_in(**{name: {**contents()[name], "FindPackageShare": _Share}}):
         tempfile.tempdir = folder
         keep_places()
         try:
-            return _visited(_described(order), order)
+            return with_real_paths(_visited(_described(order), order))  # type: ignore[no-any-return]
         except (Exception, SystemExit) as error:
             raise UnreadableError(failure(error)) from error
         finally:
             tempfile.tempdir = before
+
+
+class _Share(FindPackageShare):
+    """The share folder of a package, which is empty for one that is not here."""
+
+    def find(self, package_name: str) -> str:
+        """Return its path."""
+        try:
+            return super().find(package_name)
+        except LookupError:
+            return os.path.join(tempfile.gettempdir(), NOT_INSTALLED, "share", package_name)
 
 
 def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
@@ -157,11 +176,21 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
     found = LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
     own = tuple(changed_environment(seen).items())
+    found = found._replace(notes=(*notes, *_lost_variables(seen, path)))
     # The environment of launch is that of its process, and the file may be read again.
     for name in [it for it in context.environment if it not in before]:
         del context.environment[name]
     context.environment.update(before)
     return found._replace(includes=tuple(seen.includes), environment=own, declared=declared)
+
+
+def _lost_variables(seen: Visit, path: str) -> tuple[LaunchNote, ...]:
+    """What is said of variables with folders that are there only while launch files are read."""
+    before, now = seen.before, seen.context.environment.items()
+    new = (name for name, it in now if before.get(name) != it and GONE in real_paths(it))
+    said = (f"the environment variable {it} has a folder of installed packages" for it in new)
+    place = Place(path, 1)
+    return tuple(LaunchNote(place, f"{it}; that is left out", parameters=True) for it in said)
 
 
 def _declared(description: Any) -> tuple[LaunchArgument, ...]:
@@ -172,7 +201,7 @@ def _declared(description: Any) -> tuple[LaunchArgument, ...]:
         given = it.default_value
         parts = given if isinstance(given, list | tuple) else [given or ""]
         plain = [one if isinstance(one, str) else getattr(one, "text", None) for one in parts]
-        (default,) = lasting(("".join(map(str, plain)) if None not in plain else "",))
+        default = "".join(map(str, plain)) if None not in plain else ""
         found.setdefault(
             it.name, LaunchArgument(it.name, default, tuple(map(str, it.choices or ())))
         )

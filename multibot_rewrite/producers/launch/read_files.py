@@ -5,14 +5,13 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from types import ModuleType
 from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.producers.launch.commands import xacro_of
-from multibot_rewrite.producers.launch.kept_paths import lasting
 from multibot_rewrite.producers.launch.records import FileRead, ParameterText
 
 # Descriptions, and what else robots have: an XML file may be a manifest.
@@ -89,12 +88,7 @@ def files_read(lines: Iterable[str], reads: Reads) -> tuple[FileRead, ...]:
     given = (FileRead(it) for it in words if it.endswith(_ENDS) and os.path.isfile(it))
     other = (FileRead(it) for it in reads.paths if it.endswith(_KEPT))
     real = (it._replace(file=os.path.realpath(it.file)) for it in (*xacros, *given, *other))
-    kept = (it._replace(arguments=_lasting(it.arguments)) for it in real)
-    return tuple(dict.fromkeys(kept))
-
-
-def _lasting(pairs: Sequence[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
-    return tuple((name, lasting((value,))[0]) for name, value in pairs)
+    return tuple(dict.fromkeys(real))
 
 
 def descriptions_in(paths: Iterable[str]) -> Iterator[tuple[str, ParameterText]]:

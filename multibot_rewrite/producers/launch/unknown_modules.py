@@ -34,6 +34,13 @@ def is_unknown(value: object) -> bool:
 STOOD_FOR = __name__
 
 
+class UnknownError(ModuleNotFoundError):
+    """A text is made of a package that is not here."""
+
+    def __init__(self, module: str) -> None:
+        super().__init__(f"No module named {module!r}")
+
+
 class Unknown:
     """What nothing is known of but the module that it is taken from; it has nothing in it."""
 
@@ -84,8 +91,8 @@ class Unknown:
     __radd__ = __truediv__ = __or__ = __ror__ = __add__
 
     def perform(self, _: object) -> str:
-        """As the text of something: raises ModuleNotFoundError."""
-        raise ModuleNotFoundError(f"No module named {self._multibot_module!r}")
+        """As the text of something: raises UnknownError."""
+        raise UnknownError(self._multibot_module)
 
 
 class _Module(ModuleType):

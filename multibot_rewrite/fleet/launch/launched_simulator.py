@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulator as the launch files of a robot start it: its world, its options, if it has a window."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.file.fleet_file import FleetFile
+from multibot_rewrite.fleet.launch.launched_robot import launch_of
+from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR, SIMULATORS
+from multibot_rewrite.producers.launch.launched import world_files
+from multibot_rewrite.producers.launch.records import LaunchedNode
+
+# Options of ``gz sim`` that are switches of the built launch file: -r it has always.
+_SERVER, _WINDOW, _OWN = "-s", "-g", ("-r", "-s", "-g")
+# Those that have a value, which is the next word (gz-sim gz-sim8 src/cmd/cmdsim.rb.in).
+_VALUED = (
+    *("-v", "-z", "--seed", "--iterations", "--physics-engine", "--render-engine"),
+    *("--render-engine-server", "--render-engine-gui", "--network-role"),
+)
+_CLIENT = "gzclient"
+
+
+class Simulator(NamedTuple):
+    """Its world (a path or the name of one of its own, empty if none is said), further options,
+    whether it is without a window, and if it is Gazebo Classic."""
+
+    world: str = ""
+    options: tuple[str, ...] = ()
+    headless: bool = False
+    is_classic: bool = False
+
+
+def launched_simulator(file: FleetFile) -> Simulator:
+    """The simulator of the first robot whose launch files start one."""
+    for spec in file.robots:
+        nodes = launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ()
+        started = [it for it in nodes if _is_simulator(it)]
+        if started:
+            return _simulator(started, any(_is_client(it) for it in nodes))
+    return Simulator()
+
+
+def with_launched_world(file: FleetFile) -> FleetFile:
+    """The fleet with the world of gz-sim that its launch files name, where it names none of its own."""
+    own = launched_simulator(file)
+    if file.simulator_world or own.is_classic or not os.path.isfile(own.world):
+        return file
+    if b"<world" not in read_file(own.world):
+        return file
+    place = next((it.launch[0].file, 1) for it in file.robots if it.launch)
+    return file._replace(simulator_world=own.world, world_place=place)
+
+
+def _is_simulator(it: LaunchedNode) -> bool:
+    return it.executable == SIMULATOR and it.package in SIMULATORS
+
+
+def _is_client(it: LaunchedNode) -> bool:
+    return not it.package and os.path.basename(it.executable) == _CLIENT
+
+
+def _simulator(started: Sequence[LaunchedNode], has_client: bool) -> Simulator:
+    words = [word for it in started for word in it.arguments]
+    worlds = [one for it in started for one in world_files(it)]
+    world = worlds[0] if worlds else ""
+    if started[0].package == CLASSIC:
+        return Simulator(world, (), has_client, True)
+    headless = _SERVER in words and _WINDOW not in words
+    return Simulator(world, tuple(dict.fromkeys(_options(words))), headless)
+
+
+def _options(words: Sequence[str]) -> Iterator[str]:
+    """The options with their values, each as one text."""
+    before = ""
+    for word in words:
+        if before in _VALUED and word[:1] != "-":
+            yield f"{before} {word}"
+        elif before in _VALUED:
+            yield before
+        if word[:1] == "-" and word not in (*_OWN, *_VALUED):
+            yield word
+        before = word
+    if before in _VALUED:
+        yield before
