@@ -104,11 +104,12 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
 
 
 def processes_of_robot(it: Reading) -> int:
-    """How many processes a launch file starts for a robot, its simulator as one; none where it is a
-    trial, or neither publishes a description nor simulates one. Raises nothing."""
-    simulates = _is_simulated(it.graph)
-    starts = simulates or any(map(_publishes, it.graph.nodes))
-    return len({*_own(it.graph)}) + simulates if starts and not _tries(it, True) else 0
+    """How many processes a launch file starts for a robot, those that show it as one; none where it is
+    a trial, or neither publishes a description nor simulates one. Raises nothing."""
+    starts = _is_simulated(it.graph) or any(map(_publishes, it.graph.nodes))
+    own = {one for one in _own(it.graph) if one.executable not in _SHOWING}
+    own |= {one for one in it.graph.nodes if one.package in programs().simulators}
+    return 1 + len(own) if starts and not _tries(it, True) else 0
 
 
 def _with_own_arguments(

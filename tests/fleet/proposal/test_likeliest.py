@@ -107,6 +107,17 @@ def test_of_files_of_one_name_that_which_is_read_is_launched(tmp_path: Path) -> 
     assert [processes_with(it, found) for it in paths] == [0, 1]
 
 
+def test_what_only_shows_a_robot_is_behind_its_simulation(made: Made, tmp_path: Path) -> None:
+    """A window with sliders has as many processes as a spawner."""
+    one, two = made("a.urdf"), made("b.sdf")
+    shows = "Node(package='joint_state_publisher_gui', executable='joint_state_publisher_gui')"
+    show = put(tmp_path, "x.launch.py", loads("a.urdf").replace("*drivers]", f"{shows}]"))
+    found = Found(
+        every=(one.path, two.path), launch=(show, put(tmp_path, "y.launch.py", loads("b.sdf")))
+    )
+    assert [processes_with(it.path, found) for it in (one, two)] == [1, 2]
+
+
 def rivals(*robots: Looked, found: Found | None = None) -> tuple[list[str], list[str]]:
     made = chosen(robots, found or Found(every=tuple(it.path for it in robots)))
     return tuple([Path(it.robot.path).stem for it in them] for them in (made.rivals, made.alike))  # type: ignore[return-value]
