@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The remap rules that a hint names are passed, and the rules are asked again: the finding is gone, and
+nothing else is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import pytest
+from graph_calls import diagnose
+from graph_examples import read_system
+from graph_faults import FAULTS, Fault
+
+from multibot_rewrite.base.findings.finding import Finding, Remap
+from multibot_rewrite.rules.check import judge
+from multibot_rewrite.system.records import Edge, System
+
+TWIST, SCAN = "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan"
+
+
+def remapped(graph: System, rules: Iterable[Remap]) -> System:
+    """The system after its nodes got these rules, as rcl applies them; what one sends goes along."""
+    for rule in rules:
+        ends = tuple(
+            it._replace(name=rule.new) if (it.node, it.name) == (rule.node, rule.old) else it
+            for it in graph.ends
+        )
+        edges = (moved for it in graph.edges for moved in _moved(it, rule))
+        graph = graph._replace(ends=ends, edges=tuple(_once(edges)))
+    return graph
+
+
+def _moved(edge: Edge, rule: Remap) -> Iterator[Edge]:
+    if edge.topic != rule.old or rule.node not in edge.publishers:
+        yield edge
+        return
+    # Several sent it to one topic, each its own.
+    yield edge._replace(topic=rule.new, publishers=(rule.node,), several=False)
+    others = tuple(it for it in edge.publishers if it != rule.node)
+    if others:
+        yield edge._replace(publishers=others)
+
+
+def _once(edges: Iterable[Edge]) -> Iterator[Edge]:
+    found: dict[tuple[str, str, str], Edge] = {}
+    for it in edges:
+        key = it.topic, it.parent, it.child
+        senders = {*it.publishers, *(found[key].publishers if key in found else ())}
+        found[key] = it._replace(publishers=tuple(sorted(senders)))
+    return iter(found.values())
+
+
+def about(found: Iterable[Finding]) -> set[tuple[str, str, str]]:
+    return {(it.code, it.robot, it.node) for it in found}
+
+
+NAMED = [(it, diagnose(it.change(it.system())).findings) for it in FAULTS]
+NAMED = [(it, found) for it, found in NAMED if any(one.remaps for one in found)]
+
+
+def test_many_faults_have_such_a_hint() -> None:
+    assert len(NAMED) > 40
+    codes = {one.code for _, found in NAMED for one in found if one.remaps}
+    assert codes >= {"MG303", "MG304", "MG308", "MG310", "MG315", "MG320", "MG402", "MG405"}
+
+
+@pytest.mark.parametrize(("fault", "found"), NAMED, ids=[it.name for it, _ in NAMED])
+def test_rules_of_a_hint_mend_the_fault(fault: Fault, found: tuple[Finding, ...]) -> None:
+    graph = fault.change(fault.system())
+    for it in found:
+        if not it.remaps:
+            continue
+        for rule in it.remaps:
+            assert rule.old in it.hint, "the hint does not say it"
+        after = diagnose(remapped(graph, it.remaps)).findings
+        assert (it.code, it.robot, it.node) not in about(after), it
+        assert about(after) <= about(found), it
+
+
+def said(*lines: str) -> Iterator[tuple[str, str, bool]]:
+    for it in judge(read_system("\n".join(f"running: {it}" for it in lines))):
+        yield it.code, it.hint, bool(it.remaps)
+
+
+TWO = [
+    f"/robot{at}/{node} {does} /robot{at}/{name} {type_}"
+    for at in (1, 2)
+    for node, does, name, type_ in (
+        ("collision_monitor", "subscribes", "cmd_vel_smoothed", TWIST),
+        ("collision_monitor", "publishes", "cmd_vel", TWIST),
+        ("driver", "subscribes", "cmd_vel", TWIST),
+    )
+]
+
+
+def test_no_hint_leads_a_robots_commands_to_another_robot() -> None:
+    """robot1's smoother has no namespace in its topic; robot2's collision monitor waits as well."""
+    lines = [*TWO, f"/robot1/velocity_smoother publishes /cmd_vel_smoothed {TWIST}"]
+    found = [hint for _, hint, _ in said(*lines) if ":=" in hint]
+    assert found and all("robot2" not in hint for hint in found)
+
+
+def test_no_hint_goes_past_what_limits_velocities() -> None:
+    smoothers = (
+        f"/robot{it}/velocity_smoother publishes /robot{it}/cmd_vel_smoothed {TWIST}" for it in "12"
+    )
+    found = [*said(*TWO, *smoothers, f"/robot1/teleop_node publishes /robot1/cmd_vel_joy {TWIST}")]
+    assert [(code, is_patch) for code, _, is_patch in found if code == "MG308"] == [
+        ("MG308", False)
+    ]
+    assert not [hint for *_, hint, _ in found if "cmd_vel_joy:=" in hint]
+
+
+@pytest.mark.parametrize(
+    ("lines", "hint"),
+    [
+        (
+            [f"/lidar publishes /scan {SCAN}",
+             *(f"/robot{it}/amcl subscribes /scan {SCAN}" for it in "12")],
+            "/lidar sends it to all robots: start one for each, in its namespace",
+        ),
+        (
+            [f"/robot{it}/lidar publishes /robot2/scan {SCAN}" for it in "12"],
+            "a namespace, remap rule or parameter of robot1 names robot2; pass the rule"
+            " /robot2/scan:=scan to /robot1/lidar",
+        ),
+    ],
+)  # fmt: skip
+def test_who_has_to_change(lines: list[str], hint: str) -> None:
+    assert [it for code, it, _ in said(*lines) if code == "MG320"] == [hint]
