@@ -16,7 +16,7 @@ import shtab
 from argparse_manpage.manpage import Manpage
 
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.declared.shared import Option
+from multibot_rewrite.cli.declared.options import Option
 from multibot_rewrite.cli.parser import Parser, declare, make_parser
 from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.version import __version__
@@ -34,7 +34,10 @@ COMPLETED = dict.fromkeys(("FILE", "PATH", "INPUT", "PLAN", "FLEET", "FILE:LINE"
 
 def made() -> dict[str, str]:
     """Every file, by its path below this folder."""
-    parsers = {"multibot": multibot, **{it.name: lambda it=it: make_parser(it) for it in PROGRAMS}}
+    parsers = {
+        "multibot": multibot,
+        **{name: lambda it=it: make_parser(it) for name, it in PROGRAMS.items()},
+    }
     files = {}
     for name, parser in parsers.items():
         files[BASH.format(name)] = shtab.complete(completed(parser()), "bash")
@@ -48,7 +51,7 @@ def made() -> dict[str, str]:
 def fish(program: str) -> str:
     """Completions for fish, which shtab does not make."""
     lines = ["# Made by share/make.py.", f"complete -c {program} -l version -d 'show the version'"]
-    for it in [one for one in PROGRAMS if one.name == program] or COMMANDS.values():
+    for it in [PROGRAMS[program]] if program in PROGRAMS else COMMANDS.values():
         below = f" -n '__fish_seen_subcommand_from {it.name}'" * (program != it.name)
         if below:
             first = f"complete -c {program} -n __fish_use_subcommand -f -a {it.name}"
@@ -101,7 +104,7 @@ def completed(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
 def pages() -> Iterator[argparse.ArgumentParser]:
     """What has a manual page of its own: each program, and each command as ``multibot-NAME``."""
     yield Parser(prog="multibot", usage="multibot COMMAND [options]", description=_overview())
-    yield from map(make_parser, PROGRAMS)
+    yield from map(make_parser, PROGRAMS.values())
     for command in COMMANDS.values():
         page = make_parser(command, f"multibot-{command.name}")
         page.usage = command.usage.replace("%(prog)s", f"multibot {command.name}")

@@ -1,19 +1,39 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is everybody's, by convention: topics, frames, tools, words, each with its source.
 
-Rows are Python and not YAML, since the start of every command reads them and none pays for a parser.
+Rows are in ``conventions.txt``, lines of words and no YAML: the start of every command reads them, and
+none pays for a parser.
 """
 
 from __future__ import annotations
 
+import os
 import re
+from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
 from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
 
+
+def _rows() -> Mapping[str, Sequence[tuple[list[str], str]]]:
+    """Return the words of each row and what stands behind them, by the parts of the table."""
+    found: dict[str, list[tuple[list[str], str]]] = {}
+    name = ""
+    with open(os.path.join(os.path.dirname(__file__), "conventions.txt"), encoding="utf-8") as file:
+        for line in filter(None, map(str.strip, file)):
+            if line.startswith("["):
+                name = line.strip("[]")
+            elif not line.startswith("#"):
+                words, _, behind = line.partition(" # ")
+                found.setdefault(name, []).append((words.split(), behind))
+    return found
+
+
+_ROWS = _rows()
 # Who sends a topic, or reads it: every node there is; any node may; some nodes do; a single one.
 EVERY, ANY, SOME, ONE = range(4)
+_WHO = {"every": EVERY, "any": ANY, "some": SOME, "one": ONE}
 
 
 class SharedTopic(NamedTuple):
@@ -27,14 +47,9 @@ class SharedTopic(NamedTuple):
     source: str
 
 
-TOPICS = (
-    SharedTopic("/clock", ONE, EVERY, True, "rclcpp time_source.cpp: with use_sim_time"),
-    SharedTopic("/rosout", EVERY, ANY, True, "rcl logging_rosout.c"),
-    SharedTopic("/parameter_events", EVERY, EVERY, True, "rclcpp node_parameters.cpp"),
-    SharedTopic("/diagnostics", ANY, ANY, True, "diagnostic_updater.hpp"),
-    SharedTopic("/diagnostics_agg", ONE, ANY, False, "diagnostic_aggregator aggregator.cpp"),
-    # An id in each message says whose it is.
-    SharedTopic("/bond", SOME, SOME, False, "bondcpp bond.cpp"),
+TOPICS = tuple(
+    SharedTopic(name, _WHO[sends], _WHO[reads], bool(kept), source)
+    for (name, sends, reads, *kept), source in _ROWS["topics"]
 )
 CLOCK = "/clock"
 # Topics that may be shared; what every node sends, has, may send; what a rewrite leaves.
@@ -46,6 +61,7 @@ SENT_BY_ANY_NODE = tuple(it.name for it in TOPICS if it.senders in (EVERY, ANY))
 SHARED_TOPICS = tuple(it.name for it in TOPICS if it.kept)
 # The kinds of frames by what they are fixed to.
 WORLD, START, BODY = range(3)
+_FIXED_TO = {"world": WORLD, "start": START, "body": BODY}
 
 
 class UsualFrame(NamedTuple):
@@ -58,16 +74,9 @@ class UsualFrame(NamedTuple):
     source: str
 
 
-FRAMES = (
-    UsualFrame("map", WORLD, True, "REP 105"),
-    UsualFrame("world", WORLD, False, "sdformat: the frame of a world; MoveIt virtual joints"),
-    UsualFrame("earth", WORLD, False, "REP 105"),
-    UsualFrame("utm", WORLD, False, "robot_localization navsat_transform.cpp"),
-    UsualFrame("local_enu", START, False, "robot_localization navsat_transform.cpp"),
-    UsualFrame("odom", START, True, "REP 105"),
-    UsualFrame("odom_combined", START, False, "robot_pose_ekf odom_estimation_node.cpp"),
-    UsualFrame("base_footprint", BODY, True, "REP 120"),
-    UsualFrame("base_link", BODY, True, "REP 105"),
+FRAMES = tuple(
+    UsualFrame(name, _FIXED_TO[to], bool(usual), source)
+    for (name, to, *usual), source in _ROWS["frames"]
 )
 WORLD_FRAMES = tuple(it.name for it in FRAMES if it.fixed_to == WORLD)
 BODY_FRAMES = tuple(it.name for it in FRAMES if it.fixed_to == BODY)
@@ -90,49 +99,14 @@ LISTENER = "transform_listener_impl_"
 # How the name of a node ends that another one makes for its clients: nav2_behavior_tree
 # bt_action_server_impl.hpp.
 CLIENT = "_rclcpp_node"
-TOOLS = (
-    ToolNode("_*", False, "rcl: a name with _ in front is hidden"),
-    ToolNode("_ros2cli_*", True, "ros2cli node/__init__.py NODE_NAME_PREFIX"),
-    ToolNode("launch_ros_*", True, "launch_ros ros_adapters.py"),
-    ToolNode(f"{LISTENER}*", False, "tf2_ros transform_listener.cpp"),
-    ToolNode("spawner_*", True, "controller_manager spawner.py"),
-    ToolNode("spawn_entity*", False, "gazebo_ros spawn_entity.py"),
-    ToolNode("*_container", False, "nav2_bringup navigation_launch.py, rclcpp_components"),
-    ToolNode(
-        "static_transform_publisher_*", False, "tf2_ros static_transform_broadcaster_node.cpp"
-    ),
-    ToolNode(f"*{CLIENT}", True, "nav2_util simple_action_server, costmap clients"),
-    ToolNode("*_service_client", False, "nav2_util lifecycle_service_client.cpp"),
-    ToolNode("rqt*", True, "rqt_gui_py ros_py_plugin_provider.py"),
-    ToolNode("rviz*", True, "rviz2 main.cpp"),
-    ToolNode("foxglove_*", True, "foxglove_bridge ros2_foxglove_bridge.cpp"),
-    ToolNode("rosbridge*", True, "rosbridge_server rosbridge_websocket.py"),
-    ToolNode("rosapi*", True, "rosapi rosapi_node.py"),
-    ToolNode("rosbag2_*", False, "rosbag2_transport player.cpp"),
-    ToolNode("rosbag2_recorder*", True, "rosbag2_transport recorder.cpp"),
-    ToolNode("tf2_*", True, "tf2_ros tf2_echo.cpp, tf2_monitor.cpp"),
-    ToolNode("view_frames", True, "tf2_tools view_frames.py"),
-    ToolNode("teleop_*", False, "teleop_twist_keyboard, teleop_twist_joy"),
-    ToolNode("*_teleop", False, "joy_teleop, turtlesim teleop_turtle"),
-    ToolNode("joy*", False, "joy joy.cpp"),
-    ToolNode("gazebo*", False, "gazebo_ros gazebo_ros_init.cpp"),
-    ToolNode("gz_*", False, "ros_gz_sim"),
-    ToolNode("ign_*", False, "ros_ign_gazebo"),
-    ToolNode("ros_gz_*", False, "ros_gz_bridge ros_gz_bridge.cpp"),
-    ToolNode("*_bridge", False, "ros_gz_bridge, ros1_bridge"),
+TOOLS = tuple(
+    ToolNode(pattern.format(listener=LISTENER, client=CLIENT), bool(looks), source)
+    for (pattern, *looks), source in _ROWS["tools"]
 )
 
 
-# Words for parts of any robot and for what they send: topics and frames are called so, whatever robots
-# are called. The sensors of SDF (sdformat sdf/1.9/sensor.sdf, type), REP 105, REP 144, and sides.
-PARTS = frozenset({
-    "camera", "rgbd_camera", "depth_camera", "thermal_camera", "depth", "color", "rgb", "image",
-    "lidar", "gpu_lidar", "ray", "laser", "scan", "points", "imu", "gps", "navsat", "gnss", "sensor",
-    "magnetometer", "altimeter", "sonar", "radar", "contact", "bumper", "battery", "odom", "odometry",
-    "map", "cmd", "cmd_vel", "joint", "joints", "link", "base", "wheel", "wheels", "arm", "gripper",
-    "hand", "head", "tool", "torso", "front", "rear", "back", "left", "right", "top", "bottom", "upper",
-    "lower",
-})  # fmt: skip
+# Words for parts of any robot and for what they send.
+PARTS = frozenset(word for words, _ in _ROWS["parts"] for word in words)
 
 
 # Nodes of a simulator, one for all robots: gazebo_ros gazebo_ros_init.cpp.
@@ -172,36 +146,7 @@ def _any_of(patterns: tuple[str, ...]) -> re.Pattern[str]:
 
 
 # Topics and services that nodes read and no robot need send, by the last word, and who does.
-FROM_OUTSIDE = {
-    "a person or a planner of missions": (
-        *(
-            "cmd_vel",
-            "cmd_vel_unstamped",
-            "cmd_vel_teleop",
-            "initialpose",
-            "goal",
-            "goal_pose",
-            "goal_update",
-        ),
-        *("clicked_point", "set_pose", "joy", "speed_limit", "preempt_teleop", "manual_control"),
-    ),
-    "a person or a planner of motions, to a controller": (
-        *("reference", "commands", "joint_trajectory", "trajectory", "external_wrench", "feedback"),
-        *("set_feedback", "trajectory_execution_event", "enable_freedrive_mode", "script_command"),
-        *("equilibrium_pose", "speed_scaling_input", "footprint"),
-        # moveit_servo servo_parameters.yaml.
-        *("delta_twist_cmds", "delta_joint_cmds", "pose_target_cmds"),
-    ),
-    "a scene": (
-        *(
-            "planning_scene",
-            "planning_scene_world",
-            "collision_object",
-            "attached_collision_object",
-        ),
-    ),
-    "every node, or none": ("clock", "diagnostics", "parameter_events", "robot_description"),
-}
+FROM_OUTSIDE = {who: tuple(words) for words, who in _ROWS["from outside"]}
 _OUTSIDE = frozenset(word for words in FROM_OUTSIDE.values() for word in words)
 
 
@@ -211,16 +156,7 @@ def is_from_outside(name: str) -> bool:
 
 
 # Nodes that send one after another, by an order among themselves: as many as one sender.
-TEAMS = {
-    "Nav2": (
-        *("*controller_server*", "*behavior_server*", "*recoveries_server*", "*velocity_smoother*"),
-        *("*collision_monitor*", "*docking_server*", "*following_server*", "*bt_navigator*"),
-        *("*route_server*", "*planner_server*", "*waypoint_follower*", "*lifecycle_manager*"),
-        # Not costmap_filter_info_server: what it sends is for costmaps.
-        *("*costmap", "*costmap_[!f]*"),
-    ),
-    "MoveIt": ("*move_group*", "*servo*", "*moveit_*"),
-}
+TEAMS = {name: tuple(nodes) for nodes, name in _ROWS["teams"]}
 # Between several senders and a robot: they choose one.
 _CHOOSES = lazy_compile(r"mux|prioriti|arbit|selector|switch|twist_manager")
 

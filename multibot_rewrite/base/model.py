@@ -4,8 +4,6 @@
 Text positions are byte offsets into the source; lines and columns count from 1.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -56,7 +54,7 @@ class Claim(NamedTuple):
     """
 
     site: SiteRow
-    element: _Element
+    element: "_Element"
     start: int
     attribute: str
     value: str

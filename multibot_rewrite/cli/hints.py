@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
-from multibot_rewrite.base import other_words
 from multibot_rewrite.base.nearest import CHOICE, extensions, nearest
+from multibot_rewrite.base.other_words import other_words
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.declared.shared import Command
+from multibot_rewrite.cli.declared.options import Command
 
 # A beginning of so few letters says nothing.
 _BEGUN = 2
@@ -24,9 +24,9 @@ def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: boo
     if begun := _begun(wrong.lstrip("-"), known):
         return f"; did you mean '{begun}'?"
     word = f"-{wrong.removeprefix('-').replace('_', '-')}"
-    if own := other_words.OPTIONS.get(f"{command} {word}"):
+    if own := other_words("options").get(f"{command} {word}"):
         return f"; use {own}"
-    other = other_words.OPTIONS.get(word, "")
+    other = other_words("options").get(word, "")
     first_word = other.replace(",", "").partition(" ")[0]
     meant = first_word if first_word.startswith("-") else ""
     if meant in known:
@@ -44,7 +44,7 @@ def _fleet_keys(wrong: str) -> list[str]:
 
     word = wrong.lstrip("-").replace("-", "_")
     top = schema()["properties"]
-    key = word if word in top else other_words.KEYS.get(word, word)
+    key = word if word in top else other_words("keys").get(word, word)
     return [key] if key in top else extensions(key, top)
 
 
@@ -83,5 +83,4 @@ def _has(command: Command, option: str) -> bool:
 
 
 def _every_command() -> Mapping[str, Command]:
-    programs = {it.name: it for it in PROGRAMS}
-    return {**programs, **{f"multibot {name}": it for name, it in COMMANDS.items()}}
+    return {**PROGRAMS, **{f"multibot {name}": it for name, it in COMMANDS.items()}}

@@ -20,15 +20,15 @@ from multibot_rewrite.base.naming import LAYOUTS, find_layout
 from multibot_rewrite.base.releases import RELEASES, VARIABLE, release_here
 from multibot_rewrite.base.rosnames import check_robot_names
 from multibot_rewrite.base.wording import plural, shorten
-from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, say, status
+from multibot_rewrite.cli.output import STANDARD, deliver, detail, goes_to_file, note, say, status
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import asked_number, plain_words, xacro_args
 from multibot_rewrite.description.sources.expand import kept_expansions
-from multibot_rewrite.fleet.proposal.choosing import Undecided
-from multibot_rewrite.fleet.proposal.fleet_text import order_text, text_of
+from multibot_rewrite.fleet.proposal.fleet_text import text_of
+from multibot_rewrite.fleet.proposal.launches import order_text
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import MEANT, Choice, Proposal, names_of, release_of
-from multibot_rewrite.fleet.proposal.searching import Found, is_below
+from multibot_rewrite.fleet.proposal.searching import Found, Undecided, is_below
 from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, see, with_arguments
 from multibot_rewrite.fleet.proposal.trying import (
     as_named,
@@ -126,7 +126,9 @@ def _launch(options: argparse.Namespace) -> tuple[LaunchOrder, ...] | None:
     if not words or words == [NONE]:
         return () if words else None
     text, roots = " ".join(words), [it for it in options.words if os.path.isdir(it)]
-    order = order_in_words(words, text, roots) if words[1:] else launch_order(text, roots)
+    # One word may be a path with blanks, or all that follows ``ros2 launch``.
+    whole = bool(words[1:]) or os.path.isfile(text)
+    order = order_in_words(words, text, roots) if whole else launch_order(text, roots)
     if not os.path.isfile(order.file):
         raise UsageError(f"{order.file}: there is no such launch file")
     if any(is_below(order.file, it) for it in roots):
@@ -165,6 +167,8 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
     deliver(options, text.encode(), FLEET)
     for line in (*made.notes, *filter(None, (made.chosen,))):
         say(line, PROGRAM)
+    for path, at, why in (*made.unread, *made.others_unread):
+        detail(options, f"{path}:{at}: {why}")
     robots = sum(len(it.names) for it in made.members)
     files = {os.path.basename(it.looked.path) for it in made.members}
     what = f"{plural(robots, 'robot')} of {', '.join(sorted(files))}, {made.keys['layout'].value}"

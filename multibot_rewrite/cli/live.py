@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the commands get a graph from: saved snapshots, a Zenoh router, or the live graph of ROS.
 
-The options are those of ``SOURCE`` in ``declared/shared.py``. What reads a source is imported when that
+The options are in ``declared/shared.txt``. What reads a source is imported when that
 one is asked for.
 """
 
@@ -156,7 +156,7 @@ def with_states(
 
     asked = list(questions(seen, parameters))
     found = ask(asked, ANSWER_SECONDS, environ(options.domain))
-    seen = with_answers(seen, found)
+    seen = with_answers(seen, found, asked)
     note_answers(options, seen)
     return seen
 

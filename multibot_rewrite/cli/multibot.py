@@ -7,11 +7,10 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 
-from multibot_rewrite.base import other_words
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import ALIKE, did_you_mean_one_of
 from multibot_rewrite.cli.declared.commands import COMMANDS
-from multibot_rewrite.cli.declared.shared import Command
+from multibot_rewrite.cli.declared.options import Command
 from multibot_rewrite.cli.output import AUTO, is_coloured, print_bytes
 from multibot_rewrite.cli.parser import painted
 from multibot_rewrite.cli.process import DONE, PROGRAM, guarded, start
@@ -45,8 +44,10 @@ def find_command(word: str) -> Command:
         return COMMANDS[word]
     if word.startswith("-"):
         raise UsageError(f"{word}: write the command first, for example: {_with_option(word)}")
-    if word in other_words.COMMANDS:
-        raise UsageError(f"there is no command {word!r}; use {other_words.COMMANDS[word]}")
+    from multibot_rewrite.base.other_words import other_words  # a mistake alone needs it
+
+    if meant := other_words("commands").get(word):
+        raise UsageError(f"there is no command {word!r}; use {meant}")
     near = did_you_mean_one_of(word, COMMANDS, ALIKE)
     raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
 

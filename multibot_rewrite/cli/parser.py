@@ -14,7 +14,7 @@ from typing import NoReturn
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.wording import one_line
-from multibot_rewrite.cli.declared.shared import Command, Example, OptionGroup
+from multibot_rewrite.cli.declared.options import Command, Example, OptionGroup
 from multibot_rewrite.cli.output import AUTO, is_coloured
 from multibot_rewrite.cli.values import SOURCES
 from multibot_rewrite.version import __version__

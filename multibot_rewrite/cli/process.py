@@ -18,7 +18,7 @@ from typing import NoReturn
 
 from multibot_rewrite.base.findings.finding import RewriteRefused
 from multibot_rewrite.base.model import MultibotError, ProofError, Unusable
-from multibot_rewrite.cli.declared.shared import Command
+from multibot_rewrite.cli.declared.options import Command
 from multibot_rewrite.cli.output import check_there, detail, say
 from multibot_rewrite.cli.parser import UNUSABLE, make_parser, parsed
 

@@ -11,7 +11,6 @@ from functools import partial
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.cli import fleet, live, pictures
 from multibot_rewrite.cli.check import conclude
-from multibot_rewrite.cli.declared.fleet import EVERY_WAY
 from multibot_rewrite.cli.output import note, shown, write_files
 from multibot_rewrite.cli.report import chosen
 from multibot_rewrite.cli.walk import check_folder, check_target
@@ -88,7 +87,7 @@ def _played(
 
 def _left_out(options: argparse.Namespace) -> Sequence[str]:
     """The ways of which no rules are given."""
-    return WAYS if EVERY_WAY in options.without_rules else list(options.without_rules)
+    return WAYS if "all" in options.without_rules else list(options.without_rules)
 
 
 def _check_use(options: argparse.Namespace) -> None:

@@ -27,7 +27,6 @@ from multibot_rewrite.cli.watch import Look, follow
 from multibot_rewrite.live.diagnose import Diagnosis, diagnose, diagnose_domains, survey
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.live.watching import Outcome, Verdict, final, final_words, verdict_words
-from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted, is_recorded
 from multibot_rewrite.rules.system.planned_nodes import missing_robot
 from multibot_rewrite.system.coverage import Coverage
@@ -42,6 +41,8 @@ def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
     if options.watch:
         return _watch(options, domains)
     if options.bag:
+        from multibot_rewrite.producers.bags.read import read_bag
+
         recording = read_bag(options.bag)
         return report_on(options, diagnose(as_snapshot(recording), counted(recording)))
     views = live.graphs(options, domains) if domains else _saved(options)
@@ -151,6 +152,9 @@ def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None
 
     library = built_in(release_here(options.distro))
     for folder, seen in zip(_folders(options, each), each.values(), strict=True):
+        if doubts(seen.graph):
+            say(f"nothing is written to {folder}: the view is incomplete, look again", PROGRAM)
+            continue
         texts = {os.path.join(folder, it): one for it, one in suggestion(seen, library).items()}
         schemas = {os.path.join(folder, it): one for it, one in SCHEMAS.items()}
         files = (with_schema(it, one.encode(), schemas.get(it, "")) for it, one in texts.items())

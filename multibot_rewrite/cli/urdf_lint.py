@@ -6,13 +6,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from multibot_rewrite.cli.declared.description import LINT
+from multibot_rewrite.cli.declared.commands import read_command
 from multibot_rewrite.cli.process import run_alone
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit code."""
-    return run_alone(LINT, arguments)
+    return run_alone(read_command("urdf-lint"), arguments)
 
 
 if __name__ == "__main__":

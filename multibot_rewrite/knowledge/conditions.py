@@ -1,21 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Conditions under which a node, an endpoint, a transform or a claim is there, as entries write them.
-
-Alternatives are joined by ``or``, what must hold together by ``and``. A term asks a parameter:
-
-    PARAMETER                  it is true; ``ONE|OTHER`` asks several, of which one has to do
-    PARAMETER = VALUE          it has this value, or one of ``VALUE | VALUE``; ``$other`` is that of
-                               another parameter; the class of a plugin may lack its namespace
-    PARAMETER != VALUE         it has none of them; so has one that is not set
-    PARAMETER has VALUE        it is a list, or a text of several words, that holds one of them
-    PARAMETER lacks VALUE      it is a list that holds none of them
-    PARAMETER set, unset       it has a value that is not empty, or none
-    PARAMETER names VALUE      it is the path of a file in which one of them is written
-
-A parameter that begins with ``-`` is an option of the command line: its value is the word behind it,
-and it is ``set`` where it is given; ``-`` alone is any word that is no option. Else a term is
-``KIND: WORDS``, for what else a program decides (``KINDS``), or ``open: WORD``, for what none can
-before the robot runs: one of the words of ``OPEN``.
+``README.md`` has how they are written.
 """
 
 from __future__ import annotations
@@ -38,7 +23,7 @@ KINDS = {
     HEARD: "an own topic that has a subscriber: all that a launch starts",
     "missing": "a parameter that is not passed: its parameters",
     PROGRAM: "the executable that runs it: the launch file",
-    RELEASE: "releases of ROS, for the type of an endpoint: the release",
+    RELEASE: "releases of ROS, for an endpoint: the release",
     "run": "simulated or real: use_sim_time",
     UNSENT: "a topic that no other node of the robot sends: its other nodes",
     VERSION: "the package, and its version or a newer one: whoever installed it",

@@ -230,9 +230,6 @@ def checked_endpoint(item: YamlItem, endpoint: Endpoint) -> Endpoint:
             wrong(item, f"name {name!r}: {fault.reason}")
     for type_ in filter(None, (endpoint.type, *endpoint.also)):
         _check_type(item, endpoint, type_)
-    if endpoint.beside:
-        other = f"it is derived from the name that {endpoint.beside} is remapped to"
-        return endpoint._replace(fixed=other)
     if not _MADE.search(endpoint.name) or endpoint.fixed:
         return endpoint
     source = f"parameter {endpoint.parameter}" if endpoint.parameter else "its configuration"

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is known of a node: its endpoints, frames, transforms and claims, before any remap rule."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -17,25 +15,13 @@ NO_TYPES: Mapping[str, str] = {}
 
 
 class Endpoint(NamedTuple):
-    """A topic, service or action in a node's code, before any remap rule.
+    """A topic, service or action in a node's code, before any remap rule: what its entry says of it
+    (``README.md``), the ``if`` as ``condition``.
 
-    ``name`` is relative, absolute or private (``~/x``). ``transport`` is true for an image topic
-    with image_transport siblings. ``fixed`` says why no rule reaches it; else empty. ``parameter``
-    is the node parameter that sets the name, if any. ``also`` are other types, by parameter or
-    release. ``when`` is the condition under which it exists, empty for always. ``helper`` is true
-    if a helper node in the same process uses it: a rule for the whole process reaches it, one for
-    this node does not. ``remapped`` is its name after the remap rule of the stack's usual launch
-    file: the table's rule must lead there, since only the first match counts. ``condition`` is what
-    its node's parameters must hold for it to exist (``knowledge.conditions``), for where these are
-    known. ``named_from`` is what its entry calls it, if a stack gives it another name. ``above``
-    are the releases in which its node resolves a relative name from its parameter in the namespace
-    above its own. ``releases`` are release words (see ``base.releases``), ``source`` the places
-    where it can be read. ``by`` names the helper node, as what follows the name of its node, with a
-    ``*`` for what is made at run time (``_private_*``); the usual helper, tf2's, has no name of its
-    own. ``types`` are conditions as ``condition``, each with the type that it has where that holds.
-    ``beside`` is an endpoint of the node: the name is made of that which it has after all rules,
-    with another last word, as that of a camera_info is. ``own`` is true where an argument of the
-    robot's description makes the name: it is the robot's already.
+    ``name`` is relative, absolute or private (``~/x``). ``remapped``: the table's rule must lead there,
+    since only the first match counts. ``named_from`` is what its entry calls it, if a stack gives it
+    another name. ``own`` is true where an argument of the robot's description makes the name: it is the
+    robot's already.
     """
 
     kind: str
@@ -105,9 +91,9 @@ class Branch(NamedTuple):
     """Paths by their next segment: ``exact``, ``numbered`` (a stem with digits), ``wild`` (what the
     segment is, if any word is allowed); ``params`` are those whose path ends here."""
 
-    exact: dict[str, Branch]
-    numbered: dict[str, Branch]
-    wild: dict[str, Branch]
+    exact: dict[str, "Branch"]
+    numbered: dict[str, "Branch"]
+    wild: dict[str, "Branch"]
     params: list[Param]
 
 
@@ -167,27 +153,19 @@ class Untold(NamedTuple):
 
 
 class NodeFacts(NamedTuple):
-    """A known node: its default name, its package, and its endpoints.
+    """A known node: its default name, its package, its endpoints, and what else its entry says
+    (``README.md``).
 
-    A name with slashes is a node in its own namespace below the robot's, such as a costmap.
-    ``shared`` is true if one node serves all robots (a bridge, RViz, a clock). ``host`` is the node
-    whose process it always runs in. ``when`` is the condition under which it is started, empty for
-    always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes. ``ids``
-    are words in <> of its names, with the parameter that lists what they stand for. ``claims`` are the
-    interfaces that a controller needs. ``known`` is its name in its entry if it has another one.
-    ``origin`` is where a robot's own files name it, or its stack. ``releases`` and
-    ``source`` as in ``Endpoint``. ``programs`` are the executables that run it, those of
-    other packages as ``package/executable``, the usual one first; ``component`` is its class as a
-    component. ``interface`` is the NoDL file that its endpoints are from, empty for the library.
-    ``container`` is the node whose process it is loaded into as a component, ``plugin`` the plugin of
-    the simulator that makes it. ``apart`` is true for a node that keeps its name in every layout and
-    runs in its robot's namespace: its code sets its name, or that of a node below it. ``of_hardware``
-    is true for a node that a hardware plugin makes in the process of the controller manager.
-    ``unmanaged`` are the releases in which it has a life cycle and no manager of Nav2 knows it.
-    ``usual`` are the parameters of the stack's own file, for a robot none of whose files has any.
-    ``prefix_switch`` is a parameter: unless it is false, the node puts its namespace before its frames.
-    ``is_known`` is false for a node that nobody knows: its ends are those that its remap rules name.
-    ``untold`` is what its source does not tell.
+    A name with slashes is a node in its own namespace below the robot's, such as a costmap. No rule
+    reaches ``frames`` and ``fixed``. ``known`` is its name in its entry if it has another one.
+    ``origin`` is where a robot's own files name it, or its stack. ``interface`` is the NoDL file
+    that its endpoints are from, empty for the library. ``container`` is the node whose process it
+    is loaded into as a component. ``of_hardware`` is true for a node that a hardware plugin makes
+    in the process of the controller manager. ``unmanaged`` are the releases in which it has a life
+    cycle and no manager of Nav2 knows it. ``usual`` are the parameters of the stack's own file, for
+    a robot none of whose files has any. ``prefix_switch`` is a parameter: unless it is false, the
+    node puts its namespace before its frames. ``is_known`` is false for a node that nobody knows:
+    its ends are those that its remap rules name. ``untold`` is what its source does not tell.
     """
 
     name: str

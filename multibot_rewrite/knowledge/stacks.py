@@ -163,14 +163,17 @@ def _node(node: NodeFacts, release: str) -> NodeFacts:
 
 
 def _endpoints(endpoints: Iterable[Endpoint], package: str, release: str) -> tuple[Endpoint, ...]:
+    there = ((it, of_release(it.when, release)) for it in endpoints)
     return tuple(
-        _endpoint(it, package, release) if it.releases or it.above or it.types else it
-        for it in endpoints
-        if has_release(it.releases, release)
+        _endpoint(it._replace(when=when), package, release)
+        for it, when in there
+        if when is not None and has_release(it.releases, release)
     )
 
 
 def _endpoint(it: Endpoint, package: str, release: str) -> Endpoint:
+    if not (it.releases or it.above or it.types):
+        return it
     above = it.above if it.above and has_release(it.above, release) else ""
     types = ((of_release(condition, release), type_) for condition, type_ in it.types)
     return it._replace(

@@ -16,7 +16,7 @@ from multibot_rewrite.companions.bridge_entry import (
 )
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.of_runs import with_names
+from multibot_rewrite.spelling.of_runs import asked_alone, with_names
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.targets import expanded
 from multibot_rewrite.system.records import (
@@ -48,15 +48,15 @@ def run_alone(node: NodeFacts, section: Run | None) -> Run:
     """A node of a robot without a name, under the rules of the usual launch files alone; ``section`` is
     what a file sets for it."""
     above, _, name = f"/{node.name}".rpartition("/")
-    rules = tuple(it for end in node.endpoints if end.remapped for it in _usual_rules(end))
+    rules = tuple(it for end in node.endpoints if end.remapped for it in _usual_rules(node, end))
     run = Run("", node.name, above or "/", name, rules, node)
     run = run._replace(values=section.values, place=section.place) if section else run
     return with_names(run)
 
 
-def _usual_rules(end: Endpoint) -> Iterator[tuple[str, str]]:
-    meant = expanded(end._replace(name=end.remapped))
-    for (_, source), (_, target) in zip(expanded(end), meant, strict=True):
+def _usual_rules(node: NodeFacts, end: Endpoint) -> Iterator[tuple[str, str]]:
+    asked, meant = (end._replace(name=it) for it in (asked_alone(node, end), end.remapped))
+    for (_, source), (_, target) in zip(expanded(asked), expanded(meant), strict=True):
         yield source, target
 
 

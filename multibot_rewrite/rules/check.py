@@ -33,7 +33,7 @@ from multibot_rewrite.system.domains import (
 from multibot_rewrite.system.index import NO_COUNTS, Index, beside, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.patterns import fitted
-from multibot_rewrite.system.records import System, clocks as time_by_node, doubts
+from multibot_rewrite.system.records import System, clocks as time_by_node, unseen
 from multibot_rewrite.system.tf_copies import without_bridged
 
 RULES = {it.code: it for it in sorted(rules_in("system"), key=lambda it: it.code)}
@@ -55,7 +55,7 @@ def judge(seen: Index) -> list[Finding]:
         only = (it for it in _rules(planned=True) if not (recorded and it.options["nodes"]))
         by_plan = [*_found_by(only, seen)]
         found = _judged(seen, asked)
-        return one_for_a_cause(seen, plan, found, by_plan, RULES, bool(doubts(seen.system)))
+        return one_for_a_cause(seen, plan, found, by_plan, RULES, bool(unseen(seen.system)))
 
 
 def _rules(planned: bool) -> Iterator[Rule]:
@@ -134,7 +134,7 @@ def side_by_side(
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
     """The findings; those about something missing are inconclusive in an incomplete view. What a
     parameter says of the time of a node is known there, too."""
-    if not doubts(graph):
+    if not unseen(graph):
         return found
     told, mixed = time_by_node(graph), clocks.clocks_mixed.code
     sure = {it for it in found if it.code not in ABSENCE or (it.code == mixed and it.node in told)}
@@ -143,7 +143,7 @@ def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Fin
 
 def _inconclusive(finding: Finding) -> Finding:
     hint = "the view of the graph may be incomplete: the line `incomplete:` says why"
-    return finding._replace(level=INCONCLUSIVE, hint=hint, file="", line=0)
+    return finding._replace(level=INCONCLUSIVE, hint=hint, file="", line=0, remaps=())
 
 
 _MISSING = frozenset((missing_node.code, missing_robot.code))

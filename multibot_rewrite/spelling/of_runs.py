@@ -14,7 +14,7 @@ from multibot_rewrite.base.rosnames import (
     parse_remap,
     resolve_bound,
 )
-from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Rule, Run
 from multibot_rewrite.system.records import ACTION, MAY, RUNS, SERVICE, End, Lookup, Sure
 
@@ -37,22 +37,33 @@ def with_names(run: Run) -> Run:
     ends = (it for it in run.fact.endpoints if it.name and "<" not in it.name)
     return run._replace(
         names=tuple(
-            (it, _name_of(run, it, bare if _is_fixed(it) else helper if it.helper else own))
+            (it, _name_of(run, it, bare if it.fixed else helper if it.helper else own))
             for it in ends
         )
     )
 
 
-def _is_fixed(end: Endpoint) -> bool:
-    return bool(end.fixed) and not end.beside
+def asked_beside(end: Endpoint, bound: BoundNode) -> str:
+    """Return the name that its node asks for: it is made of the one that another end has after all
+    rules (image_transport camera_common.cpp getCameraInfoTopic)."""
+    return _sibling(resolve_bound(end.beside, end.kind, bound), end.name)
+
+
+def asked_alone(node: NodeFacts, end: Endpoint) -> str:
+    """Return the name that a node of a robot alone asks for, under the rules of its stack."""
+    others = (it.remapped for it in node.endpoints if it.name == end.beside and it.remapped)
+    return _sibling(next(others, end.beside), end.name) if end.beside else end.name
+
+
+def _sibling(other: str, name: str) -> str:
+    """Return a name with its last word beside another name."""
+    return f"{other[: other.rfind('/') + 1]}{name.rpartition('/')[2]}"
 
 
 def _name_of(run: Run, end: Endpoint, bound: BoundNode) -> str:
-    """The name that an end has; that of one beside another is made of the other's
-    (image_transport camera_common.cpp getCameraInfoTopic)."""
+    """The name that an end has."""
     if end.beside:
-        above = resolve_bound(end.beside, end.kind, bound).rpartition("/")[0]
-        return f"{above}/{end.name.rpartition('/')[2]}"
+        return resolve_bound(asked_beside(end, bound), end.kind, bound)
     name = _below_namespace_above(run, end)
     if end.kind == ACTION:
         # It is services and topics with names of their own; a rule for its name reaches none.

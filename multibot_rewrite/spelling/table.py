@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.base.gc_pause import gc_paused
-from multibot_rewrite.base.naming import NAMESPACE, Naming
-from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.base.naming import NAMESPACE, Naming, affix, spelled
+from multibot_rewrite.base.rosnames import bind, expand
 from multibot_rewrite.description.readback.nodes import ReadNode
 from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.controller_ways import controller_way
@@ -22,7 +22,7 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     SentTransform,
 )
-from multibot_rewrite.spelling.of_runs import with_names
+from multibot_rewrite.spelling.of_runs import asked_alone, asked_beside, parsed, with_names
 from multibot_rewrite.spelling.records import Rule, Run, Table
 from multibot_rewrite.spelling.table_checks import (
     PROBE,
@@ -67,7 +67,9 @@ def _build(
     release: str,
 ) -> Table:
     # Made once: the run of another robot differs only in the robot's name.
-    others, once = places_of(PROBE, nodes, naming), frozenset(it.name for it in nodes if it.shared)
+    first = robots[0] if robots else ""
+    others = {**_heads(first, plugins.get(first, ()), naming), **places_of(PROBE, nodes, naming)}
+    once = frozenset(it.name for it in nodes if it.shared)
     sections = {it.node: it for it in given}
     own = [
         _with_section(run_of(PROBE, it, naming, others, once), sections)
@@ -154,12 +156,25 @@ def run_of(
     namespace, name = placed(robot, node.name, naming, node.apart)
     place = _Place(robot, naming, namespace, _root(namespace, robot, node, naming), others, once)
     rules: dict[str, Rule] = {}
-    for endpoint in (it for it in node.endpoints if not it.fixed):
-        for source, target in _targets(endpoint, place):
+    named = [it for it in node.endpoints if not it.fixed]
+    for endpoint in sorted(named, key=lambda it: bool(it.beside)):
+        asked = _asked(endpoint, node, (name, namespace, rules.values()))
+        for source, target in _targets(asked, place):
             rules.setdefault(expand(source, namespace, name), (source, target))
     made = Run(robot, node.name, namespace, name, tuple(rules.values()), node)
     host_name = others.get(node.host, node.host).rpartition("/")[2]
     return with_names(made._replace(host_name=host_name))
+
+
+def _asked(endpoint: Endpoint, node: NodeFacts, at: tuple[str, str, Iterable[Rule]]) -> Endpoint:
+    """Return the endpoint under the name that its node asks for by the rules of the others; what is
+    made of another's name has to lead where the robot alone has it."""
+    if not endpoint.beside:
+        return endpoint
+    name, namespace, rules = at
+    asked = asked_beside(endpoint, bind(name, namespace, parsed(rules)))
+    name = asked.removeprefix(f"{namespace.rstrip('/')}/")
+    return endpoint._replace(name=name, remapped=endpoint.remapped or asked_alone(node, endpoint))
 
 
 class _Place(NamedTuple):
@@ -232,11 +247,31 @@ def places_of(robot: str, nodes: Iterable[NodeFacts], naming: Naming) -> Places:
     return {node: f"{above.rstrip('/')}/{name}" for node, (above, name) in found.items()}
 
 
+def _heads(robot: str, runs: Iterable[Run], naming: Naming) -> Places:
+    """Return what topics of the plugins of a robot's description begin with, a node or the stem of a
+    camera, by what they begin with where the robot is alone; both end with a slash."""
+    found: dict[str, str] = {}
+    for end, name in (one for run in runs for one in with_names(run).names):
+        head, _, rest = end.name.partition("/")
+        kind = "node" if head == "~" else "stem"
+        above, _, word = name.removesuffix(f"/{rest}").rpartition("/")
+        there = affix(naming, kind, "x") if rest and name.endswith(f"/{rest}") else None
+        mark = there.spell("", robot) if there else ""
+        bare = word.removesuffix(mark).removeprefix(mark)
+        if naming.topics != NAMESPACE and bare not in ("", word) and head in ("~", word):
+            found[f"{above[1:]}/{bare}/".lstrip("/")] = (
+                f"{above}/{spelled(naming, PROBE, kind, bare)}/"
+            )
+    return found
+
+
 def _below(name: str, naming: Naming, others: Places) -> str:
     """The target for a name below another node of the robot, such as a private service of it, if that
-    node is renamed; else empty."""
-    head, slash, rest = name.strip("/").partition("/")
-    place = others.get(head, "")
+    node is renamed, or for a topic of a plugin; else empty."""
+    bare = name.strip("/")
+    head = next((it for it in others if it[-1:] == "/" and bare.startswith(it)), "")
+    head, slash, rest = (head[:-1], "/", bare[len(head) :]) if head else bare.partition("/")
+    place = others.get(f"{head}/", others.get(head, "")).rstrip("/")
     if naming.topics == NAMESPACE or not slash or not place:
         return ""
     relative = not name.startswith("/") and place.count("/") == 1

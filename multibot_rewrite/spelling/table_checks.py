@@ -13,6 +13,7 @@ from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.spelling.of_runs import asked_beside, parsed
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.targets import expanded, target_of
 from multibot_rewrite.system.records import SERVICE, TOPIC
@@ -115,7 +116,11 @@ def _names(run: Run) -> _Names:
         for kind, source in expanded(endpoint)
         for name in asked_for(source, endpoint, run.namespace)
     }
-    return _Names(bare, frozenset((kind, resolve_bound(name, kind, bare)) for kind, name in asked))
+    full = {(kind, resolve_bound(name, kind, bare)) for kind, name in asked}
+    if any(it.beside for it in known):
+        bound = bind(run.name, run.namespace, parsed(run.rules))
+        full |= {(it.kind, asked_beside(it, bound)) for it in known if it.beside}
+    return _Names(bare, frozenset(full))
 
 
 def asked_for(name: str, endpoint: Endpoint, namespace: str) -> tuple[str, ...]:

@@ -20,6 +20,8 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.system.records import (
     CHANGING,
+    PUBLISHES,
+    SERVES,
     TIMEOUT,
     UNKNOWN_NODE,
     WAITED_FOR,
@@ -29,6 +31,7 @@ from multibot_rewrite.system.records import (
     Node,
     System,
 )
+from multibot_rewrite.system.tool_nodes import is_hidden
 
 MAX_DOMAIN = 232
 RANGES = ("OFF", "LOCALHOST", "SUBNET", "SYSTEM_DEFAULT")
@@ -44,7 +47,10 @@ KNOWN_RMW = (
 # So many participants of a machine are found by unicast: under LOCALHOST, of a peer under SUBNET.
 LOCAL_LIMIT, PEER_LIMIT = 32, 4
 # The caveats of ``unfinished``.
-UNFINISHED = ("nodes-without-endpoints", "node-name-unknown")
+WITHOUT_READERS = "nodes-without-readers"
+UNFINISHED = ("nodes-without-endpoints", WITHOUT_READERS, "node-name-unknown")
+# So many nodes have parameter services in a system where all have them, and this part of all.
+SERVING, SERVING_PART = 5, 0.8
 # How the process of a Fast DDS participant starts: the vendor, then four digits for its machine.
 _FAST_DDS = "010f"
 _NUMBER = lazy_compile(r"\s*\+?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
@@ -235,10 +241,30 @@ def unfinished(
         remedy = "set ROS_SUPER_CLIENT=TRUE" if discovery_server else "look again"
         text = f"nodes without any endpoint: {shorten(bare, SEVERAL)}; the view is not complete,"
         yield Caveat("nodes-without-endpoints", True, f"{text} {remedy}")
+    if half := _without_readers(endpoints):
+        text = (
+            f"nodes that only publish and have no parameter services, as the others have:"
+            f" {shorten(half, SEVERAL)}; their other endpoints may not be seen yet, look again"
+        )
+        yield Caveat(WITHOUT_READERS, True, text)
     unknown = sorted({end.name for end in endpoints if UNKNOWN_NODE in end.node})
     if unknown:
         text = f"endpoints whose node is not known yet: {shorten(unknown, SEVERAL)}; look again"
         yield Caveat("node-name-unknown", True, text)
+
+
+def _without_readers(endpoints: Iterable[End]) -> list[str]:
+    """Return the nodes of which only publishers are seen, where nearly all others serve parameters: the
+    writers of a node are announced apart from its readers, which are services, too."""
+    roles: dict[str, set[str]] = defaultdict(set)
+    serving = set()
+    for end in endpoints:
+        roles[end.node].add(end.role)
+        if end.name.endswith("/get_parameters") and end.role == SERVES:
+            serving.add(end.node)
+    if len(serving) < max(SERVING, SERVING_PART * len(roles)):
+        return []
+    return sorted(it for it, own in roles.items() if own == {PUBLISHES} and not is_hidden(it))
 
 
 def participants(endpoints: Iterable[End]) -> int:

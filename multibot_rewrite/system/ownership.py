@@ -219,7 +219,7 @@ def name_ownership(plan: System) -> NameOwnership:
     planned = [(w.name, nodes[w.node]) for w in plan.ends if w.node in nodes]
     robots = {robot.name: robot.name for robot in plan.robots}
     tf = ((robot.tf_topic, robot.name) for robot in plan.robots)
-    last = _is_last((*nodes.items(), *planned, *tf))
+    last = _is_last({*nodes.items(), *planned, *tf})
     levels = max((name.count("/") + 1 for name in robots), default=1)
     draft = NameOwnership({}, nodes, robots, frozenset(), last, levels=levels)
     topics = _robots_of_topics(plan, draft)
@@ -298,8 +298,11 @@ def _of_one_robot(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
 
 def _is_last(names: Iterable[tuple[str, str]]) -> bool:
     """Whether the tag is more often at the end of a name than at its beginning."""
-    stripped = ((name.strip("/"), tag) for name, tag in names)
-    return sum(name.endswith(tag) - name.startswith(tag) for name, tag in stripped) > 0
+    more = 0
+    for name, tag in names:
+        plain = name.strip("/")
+        more += plain.endswith(tag) - plain.startswith(tag)
+    return more > 0
 
 
 def _words(names: Iterable[str]) -> set[str]:

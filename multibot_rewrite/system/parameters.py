@@ -9,10 +9,13 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.system.records import (
     SERVES,
     SERVICE,
+    SILENT,
     SIM_TIME,
+    Caveat,
     Controller,
     Node,
     Parameter,
@@ -49,15 +52,30 @@ class Answer(NamedTuple):
     controllers: tuple[Controller, ...] = ()
 
 
-def with_answers(system: System, answers: Iterable[Answer]) -> System:
-    """The system with what nodes said."""
+def with_answers(
+    system: System, answers: Iterable[Answer], asked: Iterable[Question] = ()
+) -> System:
+    """Return the system with what nodes answered; of those ``asked`` for parameters, which every node
+    has that serves them, it names the ones that did not."""
     said = tuple(answers)
+    silent = {it.node for it in asked if it.type == GET_PARAMETERS} - {it.node for it in said}
     states = {it.node: it.lifecycle for it in said if it.lifecycle}
+    caveats = (*system.environment.caveats, *_silent(silent))
     return system._replace(
+        environment=system.environment._replace(caveats=caveats),
         nodes=tuple(_in_state(it, states) for it in system.nodes) if states else system.nodes,
         parameters=(*system.parameters, *(own for it in said for own in it.parameters)),
         controllers=(*system.controllers, *(own for it in said for own in it.controllers)),
     )
+
+
+def _silent(nodes: Collection[str]) -> Iterator[Caveat]:
+    if nodes:
+        text = (
+            f"{shorten(sorted(nodes), SEVERAL)} did not answer --state within {ANSWER_SECONDS:g} s,"
+            " so what such a node does is not known; does it hang?"
+        )
+        yield Caveat(SILENT, True, text)
 
 
 def _in_state(node: Node, states: Mapping[str, str]) -> Node:

@@ -5,8 +5,6 @@ Names of nodes and ends are fully qualified, as rcl resolved them. What a file s
 Texts for people decide nothing.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -117,6 +115,8 @@ NOT_READ = "MF823"
 NOT_KNOWN_PROCESS = "MF859"
 # The code of a caveat: a node that was waited for did not come.
 WAITED_FOR = "expected-not-seen"
+# That of nodes that were asked for their state and did not answer.
+SILENT = "silent-nodes"
 
 
 class Qos(NamedTuple):
@@ -386,8 +386,9 @@ class System(NamedTuple):
 
 def surely(system: System) -> System:
     """The system without the ends that only may be there."""
-    ends = tuple(it for it in system.ends if it.sure == RUNS)
-    return system if len(ends) == len(system.ends) else system._replace(ends=ends)
+    # One object for most, which is told sooner than that all of its fields are the same.
+    ends = [it for it in system.ends if it.sure is RUNS or it.sure == RUNS]
+    return system if len(ends) == len(system.ends) else system._replace(ends=tuple(ends))
 
 
 def incomplete(system: System) -> tuple[Caveat, ...]:
@@ -401,6 +402,11 @@ def doubts(system: System) -> tuple[Caveat, ...]:
     That an expected node did not come is not one of them: once the graph is quiet it is missing.
     """
     return tuple(caveat for caveat in incomplete(system) if caveat.code != WAITED_FOR)
+
+
+def unseen(system: System) -> tuple[Caveat, ...]:
+    """Return the doubts about whether all nodes and ends are seen; those of a silent node are."""
+    return tuple(caveat for caveat in doubts(system) if caveat.code != SILENT)
 
 
 def clocks(system: System) -> dict[str, bool]:

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 
 from multibot_rewrite.system.records import (
     PUBLISHES,
+    RUNS,
     SUBSCRIBES,
     Edge,
     System,
@@ -36,15 +37,17 @@ def copying_nodes(plan: System) -> Mapping[str, str]:
     }
     if not home:
         return {}
-    plan = surely(plan)
-    senders = {it.node for it in plan.ends if it.role == PUBLISHES and it.name in _GLOBAL}
+    here = [it for it in plan.ends if it.name in _GLOBAL and it.role == PUBLISHES]
+    senders = {it.node for it in here if it.sure == RUNS}
+    if not senders:
+        return {}
     trees: dict[str, set[tuple[str, str]]] = defaultdict(set)
-    for end in plan.ends if senders else ():
+    for end in surely(plan).ends:
         if end.node in senders:
             trees[end.node].add((end.role, tree_topic(end.name)))
-    writes, nodes = {(PUBLISHES, _TF)}, nodes_by_robot(plan) if senders else {}
+    writes, nodes = {(PUBLISHES, _TF)}, nodes_by_robot(plan)
     found: dict[str, str] = {}
-    for robot in plan.robots if senders else ():
+    for robot in plan.robots:
         copies = {(SUBSCRIBES, home.get(robot.name, "")), *writes}
         own = [node for node in nodes[robot.name] if trees.get(node) in (copies, writes)]
         if any(trees[node] == copies for node in own):

@@ -10,7 +10,15 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.base.findings import codes
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding, Rule
+from multibot_rewrite.base.findings.finding import (
+    ERROR,
+    INCONCLUSIVE,
+    NOTE,
+    WARNING,
+    Finding,
+    Rule,
+    RulePage,
+)
 from multibot_rewrite.base.findings.formats import Report, plain, rendered
 from multibot_rewrite.base.findings.formats.plain import by_file, counts, inside, path_below
 from multibot_rewrite.base.model import Edit, UsageError
@@ -21,19 +29,19 @@ class WrittenRule(Rule):
     """A rule without a page."""
 
     what, why, fix = "It is. Really.", "It hurts.", "Do it."
-    bad, good, fixed, beside = "<a/>", "<b/>", "", {}  # type: ignore[var-annotated]
+    page = RulePage(bad="<a/>", good="<b/>")
 
 
 class FixedRule(WrittenRule):
     """A rule with a fix."""
 
-    bad, fixed = "<a>\n</a>", "<b/>"
+    page = RulePage(bad="<a>\n</a>", good="<b/>", fixed="<b/>")
 
 
 class RuleOfFiles(WrittenRule):
     """A rule about several files."""
 
-    good, beside = "", {"a.yaml": "x: 1\n", "empty": "", "b.stl": "\n"}
+    page = RulePage(bad="<a/>", beside={"a.yaml": "x: 1\n", "empty": "", "b.stl": "\n"})
 
 
 def rule(code: str, name: str, level: str = ERROR) -> dict[str, object]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.base import conventions, other_words
+from multibot_rewrite.base import conventions
 from multibot_rewrite.base.conventions import (
     chooses,
     is_from_outside,
@@ -13,6 +13,7 @@ from multibot_rewrite.base.conventions import (
     only_looks,
     team,
 )
+from multibot_rewrite.base.other_words import other_words
 
 
 def test_topics_that_robots_share() -> None:
@@ -147,6 +148,8 @@ def test_answers_are_options_and_keys_that_there_are() -> None:
         "stack": "stacks",
         "separators": "separator",
     }
-    assert {word: key for key, words in keys.items() for word in words.split()} == other_words.KEYS
-    assert {other_words.OPTIONS[it] for it in ("--again", "--overwrite")} == {"--force"}
-    assert other_words.OPTIONS["--inplace"] == "--in-place"
+    assert {word: key for key, words in keys.items() for word in words.split()} == other_words(
+        "keys"
+    )
+    assert {other_words("options")[it] for it in ("--again", "--overwrite")} == {"--force"}
+    assert other_words("options")["--inplace"] == "--in-place"

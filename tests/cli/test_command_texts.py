@@ -28,7 +28,7 @@ from multibot_rewrite.cli import (
     snapshot,
     unplanned,
 )
-from multibot_rewrite.cli.declared.shared import (
+from multibot_rewrite.cli.declared.options import (
     Command,
     Example,
     OptionGroup,
@@ -484,10 +484,10 @@ COMMAND = Command(
     (Example("multibot do a", "as it is"), Example("multibot do " + "b" * 60, "long"),
      Example("x" * 79)),
     (
-        OptionGroup("input, and more", (argument("file", "FILE", "the file"),)),
+        OptionGroup("input, and more", (argument("the file", "file", "FILE"),)),
         OptionGroup("output", (
-            choice("--form", "FORM", ("a", "b"), "100 % of it"),
-            switch("-q", "--quiet", about="say less"),
+            choice("100 % of it", "--form", "FORM", "a|b"),
+            switch("say less", "-q,--quiet"),
         )),
     ),
     "0 done; 2 wrong", "One paragraph.\n\n  as it is", fail_on="error",

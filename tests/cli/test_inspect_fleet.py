@@ -7,21 +7,11 @@ import json
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite.cli.multibot import main
 
-LAUNCH = """\
-from launch import LaunchDescription
-from launch.actions import TimerAction
-from launch_ros.actions import Node
-def generate_launch_description():
-    return LaunchDescription([
-        Node(package='nav2_map_server', executable='map_server', name='map_server'),
-        Node(package='own', executable='driver', parameters=['FOLDER/p.yaml', {'rate': 1}]),
-        TimerAction(period=1.0, actions=[Node(package='own', executable='late')]),
-        Node(package='rviz2', executable='rviz2'),
-    ])
-"""
+LAUNCH = fixture_text("inspect_fleet_launch.txt")
 FLEET = """\
 layout: both
 description: r.urdf

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite.cli.multibot import main
 
@@ -18,25 +19,7 @@ ROBOT = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   </xacro:if>
 </robot>
 """
-LAUNCH = """import os
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
-from launch.substitutions import Command, LaunchConfiguration
-from launch_ros.actions import Node
-
-FILE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "r.urdf.xacro")
-
-
-def generate_launch_description():
-    text = Command(["xacro ", FILE, " use_gazebo:=", VALUE])
-    return LaunchDescription([
-        DeclareLaunchArgument("NAME", default_value="DEFAULT"),
-        DeclareLaunchArgument("other_sim", default_value="false"),
-        Node(package="robot_state_publisher", executable="robot_state_publisher",
-             parameters=[{"robot_description": text}]),
-        Node(package="controller_manager", executable="spawner", arguments=["arm"]),
-    ])
-"""
+LAUNCH = fixture_text("manager_remedy_launch.txt")
 OTHERWISE = "start ros2_control_node there, load gz_ros2_control in the description, or name"
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from closed_robot import FILES
 from graph_cases import as_planned
+from paths import fixture_text
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.system.json import from_yaml, to_json
@@ -122,17 +123,7 @@ def test_a_plan_without_open_ends_says_nothing_of_them(
     assert "0 findings: as planned (" in capsys.readouterr().err
 
 
-ROVER = """\
-<robot name="rover">
-  <link name="base_link">
-    <inertial>
-      <mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>
-    </inertial>
-  </link>
-  <link name="laser"/>
-  <joint name="laser_joint" type="fixed"><parent link="base_link"/><child link="laser"/></joint>
-</robot>
-"""
+ROVER = fixture_text("open_plan_rover.urdf")
 FAULTY = """\
 ekf_filter_node:
   ros__parameters:

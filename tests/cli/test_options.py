@@ -20,10 +20,8 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS, make_naming
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
-from multibot_rewrite.cli.declared import shared
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.declared.fleet import PLAN_FORMS
-from multibot_rewrite.cli.declared.shared import Command
+from multibot_rewrite.cli.declared.options import Command
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.usage import check_xacro, policy, robots, separators, xacro_args
@@ -36,7 +34,7 @@ ROVER = str(FIXTURES / "robots" / "rover.urdf")
 ARM = str(FIXTURES / "xacros" / "arm.urdf.xacro")
 FLEET = str(ROOT / "examples" / "launch_tutorial" / "fleet.yaml")
 PARAMS = str(ROOT / "examples" / "namespace_and_prefix" / "nav2_params.yaml")
-ALL = {**COMMANDS, **{it.name: it for it in PROGRAMS}}
+ALL = {**COMMANDS, **PROGRAMS}
 EVERY = {"-q", "--quiet", "-v", "--verbose", "--color", "--version", "-h", "--help"}
 OUTPUT = {"-o", "--output"}
 NAMING = {"--layout", "--affix", "--topics", "--separator", "--shared"}
@@ -76,7 +74,8 @@ def test_an_option_has_one_help_wherever_it_is() -> None:
 
 
 def test_the_choices_are_those_of_the_modules_that_know_them() -> None:
-    assert ("plan", "table", *FORMS, "bridge", "sros2") == PLAN_FORMS
+    forms = COMMANDS["plan"].option("--form").keywords["choices"]
+    assert ("plan", "table", *FORMS, "bridge", "sros2") == forms
     assert MAX_DOMAIN == environment.MAX_DOMAIN
     layouts = {name for it in LAYOUTS for name in (it.name, it.short)}
     for name in DESCRIPTION:
@@ -88,7 +87,7 @@ def test_the_choices_are_those_of_the_modules_that_know_them() -> None:
 
 
 def test_the_default_of_what_is_shared_may_be_given() -> None:
-    text = next(it for it in shared.NAMING.options if "--shared" in it.names).help
+    text = COMMANDS["plan"].option("--shared").help
     words = policy(given("plan", ROVER, "--shared", text.rpartition("default: ")[2]))
     assert make_naming(**words) == make_naming()
 
@@ -375,7 +374,7 @@ def test_help_in_colour(capsys: pytest.CaptureFixture[str]) -> None:
     assert "\033" not in plain
 
 
-@pytest.mark.parametrize("name", [*COMMANDS, *(it.name for it in PROGRAMS)])
+@pytest.mark.parametrize("name", [*COMMANDS, *PROGRAMS])
 def test_the_short_help_fits_a_screen_and_names_every_option(
     name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

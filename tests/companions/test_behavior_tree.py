@@ -16,6 +16,7 @@ from companion_calls import (
 )
 from hypothesis import given, strategies as st
 from lxml import etree
+from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
@@ -150,20 +151,7 @@ def test_a_port_that_is_set_is_not_inserted() -> None:
     assert run(text, context(distro="lyrical"))[0] == text
 
 
-SUBTREES = """<root BTCPP_format="4">
-  <!-- service_name="/clear" -->
-  <BehaviorTree ID="Main">
-    <SubTree ID="Clean" costmap="/clear" spot="base_link" other="/clear" robot_base_frame="tool"/>
-    <SetBlackboard value="odom" output_key="far"/>
-    <SubTree ID="Deeper" where="{far}"/>
-  </BehaviorTree>
-  <BehaviorTree ID="Clean">
-    <Sequence><ClearEntireCostmap service_name="{costmap}"/>
-    <SubTree ID="Deeper" where="{spot}"/></Sequence>
-  </BehaviorTree>
-  <BehaviorTree ID="Deeper"><GoalReached robot_base_frame="{where}"/></BehaviorTree>
-</root>
-"""
+SUBTREES = fixture_text("behavior_tree_subtrees.xml")
 
 
 def test_literals_are_followed_into_subtrees() -> None:

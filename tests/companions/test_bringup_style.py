@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 import yaml
-from paths import FIXTURES, SUPPORT
+from paths import FIXTURES, SUPPORT, fixture_text
 
 from multibot_rewrite import InputError, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
@@ -25,29 +25,8 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
 CHILD = SUPPORT / "rcl_params_child.py"
-PARAMS = """\
-/**:
-  ros__parameters: {use_sim_time: false, everyones: 1}
-amcl:  # its own
-  ros__parameters: {base_frame_id: base_link, alpha1: 0.2}
-local_costmap:
-  local_costmap:
-    ros__parameters: {global_frame: odom, robot_base_frame: base_link}
-slam_toolbox:
-  ros__parameters: {odom_frame: odom, base_frame: base_link, map_frame: map}
-"""
-FLEET = """\
-layout: {layout}
-affix: prefix
-distro: jazzy
-stack: [nav2, slam_toolbox]
-params_style: bringup
-{more}
-robots:
-  - {{name: robot1, namespace: {namespace}, description: rover.urdf}}
-  - {{name: robot2, description: rover.urdf}}
-companions: {{params: params.yaml}}
-"""
+PARAMS = fixture_text("bringup_style_params.yaml")
+FLEET = fixture_text("bringup_style_fleet.yaml")
 
 
 def built(

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.fleet.build import make_outputs
@@ -19,26 +20,7 @@ from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 URDF = '<robot name="rover"><link name="base_link"/></robot>'
-PARAMS = """\
-rosbridge_websocket:
-  ros__parameters:
-    port: {port}
-waypoint_follower:
-  ros__parameters:
-    waypoint_task_executor_plugin: photo
-    photo:
-      plugin: "nav2_waypoint_follower::PhotoAtWaypoint"
-      save_dir: /tmp/photos
-ekf_filter_node:
-  ros__parameters:
-    debug_out_file: "~/logs/ekf.debug.txt"
-camera:
-  ros__parameters:
-    device: /dev/video0
-    save_path: /tmp/pictures
-    stream_port: 8554
-    width: 8554
-"""
+PARAMS = fixture_text("own_values_params.yaml")
 
 
 def _built(folder: Path, robots: str, port: str = "9090") -> tuple[dict[str, str], list[Finding]]:
@@ -101,22 +83,7 @@ def test_a_file_of_one_robot_keeps_its_port(tmp_path: Path) -> None:
     assert [word for word in (*same, "9090", "9191") if word in told] == list(same)
 
 
-ARM = """\
-<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="ip" default="10.0.0.2"/>
-  <xacro:macro name="hardware" params="address">
-    <ros2_control name="arm" type="system">
-      <hardware>
-        <plugin>{plugin}</plugin>
-        <param name="robot_ip">${{address}}</param>
-        <param name="channel">can0</param>
-      </hardware>
-    </ros2_control>
-  </xacro:macro>
-  <link name="base_link"/>
-  <xacro:hardware address="$(arg ip)"/>
-</robot>
-"""
+ARM = fixture_text("own_values_arm.urdf")
 DRIVERS = """\
 lidar:
   ros__parameters: {device_ip: 192.168.1.201, host_ip: 192.168.1.100}

@@ -38,7 +38,7 @@ from params_corpus import (
     is_filled,
     is_respelled,
 )
-from paths import SUPPORT
+from paths import SUPPORT, fixture_text
 from real_robots import spread
 
 from multibot_rewrite.base.findings.finding import ERROR
@@ -54,28 +54,7 @@ pytestmark = [
 ]
 CHILD = SUPPORT / "rcl_params_child.py"
 SECONDS = 300
-OWN = """\
-amcl:
-  ros__parameters: {alpha1: 0.2, base_frame_id: base_link}
-local_costmap:
-  local_costmap:
-    ros__parameters:
-      width: 3
-      robot_base_frame: base_link
-/**/collision_monitor:
-  ros__parameters: {odom_frame_id: odom, base_frame_id: base_link}
-diff_drive_controller:
-  ros__parameters:
-    left_wheel_names: [left]
-    right_wheel_names: ['y']
-joint_trajectory_controller:
-  ros__parameters:
-    joints: [left]
-    gains.left.p: 1.0
-    constraints: {left: {goal: 0.1}}
-amcl:
-  ros__parameters: {alpha2: 0.3, odom_frame_id: odom}
-"""
+OWN = fixture_text("params_rcl_own.yaml")
 
 
 class Case:

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 import yaml
 from hypothesis import given, strategies as st
+from paths import fixture_text
 from rviz_robots import robots_of
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -23,97 +24,7 @@ from multibot_rewrite.rules.files.judge import judged_once
 
 ROBOTS = ("robot1", "robot2")
 DECLARED = {"link": dict.fromkeys(("base_link", "base_scan", "wheel")), "joint": {"hip": None}}
-CONFIG = """\
-Panels:
-  - Class: rviz_common/Displays
-    Name: Displays
-    Property Tree Widget:
-      Expanded:
-        - /Global Options1
-        - /Scan1/Topic1
-        - /TF1/Frames1
-      Splitter Ratio: 0.5
-  - Class: nav2_rviz_plugins/Navigation 2
-    Name: Navigation 2
-  - Class: slam_toolbox::SlamToolboxPlugin
-    Name: Slam
-  - Class: rviz_common/Time
-    Name: Time
-    SyncSource: Eye
-Visualization Manager:
-  Class: ""
-  Displays:
-    - Class: rviz_default_plugins/Grid
-      Name: Grid  # stays once
-      Reference Frame: <Fixed Frame>
-    # what the lidar sees
-    - Class: "rviz_default_plugins/LaserScan"
-      Color: 255; 0; 0
-      Color Transformer: FlatColor
-      Name: 'Scan'
-      Topic:
-        Depth: 5
-        Value: "/scan"  # absolute
-      Value: true
-    - Class: rviz_default_plugins/TF
-      Filter (whitelist): ""
-      Frames:
-        All Enabled: false
-        base_link:
-          Value: true
-        map:
-          Value: true
-      Name: TF
-      Tree:
-        map:
-          base_link:
-            {}
-    - Class: rviz_common/Group
-      Displays:
-        - Class: rviz_default_plugins/Image
-          Name: Eye
-          Topic:
-            Value: eye/image
-        - Class: rviz_default_plugins/Axes
-          Name: Origin
-          Reference Frame: map
-        - Class: moveit_rviz_plugin/MotionPlanning
-          Name: Plan
-      Enabled: true
-      Name: Both
-    - Class: rviz_default_plugins/RobotModel
-      Description Topic:
-        Durability Policy: Transient Local
-        Value: <robot_namespace>/robot_description
-      Links:
-        All Links Enabled: true
-        base_link:
-          Alpha: 1
-      Name: RobotModel
-      TF Prefix: ""
-  Global Options:
-    Fixed Frame: odom
-  Name: root
-  Tools:
-    - Class: rviz_default_plugins/MoveCamera
-    - Class: rviz_default_plugins/SetGoal
-    - Class: rviz_default_plugins/SetInitialPose
-      Covariance x: 0.25
-      Topic:
-        Value: /initialpose
-    - Class: nav2_rviz_plugins/GoalTool
-  Views:
-    Current:
-      Class: rviz_default_plugins/Orbit
-      Name: Current View
-      Target Frame: base_link
-    Saved: ~
-Window Geometry:
-  Eye:
-    collapsed: false
-  QMainWindow State: 000000ff
-  Width: 1200
-"""
+CONFIG = fixture_text("rviz_config.yaml")
 
 
 def declared(**more: dict[str, Any]) -> Any:

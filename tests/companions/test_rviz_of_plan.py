@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import yaml
-from paths import ROBOTS
+from paths import ROBOTS, fixture_text
 from plans import planned_end
 
 from multibot_rewrite.cli.multibot import main
@@ -87,64 +87,7 @@ def test_one_window_has_a_group_for_each_robot() -> None:
     assert goals == ["/robot1/goal_pose", "/robot2/goal_pose"]
 
 
-WHOLE = """\
-Panels:
-  - Class: rviz_common/Displays
-    Name: Displays
-Visualization Manager:
-  Class: ""
-  Displays:
-    - Class: rviz_default_plugins/Grid
-      Name: Grid
-      Enabled: true
-    - Class: rviz_default_plugins/TF
-      Name: TF
-      Enabled: true
-    - Class: rviz_common/Group
-      Name: robot1
-      Enabled: true
-      Displays:
-        - Class: rviz_default_plugins/RobotModel
-          Name: RobotModel
-          Enabled: true
-          Description Source: Topic
-          TF Prefix: ""
-          Description Topic:
-            Durability Policy: "Transient Local"
-            Value: /robot1/robot_description
-        - Class: rviz_default_plugins/Map
-          Name: /robot1/map
-          Enabled: true
-          Topic:
-            Durability Policy: "Transient Local"
-            Value: /robot1/map
-        - Class: rviz_default_plugins/Path
-          Name: /robot1/plan
-          Enabled: true
-          Topic:
-            Value: /robot1/plan
-          Color: "230; 159; 0"
-        - Class: rviz_default_plugins/LaserScan
-          Name: /robot1/scan
-          Enabled: true
-          Topic:
-            Reliability Policy: "Best Effort"
-            Value: /robot1/scan
-          Color: "230; 159; 0"
-          Color Transformer: FlatColor
-  Global Options:
-    Fixed Frame: map
-  Tools:
-    - Class: rviz_default_plugins/MoveCamera
-    - Class: rviz_default_plugins/Select
-    - Class: rviz_default_plugins/SetGoal
-      Topic:
-        Value: /robot1/goal_pose
-  Views:
-    Current:
-      Class: rviz_default_plugins/Orbit
-      Distance: 10
-"""
+WHOLE = fixture_text("rviz_of_plan_whole.yaml")
 
 
 def test_the_whole_config_of_a_robot() -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from paths import fixture_text
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions import named_file
@@ -135,17 +136,7 @@ def test_anchors_and_aliases_are_found() -> None:
     refuse_anchors(read("a: 1 & 2\n"))
 
 
-LIST = """\
-# head
-- a: 1
-  b: |
-    text
-# about the second
-- {a: 2}
-
-- a: 3
-# end
-"""
+LIST = fixture_text("yaml_pieces_list.txt")
 
 
 def test_entries_are_whole_lines_with_the_comments_above_them() -> None:

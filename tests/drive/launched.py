@@ -20,23 +20,12 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from paths import fixture_text
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "support"))
 
 # A launch file of another package that does nothing but say with what it was included.
-INCLUDED = """\
-import json
-from launch import LaunchDescription
-from launch.actions import ExecuteProcess, OpaqueFunction
-
-
-def said(context):
-    return [ExecuteProcess(cmd=[f"include|{__file__}", json.dumps(context.launch_configurations)])]
-
-
-def generate_launch_description():
-    return LaunchDescription([OpaqueFunction(function=said)])
-"""
+INCLUDED = fixture_text("launched_included.txt")
 
 
 class Values(yaml.SafeLoader):

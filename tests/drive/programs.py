@@ -81,8 +81,15 @@ GIVEN = {
     # moveit_cpp.hpp, PlanningSceneMonitorOptions
     ("move_group", "<topic>"): ("planning_scene_monitor_options.joint_state_topic", "joint_states"),
 }
-# What a class asks itself before it makes an end for the first time (planning_scene_monitor.cpp).
-ONCE = ("!current_state_monitor_",)
+# What a class asks itself before it makes an end for the first time (planning_scene_monitor.cpp). Since
+# Jazzy debayer.cpp and rectify.cpp ask where somebody listens to what they send: here somebody does.
+ONCE = ("!current_state_monitor_", "!sub_raw_", "!sub_camera_")
+# What is made of what came, and is no sensor's.
+MAKING = ("DebayerNode", "RectifyNode")
+# image_transport's publishers and subscribers of image_pipeline have no type in their calls: what is no
+# camera's info is an image (image_proc/src/*.cpp, depth_image_proc/src/*.cpp).
+PIPELINE, INFO = "image_pipeline", "sensor_msgs/msg/CameraInfo"
+OF_HUMBLE = ("RectifyNode", "<camera_info>", "humble")
 # Goals by the word of MoveIt for them (moveit_simple_controller_manager.cpp).
 GOALS = {
     it: f"control_msgs/action/{it}"
@@ -141,12 +148,20 @@ def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opene
     """The ends of a node with these parameters."""
     for row in table(release).get(SAME.get(node, node), ()):
         name = led_by(node, row, values)
+        # Until Jazzy rectify.cpp names its image as it stands in the code (camera_subscriber.cpp:119).
+        name = "camera_info" if (node, name, release) == OF_HUMBLE else name
         if node == "rtabmap" and name in SYNCHRONISED and name not in synchronised(values):
             continue
         met = [is_met(it, values, release) for it in row["condition"].split("; ") if it]
         if False not in met:
             sure = "<" not in name and None not in met
-            yield Opened(row["role"], name, row["type"], sure, row["way"] == "helper")
+            yield Opened(row["role"], name, type_of(row), sure, row["way"] == "helper")
+
+
+def type_of(row: Mapping[str, str]) -> str:
+    if row["type"] or row["repository"] != PIPELINE:
+        return row["type"]
+    return INFO if "info" in row["name"].lower() else "sensor_msgs/msg/Image"
 
 
 def synchronised(values: Mapping[str, Any]) -> set[str]:

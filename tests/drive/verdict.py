@@ -40,6 +40,7 @@ SEEN = tuple(
     for it in (
         *("sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2"),
         *("sensor_msgs/msg/Imu", "sensor_msgs/msg/JointState", "nav_msgs/msg/Odometry"),
+        "sensor_msgs/msg/CameraInfo",
     )
 )
 JOINT_STATE = "sensor_msgs/msg/JointState"
@@ -320,11 +321,12 @@ def senders_of(fleet: Fleet, name: str, kind: str) -> Iterator[str]:
 
 
 def offered(fleet: Fleet, robot: str, kind: str) -> set[str]:
-    """The topics on which a robot has such messages."""
+    """The topics on which a robot has such messages, but for those that are made of others."""
+    made = {it.fqn for it in fleet.nodes if it.what in programs.MAKING}
     ends = {
         it.name
         for it in fleet.ends
-        if it.robot == robot and it.role == "publishes" and it.type == kind
+        if it.robot == robot and it.role == "publishes" and it.type == kind and it.node not in made
     }
     model = fleet.models.get(robot)
     own = {it.topic for it in fleet.gz if it.model == model and it.role == "sends"}

@@ -22,18 +22,18 @@ from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.settings import Settings
 
 ROBOTS = "robots: [{name: robot1, pose: {y: 0}}, {name: robot2, pose: {y: 3}}]\n"
-ASKED = [it for it in RULES.values() if it.level == ERROR and URDF in it.formats and it.bad]
+ASKED = [it for it in RULES.values() if it.level == ERROR and URDF in it.formats and it.page.bad]
 
 
 def described(rule: Rule, folder: Path) -> Path:
     """The bad example of a rule; where it has a package beside it, in this package."""
-    for name, text in rule.beside.items():
+    for name, text in rule.page.beside.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text)
     home = next(folder.glob("*/package.xml"), folder / "package.xml").parent
-    ending = "urdf.xacro" if "xmlns:xacro" in rule.bad else "urdf"
+    ending = "urdf.xacro" if "xmlns:xacro" in rule.page.bad else "urdf"
     file = home / f"example.{ending}"
-    file.write_text(whole(rule.bad))
+    file.write_text(whole(rule.page.bad))
     return file
 
 
@@ -90,7 +90,7 @@ def test_a_plugin_without_its_file_of_controllers(
     assert [it.code for it in said(file, simulator) if it.code == "MB234"] == expected
 
 
-MAY_BE = [it.code for it in RULES.values() if may_stop(it) and URDF in it.formats and it.bad]
+MAY_BE = [it.code for it in RULES.values() if may_stop(it) and URDF in it.formats and it.page.bad]
 # A system of the world is moved from the description to the world.
 ELSEWHERE = {"MB160"}
 # The rewrite refuses them, whatever is ignored.
@@ -138,9 +138,9 @@ def test_the_built_folder_has_the_errors_of_its_build(
 
 
 _OF_NODE = "{}: {{ros__parameters: {{{}}}}}\n"
-_OF_FILES = [it for it in RULES.values() if "params" in it.formats and "ros__" in it.bad]
+_OF_FILES = [it for it in RULES.values() if "params" in it.formats and "ros__" in it.page.bad]
 PARAMS = {
-    **{it.code: (it.bad, it.beside) for it in _OF_FILES},
+    **{it.code: (it.page.bad, it.page.beside) for it in _OF_FILES},
     # Of one code many values: what rclcpp and the nodes of Nav2 say of them.
     **{value: (_OF_NODE.format(node, value), {}) for node, value in (
         ("amcl", "max_beams: 60.5"),

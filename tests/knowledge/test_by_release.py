@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES
@@ -12,34 +13,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import in_release
 
 NOTHING = NodeLibrary({}, {}, {})
-DOCK = """
-parts:
-  reloading:
-    serves:
-      ~/reload: {type: std_srvs/srv/Trigger, releases: jazzy 1.3.9+}
-nodes:
-  docking_server:
-    package: opennav_docking
-    with: [reloading]
-    releases: jazzy+
-    publishes:
-      dock_pose: geometry_msgs/msg/PoseStamped
-      staging_pose: {type: geometry_msgs/msg/PoseStamped, releases: "jazzy 1.3.9+, kilted+"}
-      cmd_vel:
-        - {type: geometry_msgs/msg/Twist, releases: <=jazzy}
-        - {type: geometry_msgs/msg/TwistStamped, releases: kilted+}
-    frames:
-      base_frame: base_link
-      fixed_frame: {default: odom, releases: kilted+}
-    sends: {fixed_frame: base_frame}
-  camera: {package: camera}
-  later: {package: later, releases: lyrical}
-stacks:
-  docks: {nodes: [docking_server]}
-  all: {include: [docks], nodes: [camera, {node: camera, as: second, releases: humble}]}
-  nobody: {about: leaves something out}
-  new: {releases: rolling, nodes: [camera]}
-"""
+DOCK = fixture_text("by_release_dock.yaml")
 
 
 def library(release: str, text: str = DOCK) -> NodeLibrary:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -60,86 +61,7 @@ from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SY
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 
 EMPTY = NodeLibrary({}, {}, {})
-FILE = """\
-parts:
-  listener: {subscribes: {/tf: tf2_msgs/msg/TFMessage}}
-sent: [earth]
-guesses: {frame: [frame_id], link: ["*_link"]}
-nodes:
-  costmap/driver:
-    package: acme
-    shared: true
-    note: a note
-    host: server
-    plugin: gz
-    when: simulated
-    fixed: [/x]
-    apart: true
-    programs: [drive, other/run]
-    component: acme::Driver
-    prefix_switch: prefixed
-    unmanaged: <=humble
-    releases: jazzy+
-    source: acme/driver@1.0 src/driver.cpp:7
-    with: [listener]
-    ids: {sensor: sensors}
-    publishes:
-      scan: sensor_msgs/msg/LaserScan
-      <name>/out:
-        type: a/msg/B
-        also: [a/msg/C]
-        types: {"stamped = true": a/msg/C}
-        parameter: topic
-        transport: true
-        remapped: out
-        when: "unsent: x"
-        if: publish
-        helper: true
-        above: humble
-        note: said
-        releases: jazzy
-        source: [acme/driver@1.0 a.cpp, acme/driver@main b.cpp]
-    subscribes:
-      map: {type: nav_msgs/msg/OccupancyGrid, by: _private_*}
-    serves: {reset: std_srvs/srv/Empty, go: acme_msgs/action/Go}
-    calls:
-      go:
-        - {type: a/action/Old, releases: <=humble}
-        - {type: a/action/New, releases: jazzy+}
-    frames:
-      odom: odom
-      base: {default: base_link, releases: jazzy, source: acme/driver@1.0 c.cpp}
-    sends:
-      odom: base
-      map_frame: {child: odom, if: publish_tf}
-    claims:
-      - {command: "<joints>/velocity", if: open_loop, releases: jazzy+}
-      - {state: ["<joints>/position", imu/x]}
-    aliases: [rover]
-    types: [acme/Driver]
-    deprecated_types: {acme/Old: jazzy+}
-    known_by: [wheels]
-    absolute: <=jazzy
-    strips: humble
-    declared_in: [acme_lib]
-    params:
-      map_frame: {kind: frame, default: map, releases: jazzy, source: acme/driver@1.0 d.cpp}
-      topic: topic
-      other: {kind: topic, absolute: rolling}
-      third: {kind: topic}
-      names: {kind: joint, deprecated: kilted+, own: true, instead: [x], note: n}
-stacks:
-  cell:
-    about: what it is
-    include: [base]
-    container: box
-    releases: jazzy+
-    nodes:
-      - costmap/driver
-      - {node: plain, as: renamed, plugin: p, shared: true, when: sim, releases: kilted,
-         with: [listener], remaps: {out: in}, parameters: {rate: "5"}}
-  base: {nodes: [box]}
-"""
+FILE = fixture_text("entries_file.yaml")
 PLAIN = "  plain: {publishes: {out: a/msg/B}}\n  box: {package: rclcpp_components}\n"
 LIBRARY = extend(EMPTY, FILE.replace("stacks:\n", f"{PLAIN}stacks:\n"), "f.yaml")
 TF = Endpoint("topic", "subscribes", "/tf", "tf2_msgs/msg/TFMessage")

@@ -10,44 +10,14 @@ from typing import Any
 import pytest
 import yaml
 from nodl_schema_file import nodl_validator
+from paths import fixture_text
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.nodl.document import parse
 from multibot_rewrite.system.records import ACTION, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 # Written by hand after the schema of ros-tooling/nodl: each key of it once.
-WHOLE = """\
-nodl_version: 2
-description: A gripper
-codegen:
-  cpp: {class: acme::Gripper}
-parameters:
-  tool_frame: {type: string, default_value: tool0, description: where it grips}
-  force: {type: double, default_value: 2.5, read_only: true, validation: {bounds<>: [0.0, 5.0]}}
-  fingers: {type: string_array_fixed_3, additional_constraints: three}
-publishers:
-  - name: joint_states
-    type: sensor_msgs/msg/JointState
-    description: both fingers
-    qos: {history: KEEP_LAST, depth: 10, reliability: RELIABLE, durability: VOLATILE, deadline_ns: 0}
-  - name: /diagnostics
-    type: diagnostic_msgs/DiagnosticArray
-    qos: {history: KEEP_ALL, reliability: BEST_AVAILABLE}
-subscriptions:
-  - name: ~/target
-    type: std_msgs/msg/Float64
-    qos:
-      {history: SYSTEM_DEFAULT, reliability: BEST_EFFORT, liveliness: AUTOMATIC, lifespan_ns: 5,
-       liveliness_lease_duration_ns: 7}
-service_servers:
-  - {name: ~/close, type: std_srvs/srv/Trigger, qos: {history: KEEP_ALL, reliability: RELIABLE}}
-service_clients:
-  - {name: lamp/set, type: std_srvs/SetBool}
-action_servers:
-  - {name: grip, type: control_msgs/action/GripperCommand}
-action_clients:
-  - {name: /arm/move, type: control_msgs/FollowJointTrajectory, description: of the arm}
-"""
+WHOLE = fixture_text("nodl_document_whole.yaml")
 ENDPOINT = "nodl_version: 2\npublishers:\n  - "
 QOS = "qos: {history: KEEP_ALL, reliability: RELIABLE}"
 LAST = "qos: {history: KEEP_LAST, reliability: RELIABLE"

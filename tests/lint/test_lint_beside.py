@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES, ROBOTS
+from paths import FIXTURES, ROBOTS, fixture_text
 
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.companions.named_file import BRIDGE, MOVEIT, PARAMS, RVIZ, is_linted, kind_of
@@ -24,86 +24,9 @@ from tools.interfaces.declared_table import ID, plugin_owners, table
 from tools.interfaces.parameter_facts import read_parameters
 
 SHIPPED = Path(FILE)
-CONTROLLERS = """\
-controller_manager:
-  ros__parameters:
-    update_rate: 100
-    drive: {type: diff_drive_controller/DiffDriveController}
-    arm: {type: joint_trajectory_controller/JointTrajectoryController}
-drive:
-  ros__parameters:
-    left_wheel_names: [left_wheel_joint]
-    right_wheel_names: [right_wheel_joint]
-    wheel_separation: 0.34
-    wheel_radius: 0.07
-    base_frame_id: base_link
-    linear.x.max_velocity: 1.0
-    linear:
-      x:
-        max_acceleration: 2.0
-arm:
-  ros__parameters:
-    joints: [left_wheel_joint, right_wheel_joint]
-    command_interfaces: [position]
-    state_interfaces: [position, velocity]
-    constraints: {left_wheel_joint: {goal: 0.1}}
-"""
-NAV = """\
-amcl:
-  ros__parameters:
-    base_frame_id: base_footprint
-    laser_max_range: 12.0
-    max_particles: 2000
-    tf_broadcast: true
-    scan_topic: scan
-controller_server:
-  ros__parameters:
-    controller_frequency: 20.0
-    controller_plugins: [FollowPath]
-    FollowPath:
-      plugin: nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController
-      desired_linear_vel: 0.5
-"""
-PLUGINS = """\
-controller_server:
-  ros__parameters:
-    controller_plugins: [Dwb, Mppi]
-    Dwb:
-      plugin: dwb_core::DWBLocalPlanner
-      max_vel_x: 0.5
-      vx_samples: 20
-      critics: [BaseObstacle, GoalDist]
-      BaseObstacle.scale: 0.02
-      GoalDist: {scale: 24.0, aggregation_type: last}
-    Mppi:
-      plugin: nav2_mppi_controller::MPPIController
-      batch_size: 2000
-      TrajectoryVisualizer: {time_step: 3}
-      critics: [CostCritic]
-      CostCritic: {cost_weight: 3.81, critical_cost: 300.0}
-planner_server:
-  ros__parameters:
-    planner_plugins: [GridBased]
-    GridBased:
-      plugin: nav2_smac_planner::SmacPlannerHybrid
-      angle_quantization_bins: 72
-      smoother: {w_smooth: 0.3}
-local_costmap:
-  local_costmap:
-    ros__parameters:
-      plugins: [voxel_layer, inflation_layer]
-      voxel_layer:
-        plugin: nav2_costmap_2d::VoxelLayer
-        z_voxels: 16
-        observation_sources: scan
-        scan: {raytrace_max_range: 3.0, marking: true}
-      inflation_layer:
-        plugin: nav2_costmap_2d::InflationLayer
-        inflation_radius: 0.55
-behavior_server:
-  ros__parameters:
-    backup: {plugin: nav2_behaviors/BackUp, acceleration_limit: 2.5}
-"""
+CONTROLLERS = fixture_text("lint_beside_controllers.yaml")
+NAV = fixture_text("lint_beside_nav.yaml")
+PLUGINS = fixture_text("lint_beside_plugins.yaml")
 MONITOR = """\
 collision_monitor:
   ros__parameters:
@@ -113,17 +36,7 @@ collision_monitor:
     observation_sources: [scan]
     scan: {type: scan, topic: scan, source_timeout: 1.0, obstacles_angle: 0.1}
 """
-SHIM = """\
-controller_server:
-  ros__parameters:
-    FollowPath:
-      plugin: nav2_rotation_shim_controller::RotationShimController
-      primary_controller: dwb_core::DWBLocalPlanner
-      angular_dist_threshold: 0.785
-      max_vel_x: 0.5
-      critics: [GoalDist]
-      GoalDist.scale: 24.0
-"""
+SHIM = fixture_text("lint_beside_shim.yaml")
 VIEW = """\
 Visualization Manager:
   Global Options:
@@ -148,19 +61,7 @@ joint_limits:
     has_velocity_limits: true
     max_velocity: 1.0
 """
-COSTMAPS = """\
-local_costmap:
-  local_costmap:
-    ros__parameters:
-      plugins: [inflation_layer]
-      inflation_layer: {plugin: "nav2_costmap_2d::InflationLayer"}
-      static_layer: {map_subscribe_transient_local: true}
-global_costmap:
-  global_costmap:
-    ros__parameters:
-      plugins: [static_layer]
-      static_layer: {plugin: "nav2_costmap_2d::StaticLayer"}
-"""
+COSTMAPS = fixture_text("lint_beside_costmaps.yaml")
 DOCKS = """\
 docking_server:
   ros__parameters:

@@ -18,7 +18,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.findings.formats import FORMATS
-from multibot_rewrite.cli.declared.description import LINT
+from multibot_rewrite.cli.declared.commands import PROGRAMS
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.lint.registry import RULES
 
@@ -233,7 +233,12 @@ def test_json_is_there_when_nothing_is_found(capsys: pytest.CaptureFixture[str])
 
 def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     out = said(capsys, "--help")[1]
-    options = {name for group in LINT.groups for it in group.options for name in it.names[-1:]}
+    options = {
+        name
+        for group in PROGRAMS["urdf-lint"].groups
+        for it in group.options
+        for name in it.names[-1:]
+    }
     options -= {"words"}
     assert [it for it in options if it not in out] == []
 

@@ -345,7 +345,7 @@ def test_sarif_has_every_rule_with_its_words(nasty: Linted) -> None:
         rule = RULES[it["id"]]
         assert it["defaultConfiguration"]["level"] == rule.level
         assert all(len(it[key]["text"]) <= 1024 for key in ("shortDescription", "fullDescription"))
-        words = (rule.what, rule.why, rule.fix, rule.bad, rule.good)
+        words = (rule.what, rule.why, rule.fix, rule.page.bad, rule.page.good)
         for reported in it["help"].values():
             assert all(word in reported for word in words)
 

@@ -50,7 +50,6 @@ def test_a_lint_of_a_urdf_loads_nothing_for_other_files(tmp_path: Path) -> None:
     run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)
     others = (
         *(
-            "cli.declared.fleet",
             "lint.registry",
             "rules.description.srdf",
             "rules.description.multirobot.meeting",

@@ -19,7 +19,7 @@ import yaml
 from junitparser import JUnitXml
 from paths import ROOT
 
-from multibot_rewrite.cli.declared.description import LINT
+from multibot_rewrite.cli.declared.commands import PROGRAMS
 from multibot_rewrite.cli.lint import check_use
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.urdf_lint import main
@@ -145,7 +145,7 @@ def test_the_page_shows_commands() -> None:
 
 @pytest.mark.parametrize("line", shown_commands())
 def test_a_command_of_the_page_is_a_right_one(line: str) -> None:
-    check_use(parsed(make_parser(LINT), shlex.split(line)))
+    check_use(parsed(make_parser(PROGRAMS["urdf-lint"]), shlex.split(line)))
 
 
 def lint(line: str) -> int:

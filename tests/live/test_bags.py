@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import small_fleet
 from graph_calls import check, to_yaml
 
 pytest.importorskip("rosbags")
@@ -17,6 +18,7 @@ from made_bags import ROBOTS, SCAN, TEXT, TF, TWIST, Made, healthy, plan, write
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.producers.bags.read import RecordedTopic, Recording, read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
+from multibot_rewrite.system.records import Edge, System
 
 Topics = dict[str, Made]
 
@@ -109,6 +111,19 @@ FAULTS: dict[str, tuple[Callable[[Topics], None], set[str], str]] = {
         {"MG405", "MG412"},
         "robot2/base_link of robot2 is on /robot1/tf, expected on /robot2/tf",
     ),
+    "the other robot's fixed transforms": (
+        changed("/robot1/tf_static", edges=edges("robot2/base_link robot2/laser")),
+        {"MG405", "MG412"},
+        "robot2/laser of robot2 is on /robot1/tf, expected on /robot2/tf",
+    ),
+    "all of the other robot's transforms as well": (
+        changed(
+            "/robot1/tf",
+            edges=edges("robot1/odom robot1/base_link", "robot2/odom robot2/base_link"),
+        ),
+        {"MG405"},
+        "robot2/base_link of robot2 is on /robot1/tf, expected on /robot2/tf",
+    ),
     "frames without the robot's name": (
         both(
             changed("/robot1/tf", edges=edges("odom base_link")),
@@ -123,6 +138,46 @@ FAULTS: dict[str, tuple[Callable[[Topics], None], set[str], str]] = {
         "robot1/robot1/base_link",
     ),
 }
+
+
+def placed(layout: str, topic: Callable[[Edge], str]) -> tuple[System, System]:
+    """A plan and a recording of its transforms, each on the topic that is told."""
+    wanted = small_fleet.plan(layout)
+    sent = [it._replace(topic=topic(it), publishers=()) for it in small_fleet.healthy(layout).edges]
+    topics = tuple(RecordedTopic(it, TF, 9) for it in dict.fromkeys(it.topic for it in sent))
+    return wanted, as_snapshot(Recording(topics, tuple(sent), 10.0), wanted)
+
+
+def bare(topic: str) -> str:
+    return "/" + "/".join(it for it in topic.split("/") if it.startswith("tf"))
+
+
+def swapped(topic: str) -> str:
+    return topic.translate(str.maketrans("12", "21"))
+
+
+MOVED = {
+    "moving": lambda it: not it.static,
+    "fixed": lambda it: it.static,
+    "all": lambda it: True,
+    "none": lambda it: False,
+}
+
+
+@pytest.mark.parametrize("layout", ["L1", "L3", "L4"])
+@pytest.mark.parametrize("which", MOVED)
+@pytest.mark.parametrize("other", [bare, swapped])
+def test_transforms_on_another_topic(other: Callable[[str], str], which: str, layout: str) -> None:
+    """Frames that both robots have are of either topic; of what is recorded no sender is known."""
+
+    def topic(it: Edge) -> str:
+        return other(it.topic) if MOVED[which](it) else it.topic
+
+    wanted, seen = placed(layout, topic)
+    is_seen = which != "none" and (layout, other) != ("L1", swapped)
+    assert {(it.code, it.robot) for it in check(wanted, seen)} == (
+        {("MG405", "robot1"), ("MG405", "robot2")} if is_seen else set()
+    )
 
 
 def found(path: Path) -> list[tuple[str, str]]:

@@ -41,6 +41,7 @@ from multibot_rewrite.system.records import (
     System,
 )
 
+TF = "tf2_msgs/msg/TFMessage"
 LAYOUTS = ("L1", "L2", "L3", "L4")
 
 
@@ -448,6 +449,49 @@ def test_a_node_of_one_robot_on_the_tf_of_another() -> None:
     graph = moved(healthy("L1"), "/robot2/tf", "/robot1/tf", "robot_state_publisher")
     found = [f for f in check(plan("L1"), graph) if f.code == "MG405"]
     assert [(f.robot, f.names) for f in found] == [("robot2", ("/robot1/tf", "/robot2/tf"))]
+
+
+def on_the_other(layout: str, static: bool, *more: str) -> System:
+    """The graph with transforms of robot1 on the tf of robot2 instead, which ``more`` send."""
+
+    def placed(it: Edge) -> Edge:
+        moves = it.static is static and "robot1" in it.topic
+        topic = it.topic.replace("robot1", "robot2") if moves else it.topic
+        return it._replace(topic=topic, publishers=more if moves else it.publishers)
+
+    graph = healthy(layout)
+    return graph._replace(edges=tuple(placed(it) for it in graph.edges))
+
+
+@pytest.mark.parametrize("layout", ["L3", "L4"])
+@pytest.mark.parametrize("static", [False, True])
+@pytest.mark.parametrize("sender", ["", "/x", "/robot2/driver"])
+def test_a_robots_frames_on_the_tf_of_another(sender: str, static: bool, layout: str) -> None:
+    """Whoever sends them: a node with the other robot's description does as well."""
+    frame, (odd, home) = ("laser" if static else "base_link"), ("/robot2/tf", "/robot1/tf")
+    if layout == "L4":
+        odd, home = "/tf/robot2", "/tf/robot1"
+    (found,) = check(plan(layout), on_the_other(layout, static, *filter(None, [sender])))
+    assert (found.code, found.names) == ("MG405", (f"{frame}/robot1", odd, home))
+    assert found.message == f"{frame}/robot1 of robot1 is on {odd}, expected on {home}"
+
+
+@pytest.mark.parametrize("layout", ["L3", "L4"])
+def test_what_is_meant_to_be_on_the_tf_of_another_is_silent(layout: str) -> None:
+    """Where one robot sees the other, what a node brings there that hears it, and what the plan has."""
+    wanted, graph = plan(layout), healthy(layout)
+    (own, odd) = (it.tf_topic for it in wanted.robots)
+    seen = Edge("base_link/robot1", "laser/robot2", odd)
+    assert check(wanted, graph._replace(edges=(*graph.edges, seen))) == []
+    copies = [it._replace(topic=odd) for it in graph.edges if it.topic == own]
+    both = graph._replace(edges=(*graph.edges, *copies))
+    assert {it.code for it in check(wanted, both)} == {"MG405"}
+    relay = with_node(both, "/relay", (SUBSCRIBES, own, TF), (PUBLISHES, odd, TF))
+    assert {it.code for it in check(wanted, relay)} == {"MG108"}
+    node = next(it.name for it in wanted.nodes if it.robot == "robot1")
+    meant = wanted._replace(ends=(*wanted.ends, planned_end(node, TOPIC, PUBLISHES, odd, TF)))
+    sends = with_node(both, node, (PUBLISHES, odd, TF))
+    assert "MG405" not in {it.code for it in check(meant, sends)}
 
 
 @pytest.mark.parametrize(

@@ -87,6 +87,6 @@ def test_every_declared_rule_is_asked() -> None:
 @pytest.mark.parametrize("code", sorted(OF_DESCRIPTIONS))
 def test_a_rule_for_descriptions_finds_it_in_a_system(code: str) -> None:
     rule = RULES[code]
-    (finding,) = (it for it in judge(read_system(rule.bad)) if it.code == code)
-    assert finding.node in rule.bad.splitlines()[rule.line - 1]
-    assert [it for it in judge(read_system(rule.good)) if it.code == code] == []
+    (finding,) = (it for it in judge(read_system(rule.page.bad)) if it.code == code)
+    assert finding.node in rule.page.bad.splitlines()[rule.page.line - 1]
+    assert [it for it in judge(read_system(rule.page.good)) if it.code == code] == []

@@ -166,6 +166,9 @@ def test_what_nodes_send_and_answer(needed: Mapping[str, str], tmp_path: Path) -
         "/robot1/hangs", ("", None)
     ) == ("", None)
     assert states["/robot1/lidar"] == ("active", False) and states["/robot2/camera"] == ("", False)
+    # It has parameter services, and nobody answers them.
+    (hung,) = [it for it in seen.environment.caveats if it.code == "silent-nodes"]
+    assert hung.incomplete and "/robot1/hangs did not answer --state" in hung.message
     said = [str(it) for it in diagnose(seen).findings]
     (bare,) = [it for it in said if "MG412" in it]
     assert "frame_id of /robot1/scan is laser" in bare and "to robot1/laser" in bare

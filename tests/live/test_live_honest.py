@@ -253,6 +253,22 @@ def test_a_pause_of_the_observing_process_is_not_quiet_time(ros: None, tmp_path:
     assert (look.returncode, out) == (0, "")
 
 
+def test_a_program_that_is_stopped_makes_the_view_incomplete(ros: None) -> None:
+    """Its ports are open, and it answers nobody: neither fine nor missing."""
+    env = live_fleet.environ(domain(92))
+    with live_fleet.running(domain(92), *([node(it)] for it in ROBOTS)) as (first, _):
+        first.send_signal(signal.SIGSTOP)
+        try:
+            done = multibot("check", *PATIENTLY, env=env)
+        finally:
+            first.send_signal(signal.SIGCONT)
+        again = multibot("check", *PATIENTLY, env=env)
+    assert_inconclusive(done)
+    said = "incomplete: 1 of about 2 nodes seen: 1 of 2 programs in this domain on this machine"
+    assert said in done.stderr
+    assert again.returncode == 0, again.stderr
+
+
 def free_port() -> int:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind((THIS.address, 0))

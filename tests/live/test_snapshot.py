@@ -231,7 +231,10 @@ def test_every_caveat_is_documented() -> None:
     source = "".join(it.read_text() for it in files)
     page = (root / "docs/snapshot.md").read_text().partition("## Caveats")[2]
     assert set(
-        re.findall(r'(?:Caveat\(\s*|(?:BUSY_MACHINE|WAITED_FOR) = )"([\w-]+)"', source)
+        re.findall(
+            r'(?:Caveat\(\s*|(?:BUSY_MACHINE|WAITED_FOR|SILENT|WITHOUT_READERS) = )"([\w-]+)"',
+            source,
+        )
     ) == set(re.findall(r"`([a-z]+-[\w-]+)`", page))
 
 

@@ -8,32 +8,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 
 # What the standard library has on Linux alone, and of ``os`` that a Mac does not have.
-_PROGRAM = """
-import os, pkgutil, importlib, sys
-sys.platform = "darwin"
-for name in ("sched_getaffinity", "sched_setaffinity", "posix_fadvise", "memfd_create", "pidfd_open",
-             "splice", "copy_file_range", "getrandom", "setns", "unshare", "eventfd", "O_PATH"):
-    if hasattr(os, name):
-        delattr(os, name)
-for name in ("spwd", "ossaudiodev"):
-    sys.modules[name] = None
-import multibot_rewrite
-names = [it.name for it in pkgutil.walk_packages(multibot_rewrite.__path__, "multibot_rewrite.")]
-failed = []
-for name in names:
-    if name.endswith("__main__"):
-        continue
-    try:
-        importlib.import_module(name)
-    except ImportError as error:
-        if (error.name or "").partition(".")[0] in ("multibot_rewrite", "os", "spwd"):
-            failed.append(f"{name}: {error}")
-print(len(names), failed)
-from multibot_rewrite.cli.urdf_lint import main
-sys.exit(main(sys.argv[1:]))
-"""
+_PROGRAM = fixture_text("elsewhere_program.txt")
 XACRO = (
     '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/>'
     '<xacro:property name="n" value="b"/><joint name="j" type="fixed"><parent link="a"/>'

@@ -330,7 +330,7 @@ OF_ROBOTS = sorted(
     (code, kind)
     for code, it in RULES.items()
     for kind in ("bad", "good")
-    if code not in COMPARED and "robot" in getattr(it, kind)
+    if code not in COMPARED and "robot" in getattr(it.page, kind)
 )
 
 
@@ -339,7 +339,7 @@ OF_ROBOTS = sorted(
 @pytest.mark.parametrize(("code", "kind"), OF_ROBOTS)
 def test_what_is_wrong_with_each_robot_costs_what_the_robots_do(code: str, kind: str) -> None:
     """Each rule once looked at all robots for each of them."""
-    example = getattr(RULES[code], kind)
+    example = getattr(RULES[code].page, kind)
 
     def prepared(count: int) -> Callable[[], object]:
         forget()

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from paths import ROOT
+from paths import ROOT, fixture_text
 
 from multibot_rewrite.cli.multibot import main as multibot
 from multibot_rewrite.cli.urdf_lint import main as urdf_lint
@@ -36,18 +36,7 @@ KNOWN, OWN = "joint_trajectory_controller/JointTrajectoryController", "acme/Hand
 NODES = f"nodes:\n  hand_controller: {{package: acme, types: [{OWN}], host: controller_manager}}\n"
 FLEET = "description: hexbase.urdf.xacro\nlayout: frames-per-robot\ncompanions: {rviz: nav2.rviz}\n"
 FLEET += "robots: [{name: robot1}, {name: robot2, pose: {y: 2.0}}]\n"
-LAUNCH = """\
-from pathlib import Path
-from launch import LaunchDescription
-from launch_ros.actions import Node
-TEXT = (Path(__file__).parent / "rover.urdf").read_text()
-def generate_launch_description():
-    return LaunchDescription([
-        Node(package="robot_state_publisher", executable="robot_state_publisher", namespace=it,
-             parameters=[{"robot_description": TEXT}])
-        for it in ("robot1", "robot2")
-    ])
-"""
+LAUNCH = fixture_text("mends_launch.txt")
 CONTROLLER = '{"manager": "/robot1/controller_manager", "name": "arm", "state": "%s", "claims": []}'
 TF = ', remappings=[("/tf", "tf"), ("/tf_static", "tf_static")],'
 Edit = tuple[str, str, str]

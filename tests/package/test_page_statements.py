@@ -13,12 +13,12 @@ from paths import ROOT
 
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.declared.shared import Command
+from multibot_rewrite.cli.declared.options import Command
 from multibot_rewrite.cli.parser import make_parser
 
 PAGES = sorted((*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")))
 MODULES = sorted((ROOT / "multibot_rewrite").rglob("*.py"))
-EVERY_COMMAND = (*PROGRAMS, *COMMANDS.values())
+EVERY_COMMAND = (*PROGRAMS.values(), *COMMANDS.values())
 FENCE = re.compile(r"^( *)(`{3,}).*?^\1\2`*$", re.MULTILINE | re.DOTALL)
 # A path in the repository: its first folder is one of the repository or of the package.
 PATH = re.compile(r"`([a-z_]\w*/[\w./-]*)(?:#[\w-]+)?`")

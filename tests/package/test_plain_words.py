@@ -14,7 +14,7 @@ import pytest
 import said_texts
 from paths import ROOT
 
-from multibot_rewrite.base import other_words
+from multibot_rewrite.base.other_words import other_words
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.multibot import overview
 from multibot_rewrite.cli.parser import make_parser
@@ -91,9 +91,9 @@ def test_every_kind_of_text_is_looked_at() -> None:
     assert kinds == {".yaml", ".vocab", ".schema", ".json", ".js"}
 
 
-@pytest.mark.parametrize("name", [*COMMANDS, *(it.name for it in PROGRAMS)])
+@pytest.mark.parametrize("name", [*COMMANDS, *PROGRAMS])
 def test_a_help_has_no_private_term(name: str) -> None:
-    command = COMMANDS.get(name) or next(it for it in PROGRAMS if it.name == name)
+    command = {**COMMANDS, **PROGRAMS}[name]
     parser = make_parser(command)
     assert list(found_in(parser.format_help())) == []
     assert list(found_in(parser.short)) == []
@@ -110,20 +110,23 @@ def test_the_overview_has_no_private_term() -> None:
     assert list(found_in(overview("never"))) == []
 
 
-EVERY_OPTION = {name for it in (*COMMANDS.values(), *PROGRAMS) for name in make_parser(it).known()}
+EVERY_OPTION = {
+    name for it in (*COMMANDS.values(), *PROGRAMS.values()) for name in make_parser(it).known()
+}
 # Some commands have these; in the others they are taken for something else.
 OF_SOME = {"--undo", "--prefix", "--namespace", "--plan", "-n", "--count", "--urdf", "--pose"}
 
 
 def test_other_words_lead_to_what_there_is() -> None:
     """No word of the tables is a command or option, and each answer names what exists."""
-    assert not {*other_words.COMMANDS} & {*COMMANDS}
-    assert {it.rpartition(" ")[2] for it in other_words.OPTIONS} & EVERY_OPTION <= OF_SOME
-    for answer in (*other_words.COMMANDS.values(), *other_words.OPTIONS.values()):
+    commands, options = other_words("commands"), other_words("options")
+    assert not {*commands} & {*COMMANDS}
+    assert {it.rpartition(" ")[2] for it in options} & EVERY_OPTION <= OF_SOME
+    for answer in (*commands.values(), *options.values()):
         assert {*re.findall(r"(?<!\S)--[a-z-]+", answer)} <= EVERY_OPTION, answer
         assert {*re.findall(r"multibot (?!before|--)([a-z-]+)", answer)} <= {*COMMANDS}, answer
-    programs = {it.name for it in PROGRAMS}
-    for answer in other_words.COMMANDS.values():
+    programs = {*PROGRAMS}
+    for answer in commands.values():
         first, second = answer.replace(",", "").split()[:2]
         known = {*COMMANDS, *EVERY_OPTION}
         assert first in programs or second in known or (first, second) == ("ros2", "launch")

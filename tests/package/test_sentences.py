@@ -48,7 +48,11 @@ def test_help_has_short_sentences() -> None:
 
 @pytest.mark.more
 def test_messages_have_short_sentences() -> None:
-    examples = {text for it in catalogue.rules().values() for text in (it.bad, it.good, it.fixed)}
+    examples = {
+        text
+        for it in catalogue.rules().values()
+        for text in (it.page.bad, it.page.good, it.page.fixed)
+    }
     found = [
         (place, part)
         for place, text in said_texts.messages()

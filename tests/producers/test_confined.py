@@ -91,6 +91,53 @@ def read(file: Path, trust: bool = False) -> LaunchGraph:
     return found
 
 
+# What is asked of a machine, what is seen of it, and what is named.
+MACHINE = (
+    ("os.listdir('/dev')", "[]", "/dev"),
+    ("[it.name for it in os.scandir('/dev/')]", "[]", "/dev"),
+    ("list(__import__('pathlib').Path('/dev').iterdir())", "[]", "/dev"),
+    ("__import__('glob').glob('/dev/tt*')", "[]", "/dev"),
+    ("__import__('glob').glob('/dev/tty')", "[]", "/dev/tty"),
+    ("[*os.walk('/sys/class/net')]", "[('/sys/class/net', [], [])]", "/sys/class/net"),
+    ("[*__import__('pathlib').Path('/sys/class').glob('n*')]", "[]", "/sys/class"),
+    ("os.path.exists('/dev/tty')", "False", "/dev/tty"),
+    ("os.path.isdir('/proc/self')", "False", "/proc/self"),
+    ("os.path.islink(b'/dev/../proc/self')", "False", "/proc/self"),
+    ("__import__('pathlib').Path('/dev/tty').exists()", "False", "/dev/tty"),
+    ("os.access('/dev/tty', os.R_OK)", "False", "/dev/tty"),
+    ("swallowed(lambda: __import__('socket').socket())", "None", "the network"),
+    ("swallowed(lambda: __import__('socket').gethostbyname('a'))", "None", "the network"),
+    ("os.path.exists(os.devnull)", "True", ""), ("os.path.exists(HERE)", "True", ""),
+    ("os.path.exists('/devices')", "False", ""), ("os.stat(0) is not None", "True", ""),
+)  # fmt: skip
+ASKS = """import os
+from launch import LaunchDescription
+from launch_ros.actions import Node
+HERE = os.path.dirname(__file__)
+def swallowed(call):
+    try:
+        call()
+    except OSError:
+        pass
+def generate_launch_description():
+    return LaunchDescription([Node(package="p", executable=repr(LINE))])
+"""
+
+
+@pytest.mark.parametrize(("line", "seen", "named"), MACHINE)
+def test_a_launch_file_sees_nothing_of_a_machine(
+    line: str, seen: str, named: str, kept: Path
+) -> None:
+    """Another one has other devices: the file is read as where none is there, and that is said."""
+    file = kept / "own/a.launch.py"
+    file.write_text(ASKS.replace("LINE", line))
+    found = read(file)
+    assert [it.executable for it in found.nodes] == [seen]
+    said = f"it looks at {named} of the machine, and sees nothing of it here; --trust shows it"
+    assert [(it.message, it.parameters) for it in found.notes] == ([(said, True)] if named else [])
+    assert not read(file, trust=True).notes
+
+
 def test_what_a_launch_file_may_do(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """All that is refused leaves everything as it was; all else is done."""
     if not fences.version():
@@ -204,3 +251,52 @@ def test_without_fences_nothing_of_it_runs(kept: Path) -> None:
     first, second = done.stdout.splitlines()
     assert "not both Landlock and seccomp" in first and "--trust" in first
     assert second.startswith("LaunchGraph") and (kept / "made").exists()
+
+
+WITHOUT_TOOLS = """\
+import os, yaml
+import acme_tools
+class Tools(acme_tools.Tools):
+    def __init__(self, name):
+        super().__init__(name, more=1)
+        self.name = name
+class Kept(acme_tools.Tools):
+    def __init__(self):
+        self.made = self.make()
+from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch_ros.actions import Node
+def generate_launch_description():
+    made = [acme_tools.make(), Tools("a").make(Kept().made), Tools("a"), Kept()]
+    texts = [dump({"a": it}) for dump in (yaml.safe_dump, yaml.dump) for it in made]
+    kinds = [type(yaml.safe_load(it)["a"]).__name__ for it in texts]
+    inner = PythonLaunchDescriptionSource(os.path.join(os.path.dirname(__file__), "b.launch.py"))
+    return LaunchDescription([
+        Node(package="p", executable=f"{Tools('b').name} {set(kinds)}"),
+        IncludeLaunchDescription(inner, launch_arguments=acme_tools.Given().items()),
+    ])
+"""
+INNER = """\
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+def generate_launch_description():
+    own = Node(package="q", executable=LaunchConfiguration("name"))
+    return LaunchDescription([
+        DeclareLaunchArgument("name"), DeclareLaunchArgument("mode"), own])
+"""
+
+
+def test_what_a_package_makes_that_is_not_here_stops_nothing(kept: Path) -> None:
+    """A class may have it for its base, in YAML it is a text. The arguments of an include that it makes
+    may be those that are given; what else is needed is not known."""
+    (kept / "own/a.launch.py").write_text(WITHOUT_TOOLS)
+    (kept / "own/b.launch.py").write_text(INNER)
+    order = LaunchOrder(str(kept / "own/a.launch.py"), (("name", "x"),))
+    (found,) = read_launch_files([order], 60.0)
+    assert isinstance(found, LaunchGraph), found
+    assert {(it.package, it.executable) for it in found.nodes} == {("p", "b {'str'}"), ("q", "x")}
+    said = "a package that is not here makes the arguments of the include"
+    assert said in {it.message for it in found.notes if it.parameters}

@@ -315,6 +315,76 @@ def test_a_node_in_cpp(acme: Path, program: str) -> None:
     assert len([it for it in facts.untold if "made at run time" in it.text]) == 2
 
 
+DELETED = """
+class Part {
+public:
+  explicit Part(rclcpp::Node * node) { node->create_publisher<std_msgs::msg::String>("part", 1); }
+};
+struct Closer { void operator()(Part * part) const; };
+class Own : public rclcpp::Node {
+public:
+  Own() : Node("own"), part_(this, Closer()) {}
+private:
+  std::unique_ptr<Part, Closer> part_;
+};
+int main(int argc, char ** argv) { rclcpp::spin(std::make_shared<Own>()); }
+"""
+
+
+def test_the_class_behind_a_pointer_is_not_that_which_deletes_it(acme: Path) -> None:
+    """What a member is made with goes to the first argument of unique_ptr<T, Deleter>."""
+    (acme / "src" / "main.cpp").write_text(DELETED)
+    facts = read("driver_node", acme).facts
+    assert [(it.role, it.name) for it in facts.endpoints] == [("publishes", "part")]
+    assert not facts.untold
+
+
+@pytest.mark.parametrize(
+    ("release", "rules", "info"),
+    [
+        ("jazzy", (("front/image", "rear/image"),), "/front/camera_info"),
+        ("jazzy", (("front/camera_info", "rear/camera_info"),), "/rear/camera_info"),
+        ("kilted", (("front/image", "rear/image"),), "/rear/camera_info"),
+        (
+            "kilted",
+            (("front/camera_info", "a"), ("front/image", "rear/image")),
+            "/rear/camera_info",
+        ),
+        ("kilted", (("rear/camera_info", "a"), ("front/image", "rear/image")), "/a"),
+    ],
+)
+@pytest.mark.parametrize("role", ["subscription", "publisher"])
+def test_the_info_beside_an_image(
+    release: str, rules: tuple[tuple[str, str], ...], info: str, role: str, acme: Path
+) -> None:
+    """image_common camera_subscriber.cpp, camera_publisher.cpp: beside the image as the code names it,
+    since #326 (6.0.0, Kilted) as its rules do. rcl then applies the rules to that name."""
+    rest = ', callback, "raw"' if role == "subscription" else ""
+    made = f'image_transport::create_camera_{role}(this, "front/image"{rest});'
+    (acme / "src" / "driver.cpp").write_text(UNIT.replace("  setUp();\n", f"  {made}\n"))
+    facts = read("driver_node", acme, release).facts
+    run = with_names(Run("", "driver", "/", "driver", rules, facts))
+    infos = {name for it, name in run.names if it.type == "sensor_msgs/msg/CameraInfo"}
+    assert infos == {info}
+
+
+@pytest.mark.parametrize(
+    ("guard", "condition"),
+    [
+        ("if (debug_) ", "debug = true"), ("if (!debug_) ", "debug unset or debug = false"),
+        # What no parameter says may be so: it is sent.
+        ("if (frame_.size() > 3) ", ""),
+    ],
+)  # fmt: skip
+def test_a_transform_is_sent_where_its_parameter_says_so(
+    guard: str, condition: str, acme: Path
+) -> None:
+    """Another node, as a filter, sends it where it is switched off."""
+    unit, call = acme / "src/driver.cpp", "broadcaster_->sendTransform"
+    unit.write_text(unit.read_text().replace(call, f"{guard}{call}"))
+    assert [it.condition for it in read("driver_node", acme).facts.sends] == [condition]
+
+
 def test_a_program_of_an_install_rule(acme: Path) -> None:
     facts = read("tool", acme).facts
     assert (facts.name, [it.name for it in facts.endpoints]) == ("tool", ["x"])

@@ -188,3 +188,23 @@ def test_less_is_enough_where_each_port_is_announced(
     for name, value in environ.items():
         monkeypatch.setenv(name, value)
     assert observe._enough(session(*announced), 0.0, -inf) == seconds
+
+
+@pytest.mark.parametrize(
+    ("announced", "here", "nodes", "lost", "said"),
+    [
+        (3, 3, 10, 0, ""),
+        # One that was killed is announced for a while.
+        (4, 3, 10, 0, ""),
+        (3, 6, 10, 0, "10 of about 25 nodes seen: 3 of 5 programs in this domain"),
+        (3, 6, 10, 36_000, "announced no nodes, and this machine lost 36000 datagrams meanwhile;"),
+        # Nothing is seen, so nothing is estimated.
+        (1, 3, 0, 0, "2 of 2 programs in this domain on this machine announced no nodes; they are"),
+    ],
+)
+def test_who_has_ports_and_announces_nothing(
+    announced: int, here: int, nodes: int, lost: int, said: str
+) -> None:
+    found = [*assemble.unannounced(announced, here, nodes, lost)]
+    assert [it.incomplete for it in found] == [True] * bool(said)
+    assert said in "".join(it.message for it in found)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite import adopt
 from multibot_rewrite.cli.multibot import main
@@ -17,25 +18,7 @@ from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sect
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ROBOT = f'<robot name="r" {SPACE}>\n  <link name="base"/>\n  <link name="arm"/>\n{{}}</robot>\n'
 JOINT = '  <joint name="j" type="fixed"><parent link="base"/><child link="arm"/></joint>\n'
-LAUNCH = """\
-import os
-from launch import LaunchDescription
-from launch.substitutions import Command
-from launch_ros.actions import Node
-
-PATH = os.path.join(os.path.dirname(__file__), "..", "urdf", "r.urdf.xacro")
-
-
-def generate_launch_description():
-    text = Command(["xacro ", PATH])
-    return LaunchDescription([
-        Node(
-            package="robot_state_publisher",
-            executable="robot_state_publisher",
-            parameters=[{"robot_description": text}],
-        ),
-    ])
-"""
+LAUNCH = fixture_text("adopt_package_launch.txt")
 XML = """\
 <launch>
   <node pkg="robot_state_publisher" exec="robot_state_publisher">

@@ -7,47 +7,18 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from paths import fixture_text
 
 from multibot_rewrite import InputError, Part, UsageError, join, split
 from multibot_rewrite.cli.multibot import main
 
-ARM = """<?xml version="1.0"?>
-<!-- an arm -->
-<robot name="arm">
-  <link name="base"/>
-  <link name="tool"/>
-  <joint name="lift" type="prismatic">
-    <parent link="base"/><child link="tool"/>
-    <limit lower="0" upper="1" effort="1" velocity="1"/>
-  </joint>
-</robot>
-"""
+ARM = fixture_text("join_arm.urdf")
 HAND = """<!-- a hand: -- two - dashes --->
 <robot name="hand"><link name="base"/><link name="finger"/>
 <joint name="grip" type="fixed"><parent link="base"/><child link="finger"/></joint></robot>"""
 HAND = HAND.replace("-- two - dashes --->", "two - dashes -->")
 # By hand, from the page that describes the comments.
-JOINED = """<?xml version="1.0"?>
-<!-- an arm -->
-<robot name="arm">
-  <link name="base"/>
-  <link name="tool"/>
-  <joint name="lift" type="prismatic">
-    <parent link="base"/><child link="tool"/>
-    <limit lower="0" upper="1" effort="1" velocity="1"/>
-  </joint>
-  <!-- multibot base arm -->
-  <!-- multibot part hand prefix=h_ <!%2D- a hand:%20two - dashes %2D->
-<robot name="hand"> --><!-- multibot was 1  -->
-  <joint name="hand_mount" type="fixed">
-    <origin xyz="0 0 0.5" rpy="0 0 1.5"/>
-    <parent link="tool"/>
-    <child link="h_base"/>
-  </joint><link name="h_base"/><link name="h_finger"/>
-<joint name="h_grip" type="fixed"><parent link="h_base"/><child link="h_finger"/></joint>\
-<!-- multibot end hand </robot> -->
-</robot>
-"""
+JOINED = fixture_text("join_joined.urdf")
 BLOCK = '<gazebo><plugin filename="gz_ros2_control-system" name="c">{}</plugin></gazebo>'
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 import yaml
 from lxml import etree
+from paths import fixture_text
 
 from multibot_rewrite import InputError, Part, join
 from multibot_rewrite.cli.multibot import main
@@ -42,38 +43,8 @@ GRIPPER_SRDF = """<robot name="gripper">
 """
 # By hand: the second virtual joint and its uses are gone; hand and palm meet, as MoveIt's Setup
 # Assistant has it, since tool and root have no shape.
-JOINED_SRDF = """<?xml version='1.0' encoding='utf-8'?>
-<robot name="arm">
-  <virtual_joint name="stand" type="fixed" parent_frame="world" child_link="base"/>
-  <group name="arm">
-    <joint name="stand"/>
-    <joint name="turn"/>
-  </group>
-  <group_state name="home" group="arm">
-    <joint name="turn" value="0"/>
-  </group_state>
-  <disable_collisions link1="base" link2="hand" reason="Adjacent"/>
-  <group name="g_fingers">
-    <joint name="g_grip"/>
-  </group>
-  <end_effector name="g_eef" parent_link="g_palm" group="g_fingers"/>
-  <passive_joint name="g_grip"/>
-  <disable_collisions link1="g_palm" link2="g_finger" reason="Adjacent"/>
-  <disable_collisions link1="g_palm" link2="hand" reason="Adjacent"/>
-</robot>
-"""
-CONTROLLERS = """\
-controller_manager:
-  ros__parameters:
-    update_rate: {rate}
-    joint_state_broadcaster: {{type: joint_state_broadcaster/JointStateBroadcaster}}
-    {name}: {{type: joint_trajectory_controller/JointTrajectoryController}}
-# moves
-{name}:
-  ros__parameters:
-    joints: [{joint}]
-    constraints: {{goal_time: 1e-3}}
-"""
+JOINED_SRDF = fixture_text("join_beside_joined_srdf.urdf")
+CONTROLLERS = fixture_text("join_beside_controllers.yaml")
 
 
 def parts(prefix: str = "g_") -> list[Part]:

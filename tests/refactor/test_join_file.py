@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from paths import fixture_text
 
 from multibot_rewrite import InputError, rewrite
 from multibot_rewrite.cli.multibot import main
@@ -53,17 +54,7 @@ def links(data: bytes) -> list[str | None]:
     return [it.get("name") for it in etree.fromstring(data).iterchildren("link")]
 
 
-WHOLE = """\
-join:
-  - {description: arm.urdf, srdf: a.srdf, rviz: ../a.rviz, controllers: [c.yaml, d.yaml], moveit: m}
-  - description: parts/hand.urdf.xacro
-    arguments: {n: paw, wide: true, size: 2}
-    prefix: h_
-    name: paw
-    one_system: true
-    at: {parent: tool, pose: {x: 1, y: 2, z: 3, roll: 4, pitch: 5, yaw: 6.5}}
-samples: 20
-"""
+WHOLE = fixture_text("join_file_whole.yaml")
 
 
 def test_every_key_of_a_list(write: Write) -> None:

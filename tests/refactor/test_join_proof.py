@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import pytest
 from lxml import etree
+from paths import fixture_text
 
 from multibot_rewrite import ProofError
 from multibot_rewrite.description.joining.join import GivenPart, join_texts
@@ -21,19 +22,7 @@ BASE = """<robot name="base">
   </gazebo>
 </robot>
 """
-ARM = """<robot name="arm">
-  <material name="grey"><color rgba="1 1 1 1"/></material>
-  <link name="foot"><inertial><mass value="2"/></inertial></link><link name="hand"/>
-  <joint name="turn" type="continuous">
-    <origin xyz="0 0 1"/><parent link="foot"/><child link="hand"/>
-  </joint>
-  <transmission name="t"><joint name="turn"/></transmission>
-  <gazebo reference="hand"><mu1>1</mu1></gazebo>
-  <gazebo>
-    <plugin filename="gz_ros2_control-system" name="c"><parameters>b</parameters></plugin>
-  </gazebo>
-</robot>
-"""
+ARM = fixture_text("join_proof_arm.urdf")
 STAND = """<robot name="stand">
   <link name="world"/><link name="pole"/>
   <joint name="world" type="fixed">

@@ -126,7 +126,7 @@ def test_a_prefix_in_front_of_planned_frames(
     [("a.urdf:12", "a.urdf", 12), ("stack nav2", "", 0), ("c:a.urdf:3", "c:a.urdf", 3)],
 )
 def test_a_cause_has_its_place(place: str, file: str, line: int) -> None:
-    assert caused("why", place) == ("why", file, line)
+    assert caused("why", place)[:3] == ("why", file, line)
 
 
 @pytest.mark.parametrize(
@@ -146,7 +146,7 @@ def test_the_rule_for_a_name_in_the_code(code: str, without: str, rule: str) -> 
     assert how_to_remap(plan, end) == (f"{pass_it} launch file" if rule else "")
     why = f"the remap rule {rule} is not applied"
     other = "another remap rule, or an absolute name in its parameters, changes it"
-    assert why_not_remapped(plan, end) == (why if rule else other, "", 0)
+    assert why_not_remapped(plan, end)[:3] == (why if rule else other, "", 0)
 
 
 @pytest.mark.parametrize(
@@ -177,7 +177,7 @@ def test_names_of_a_node_that_is_given_no_rule(
 def test_a_rule_that_a_plugin_should_have(code: str, hint: str) -> None:
     plan = plan_of(SCAN, plugin=PLACE)
     end = plan.system.ends[0]._replace(code_name=code)
-    assert why_not_remapped(plan, end) == (hint, "arm.urdf", 12)
+    assert why_not_remapped(plan, end)[:3] == (hint, "arm.urdf", 12)
     assert how_to_remap(plan, end) == ""
 
 
@@ -189,11 +189,11 @@ def test_why_a_node_uses_a_name_of_no_robot() -> None:
         return _why_besides(plan, end, "")
 
     given = "no namespace or remap rule for it, see arm.urdf:12"
-    assert why(plugin=PLACE) == (f"plugin lidar has {given}", "arm.urdf", 12)
+    assert why(plugin=PLACE)[:3] == (f"plugin lidar has {given}", "arm.urdf", 12)
     passed = "an absolute name in its code or parameters; pass {0} with --ros-args -r {0}, or with"
     passed += " remappings=[('/scan', '{1}')] in the launch file"
     for last, name in ((False, "/robot1/scan"), (True, "/scan/robot1")):
-        assert why(last) == (passed.format(f"/scan:={name}", name), "", 0)
+        assert why(last)[:3] == (passed.format(f"/scan:={name}", name), "", 0)
 
 
 PAIR = "remappings=[('/a', 'b')]"
@@ -283,4 +283,4 @@ def test_why_a_node_has_another_name(
 ) -> None:
     plan = plan_of(f"{node} publishes /robot1/scan", **changes)
     place = ("arm.urdf", 12) if "plugin" in changes else ("", 0)
-    assert why_other_name(plan, node, match) == (hint, *place)
+    assert why_other_name(plan, node, match)[:3] == (hint, *place)

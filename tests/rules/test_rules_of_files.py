@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from paths import fixture_text
 from rule_examples import BUILT, COMPANIONS
 
 from multibot_rewrite.base.findings.finding import Finding, Rule
@@ -24,21 +25,7 @@ from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.files.judge import SHARED
 from multibot_rewrite.rules.settings import Settings
 
-DESCRIPTION = """\
-<robot name="rover">
-  <link name="base_link"/>
-  <link name="lidar_link"/>
-  <joint name="lidar_joint" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
-  <link name="left"/>
-  <joint name="left_wheel_joint" type="continuous">
-    <parent link="base_link"/><child link="left"/><axis xyz="0 1 0"/>
-  </joint>
-  <link name="right"/>
-  <joint name="right_wheel_joint" type="continuous">
-    <parent link="base_link"/><child link="right"/><axis xyz="0 1 0"/>
-  </joint>
-</robot>
-"""
+DESCRIPTION = fixture_text("rules_of_files_description.urdf")
 ROVER: Mapping[str, str] = {
     "package.xml": "<package><name>rover</name></package>",
     "urdf/rover.urdf": DESCRIPTION,
@@ -190,9 +177,11 @@ def test_lint_and_build_say_the_same(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("rule", IN_BOTH, ids=lambda it: it.code)
 def test_an_example_is_found_by_both(rule: Rule, tmp_path: Path) -> None:
     distro = str(rule.options.get("distro", NEWEST_LTS))
-    linted, built = by_both(rule.formats[0], rule.bad, tmp_path, {rule.code}, rule.beside, distro)
+    linted, built = by_both(
+        rule.formats[0], rule.page.bad, tmp_path, {rule.code}, rule.page.beside, distro
+    )
     assert linted == built
-    assert [int(it.split(":")[1]) for it in built] == [rule.line]
+    assert [int(it.split(":")[1]) for it in built] == [rule.page.line]
 
 
 def test_a_comment_silences_both(tmp_path: Path) -> None:

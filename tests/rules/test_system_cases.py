@@ -381,8 +381,8 @@ ELSEWHERE = (
              f"/robot1/driver subscribes /robot1/wheels/speed {TWIST}",
              f"/robot1/a publishes /robot1/wheels/speed {TWIST}"),
             ["MG308 publishes /robot1/out_vel, which no node reads; /robot1/driver reads"
-             " /robot1/wheels/speed; start it in the robot's namespace, or pass the rule"
-             " /robot1/out_vel:=/robot1/wheels/speed"],
+             " /robot1/wheels/speed; /robot1/driver obeys /robot1/a there: put twist_mux before the"
+             " robot's driver, each sender with a topic of its own"],
         ),
         # Who is no person's hand may send for somebody else.
         (
@@ -546,11 +546,13 @@ CHOOSE = "put twist_mux before the robot's driver, each sender with a topic of i
 PLAY = "play it in another ROS_DOMAIN_ID, or give its topics other names with --remap"
 
 
-def unread(name: str, meant: str = "/robot1/cmd_vel") -> str:
-    return (
-        f"publishes {name}, which no node reads; /robot1/driver reads {meant}; start it in the"
-        f" robot's namespace, or pass the rule {name}:={meant}"
-    )
+def unread(name: str, meant: str = "/robot1/cmd_vel", beside: str = "") -> str:
+    do = f"start it in the robot's namespace, or pass the rule {name}:={meant}"
+    do = f"/robot1/driver obeys {beside} there: {CHOOSE}" if beside else do
+    return f"publishes {name}, which no node reads; /robot1/driver reads {meant}; {do}"
+
+
+NAV = "/robot1/controller_server"
 
 
 @pytest.mark.parametrize(
@@ -558,18 +560,19 @@ def unread(name: str, meant: str = "/robot1/cmd_vel") -> str:
     [
         (
             (DRIVE, SERVER, f"/joystick publishes /cmd_vel {TWIST}"),
-            [f"MG308 error /joystick: {unread('/cmd_vel')}"],
+            [f"MG308 error /joystick: {unread('/cmd_vel', beside=NAV)}"],
         ),
         (
             (*TWO_DRIVES, f"/joystick publishes /cmd_vel {TWIST}"),
-            [f"MG308 error /joystick: {unread('/cmd_vel')} (or that of another of the 2 robots)"],
+            [f"MG308 error /joystick: {unread('/cmd_vel', beside=NAV)} (or that of another of the 2"
+             " robots)"],
         ),
         # Stamped velocities are others.
         ((DRIVE, SERVER, f"/joystick publishes /cmd_vel {TWIST}Stamped"), []),
         # A joystick of the robot itself is meant for the one that it obeys.
         (
             (DRIVE, SERVER, f"/robot1/teleop publishes /robot1/joy_vel {TWIST}"),
-            [f"MG308 error /robot1/teleop: {unread('/robot1/joy_vel')}"],
+            [f"MG308 error /robot1/teleop: {unread('/robot1/joy_vel', beside=NAV)}"],
         ),
         ((DRIVE, SERVER, f"/joystick publishes /joy_vel {TWIST}"), []),
         (

@@ -11,20 +11,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite.cli.multibot import main
 
-LAUNCH = """\
-from pathlib import Path
-from launch import LaunchDescription
-from launch_ros.actions import Node
-HERE = Path(__file__).parent
-def generate_launch_description():
-    return LaunchDescription([
-        {manager}
-        Node(package="controller_manager", executable="spawner", namespace="{space}", {spawner}),
-    ])
-"""
+LAUNCH = fixture_text("untyped_controllers_launch.txt")
 MANAGER = (
     'Node(package="controller_manager", executable="ros2_control_node", name="{}",'
     ' namespace="{}", parameters=[{}]),'

@@ -28,29 +28,3 @@ from multibot_rewrite.companions.yaml_text import Splice, YamlText, quoted, read
 from multibot_rewrite.knowledge.node_library import extend, stack_of
 from multibot_rewrite.knowledge.parameters import built_in_nodes, load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
-
-__all__ = [
-    "NAMESPACE_SLOT",
-    "NEWEST_LTS",
-    "Context",
-    "ParamSection",
-    "Splice",
-    "YamlText",
-    "all_sections",
-    "built_in",
-    "built_in_nodes",
-    "extend",
-    "fill_template",
-    "flattened",
-    "identify_sections",
-    "is_for",
-    "load_known_nodes",
-    "make_context",
-    "make_naming",
-    "make_template",
-    "quoted",
-    "raw_sections",
-    "read_yaml",
-    "rewrite_params",
-    "stack_of",
-]  # fmt: skip

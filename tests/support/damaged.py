@@ -20,68 +20,16 @@ from typing import Any, NamedTuple
 import yaml
 from fleet_folder import fleet_folder, mixed
 from growing_files import message
-from paths import FIXTURES
+from paths import FIXTURES, fixture_text
 
 from multibot_rewrite.cli import urdf_lint, urdf_postfix
 from multibot_rewrite.cli.multibot import main
 
 GRAPHS = FIXTURES / "graphs"
-LAUNCH_PY = """\
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, GroupAction
-from launch.substitutions import LaunchConfiguration
-from launch_ros.actions import Node, PushRosNamespace
-
-
-def generate_launch_description():
-    return LaunchDescription([
-        DeclareLaunchArgument("name", default_value="robot1"),
-        GroupAction([
-            PushRosNamespace(LaunchConfiguration("name")),
-            Node(package="nav2_amcl", executable="amcl", name="amcl", parameters=["params.yaml"],
-                 remappings=[("/tf", "tf"), ("scan", "lidar")]),
-        ]),
-    ])
-"""
-LAUNCH_XML = """\
-<launch>
-  <arg name="name" default="robot1"/>
-  <group>
-    <push-ros-namespace namespace="$(var name)"/>
-    <node pkg="nav2_amcl" exec="amcl" name="amcl">
-      <param from="$(dirname)/params.yaml"/>
-      <param name="odom_frame_id" value="odom"/>
-      <remap from="scan" to="lidar"/>
-    </node>
-  </group>
-</launch>
-"""
-LAUNCH_YAML = """\
-launch:
-  - arg: {name: name, default: robot1}
-  - group:
-      - push_ros_namespace: {namespace: $(var name)}
-      - node:
-          pkg: nav2_amcl
-          exec: amcl
-          name: amcl
-          param:
-            - {from: $(dirname)/params.yaml}
-            - {name: odom_frame_id, value: odom}
-          remap:
-            - {from: scan, to: lidar}
-"""
-LUA = """\
-include "map_builder.lua"
-options = {
-  map_builder = MAP_BUILDER,
-  map_frame = "map", -- of all
-  tracking_frame = "base_link",
-  published_frame = "odom",
-  odom_frame = 'odom',
-}
-return options
-"""
+LAUNCH_PY = fixture_text("damaged_launch_py.txt")
+LAUNCH_XML = fixture_text("damaged_launch_xml.xml")
+LAUNCH_YAML = fixture_text("damaged_launch_yaml.yaml")
+LUA = fixture_text("damaged_lua.txt")
 TREE = """\
 <root BTCPP_format="4">
   <BehaviorTree ID="MainTree">

@@ -27,6 +27,7 @@ from drawn_keys import (
 )
 from drawn_spellings import Data, spelled
 from hypothesis import strategies as st
+from paths import fixture_text
 
 from multibot_rewrite.base.releases import RELEASES
 
@@ -215,18 +216,7 @@ amcl:
     odom_frame_id: odom
     scan_topic: scan
 """
-CONTROLLERS = """\
-controller_manager:
-  ros__parameters:
-    update_rate: 50
-    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
-    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
-arm_controller:
-  ros__parameters:
-    joints: [shoulder, elbow]
-    command_interfaces: [position]
-    state_interfaces: [position]
-"""
+CONTROLLERS = fixture_text("drawn_fleets_controllers.yaml")
 MOVEIT = {
     "kinematics": """\
 arm:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 from drawn_spellings import Data
 from hypothesis import strategies as st
+from paths import fixture_text
 
 USUAL_TOPICS = ["/clock", "/rosout", "/parameter_events", "/diagnostics"]
 USUAL_FRAMES = ["map", "world", "earth", "utm"]
@@ -40,18 +41,7 @@ source: acme_robots src/winch.cpp
 rope/from                   uses link
 status_topic                uses topic default=winch/status
 """
-NODES = """\
-nodes:
-  gripper_driver:
-    package: acme_gripper
-    publishes: {gripper_states: sensor_msgs/msg/JointState}
-    serves: {~/close: std_srvs/srv/Trigger}
-    params: {finger: {kind: frame, default: finger_tip}}
-stacks:
-  our_gripper:
-    about: Our gripper
-    nodes: [gripper_driver]
-"""
+NODES = fixture_text("drawn_keys_nodes.yaml")
 TREE = """\
 <root main_tree_to_execute="MainTree">
   <BehaviorTree ID="MainTree"><Spin spin_dist="1.57" server_name="spin"/></BehaviorTree>

@@ -7,6 +7,8 @@ import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 
+from paths import fixture_text
+
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.file.fleet_data import FleetSource
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
@@ -25,17 +27,7 @@ ROVER = f"""\
   <joint name="lidar_joint" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
 </robot>
 """
-ARM = """\
-<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="tool" default="hand"/>
-  <link name="foot"/>
-  <link name="$(arg tool)"/>
-  <joint name="elbow" type="revolute">
-    <parent link="foot"/><child link="$(arg tool)"/><axis xyz="0 0 1"/>
-    <limit lower="-1" upper="1" effort="1" velocity="1"/>
-  </joint>
-</robot>
-"""
+ARM = fixture_text("fleet_folder_arm.urdf")
 ARM_SRDF = """\
 <robot name="arm"><group name="all"><joint name="elbow"/></group></robot>
 """
@@ -47,17 +39,7 @@ amcl:
     odom_frame_id: odom
     scan_topic: scan
 """
-RVIZ = """\
-Visualization Manager:
-  Class: ""
-  Displays:
-    - Class: rviz_default_plugins/LaserScan
-      Name: scan
-      Topic:
-        Value: /scan
-  Global Options:
-    Fixed Frame: map
-"""
+RVIZ = fixture_text("fleet_folder_rviz.txt")
 BRIDGE = """\
 - ros_topic_name: scan
   gz_topic_name: /model/rover/scan
@@ -66,45 +48,8 @@ BRIDGE = """\
   direction: GZ_TO_ROS
 """
 LIMITS = "joint_limits:\n  elbow:\n    has_velocity_limits: true\n    max_velocity: 1.0\n"
-SMALL = """\
-layout: frames-per-robot
-affix: prefix
-stack: nav2
-robots:
-  - {name: robot1, description: rover.urdf, pose: {x: 1.0, y: 0.5, yaw: 1.57}}
-  - {name: robot2, description: rover.urdf}
-companions:
-  params: [params.yaml]
-  rviz: one_robot.rviz
-"""
-MIXED = """\
-layout: LAYOUT
-affix: AFFIX
-shared_frames: [map, world]
-companions: {rviz: one_robot.rviz}
-robots:
-  - name: scout
-    description: rover.urdf
-    namespace: fleet_scout
-    AFFIX: s1
-    model: scout_model
-    pose: {x: 1}
-    colour: red
-    stack: localization
-    companions: {params: params.yaml, bridge: bridge.yaml}
-  - name: reach
-    description: arm.urdf.xacro
-    srdf: arm.srdf
-    arguments: {tool: gripper}
-    stack: moveit
-    companions: {moveit: limits.yaml}
-  - name: grip
-    description: arm.urdf.xacro
-    srdf: arm.srdf
-    arguments: {tool: fork}
-    stack: moveit
-  - {name: bare, description: rover.urdf, pose: {x: 2}}
-"""
+SMALL = fixture_text("fleet_folder_small.yaml")
+MIXED = fixture_text("fleet_folder_mixed.yaml")
 FILES = {
     "rover.urdf": ROVER,
     "arm.urdf.xacro": ARM,

@@ -15,32 +15,3 @@ from multibot_rewrite.system.index import Index, beside, index
 from multibot_rewrite.system.json import from_json, from_yaml, to_json
 from multibot_rewrite.system.ownership import ALONE, Whose, name_ownership, whose_by_plan
 from multibot_rewrite.system.parameters import questions, with_answers
-
-__all__ = [
-    "ABSENCE",
-    "ALONE",
-    "RULES",
-    "GuessedRobot",
-    "Index",
-    "Whose",
-    "absences",
-    "beside",
-    "check",
-    "diagnose",
-    "from_json",
-    "from_yaml",
-    "guess_robots",
-    "index",
-    "judge",
-    "name_ownership",
-    "questions",
-    "read_plan",
-    "seen_plan",
-    "side_by_side",
-    "survey",
-    "to_json",
-    "to_yaml",
-    "whose_by_guess",
-    "whose_by_plan",
-    "with_answers",
-]  # fmt: skip

@@ -14,6 +14,7 @@ from fault_changes import Fault, nav, shared_tf, simulation
 from fault_sources import SOURCES
 from graph_faults import FAULTS, LIVE, needed
 from healthy_systems import SYSTEMS, plan
+from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.wording import plural
@@ -21,25 +22,7 @@ from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.records import System
 
-HEAD = """\
-# Seeded faults
-
-Made by `python tests/support/graph_faults_page.py --write`. Each row is a fault that was
-put into a system in which nothing was wrong (`tests/support/graph_faults.py`), each column a command
-and what it reads the system from (`tests/support/fault_sources.py`). A fault has one code in all of
-them; where a source cannot show it, the cell says what is not in the source.
-
-- *no plan*: `multibot check` of a snapshot; its *exit* code; *cause*: the finding names who did it and
-  what to do; *live*: played by real nodes as well (`tests/live/test_live_doctor.py`).
-- *with the plan*: the codes of `check` with the plan of the system; no entry: it has no plan. A name
-  that a node lacks by its plan is MG102 there, or MG101 a node, in place of what reads it in vain, if
-  the node has nothing in its place; MG108 is a node that the plan has not.
-- *Zenoh*: `check --from ROUTER`, by the tokens of a router. *rosgraph*: a message of `rosgraph_msgs`.
-  *recorded*: a bag. *check-launch*: a launch file that starts these nodes.
-- *build*: the fault put into the files of a built fleet (`tests/support/built_faults.py`), and what
-  `build` says of the folder that it reads back. *others may start it*: what a simulator, a driver or
-  somebody by hand may still give. *not of a fleet*: a tool that somebody starts, or another fleet.
-"""
+HEAD = fixture_text("graph_faults_page_head.txt")
 # The systems that are those of a plan.
 PLANS = {
     nav: lambda: plan(("nav2",), "L1"),

@@ -9,23 +9,12 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from fleet_folder import ARM
-from paths import FIXTURES
+from paths import FIXTURES, fixture_text
 
 # File -> its text, for a number of what it is large in.
 Files = Callable[[int], Mapping[str, str]]
 
-LAUNCH_PY = """\
-from launch import LaunchDescription
-from launch.actions import *
-from launch.conditions import *
-from launch.event_handlers import *
-from launch.launch_description_sources import *
-from launch.substitutions import *
-from launch_ros.actions import *
-from launch_ros.descriptions import *
-def generate_launch_description():
-    return LaunchDescription([{}])
-"""
+LAUNCH_PY = fixture_text("growing_files_launch_py.txt")
 ROVER = '<robot name="rover"><link name="base_link"/></robot>\n'
 NODE = 'Node(package="demo_nodes_cpp", executable="talker", name="n#"),\n'
 XML_NODE = '<node pkg="demo_nodes_cpp" exec="talker" name="n#"/>\n'
@@ -481,20 +470,7 @@ FLEETS: Mapping[str, Files] = {
     ),
     "groups of an SRDF": _semantic('<group name="g#"><joint name="lidar_joint"/></group>\n'),
 }
-MESSAGE = """\
-- name: /n#
-  publishers:
-  - name: /t#
-    type: {name: std_msgs/msg/String, hash: {version: 1, value: [0]}}
-    qos: {history: 1, depth: 5, reliability: 1, durability: 2, liveliness: 1,
-      deadline: {sec: 0, nanosec: 0}, lifespan: {sec: 0, nanosec: 0},
-      liveliness_lease_duration: {sec: 0, nanosec: 0}}
-  subscriptions: []
-  service_servers: []
-  service_clients: []
-  action_servers: []
-  action_clients: []
-"""
+MESSAGE = fixture_text("growing_files_message.yaml")
 
 
 def message(count: int) -> str:

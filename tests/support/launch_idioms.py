@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from launched_programs import launched
-from paths import FIXTURES, ROOT
+from paths import FIXTURES, ROOT, fixture_text
 
 PAGE = ROOT / "docs" / "launch-idioms.md"
 SOURCES = FIXTURES / "launch_idioms"
@@ -90,17 +90,7 @@ def tried(idiom: Idiom, folder: Path) -> str:
     return WORKS if counts == idiom.starts else f"starts {counts}"
 
 
-HEAD = """\
-# Idioms of launch files
-
-What launch authors write, each tried in the real `launch` 3.4.3 and `launch_ros` 0.26.6 (jazzy) with
-programs that do nothing. Made by `python tests/support/launch_idioms.py --write`; the tests run all of
-them wherever launch can be imported. *Before* is the version in which they were first tried. The files
-are in `fixtures/launch_idioms`, with [their fleet](../fixtures/launch_idioms/fleet.yaml).
-
-| idiom | before | now |
-|---|---|---|
-"""
+HEAD = fixture_text("launch_idioms_head.txt")
 MIDDLE = """
 
 ## Others beside ours

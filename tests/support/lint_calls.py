@@ -11,13 +11,3 @@ from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.rules.settings import ArgumentSet, Settings
-
-__all__ = [
-    "RULES",
-    "ArgumentSet",
-    "Settings",
-    "fix",
-    "lint_data",
-    "lint_file",
-    "lint_files",
-]  # fmt: skip

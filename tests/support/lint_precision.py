@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import NamedTuple
 
 from lint_triage import linted_corpus, linted_wheels
-from paths import CORPUS, FIXTURES, ROOT
+from paths import CORPUS, FIXTURES, ROOT, fixture_text
 from real_robots import corpus_files, wheel_files
 
 from multibot_rewrite.lint.registry import RULES
@@ -31,25 +31,7 @@ RELEASES = {"MB157": "humble", "MB172": "lyrical"}
 # Found in checkouts of whole packages alone, which have launch files or descriptions beside the file.
 IN_PACKAGES = ("MB145", "MB854", "MB856")
 BESIDE = (".yaml", ".yml", ".rviz")
-_HEAD = """\
-# How often the newest rules of urdf-lint are right
-
-Made by `python tests/support/lint_precision.py --write` from
-`fixtures/lint_precision.tsv`.
-
-Each rule was run over the public files and those of Python packages that [the page of
-judgements](reference.md#judgements) has, with the facts of the newest long-term release unless it says
-otherwise. Ten of its findings or more were judged, all where there are fewer, by running or
-reading what consumes the value. A rule with less than 95 % true findings is a note.
-{in_packages} need what lies beside a file, and were run over checkouts of public packages.
-
-Of defects planted in `tests/lint/`, one a file, so many gave a finding that the healthy file does not
-have: with all rules but those of this table, and with all. Of files that are odd and healthy none may
-have one of these rules. The tests count all of it anew:
-
-| what | defects | found without these rules | found | odd and healthy |
-|---|--:|--:|--:|--:|
-"""
+_HEAD = fixture_text("lint_precision_head.txt")
 _RULES = """
 No public file has what a rule with 0 finds: that rule rests on the source that is named, and on its
 examples and the defects planted in `tests/lint/`, each of which it finds alone.

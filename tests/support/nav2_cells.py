@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from named_ends import named_ends
+from paths import fixture_text
 from vendor_sources import VARIABLE, install, packages_below, sources_folder
 
 from multibot_rewrite import load_fleet
@@ -55,18 +56,7 @@ LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 LOOK_SECONDS, ASK_SECONDS = 40.0, 30.0
 # A busy machine answers late.
 TIMES = 4
-FLEET = """\
-layout: {layout}
-affix: {affix}
-distro: {release}
-stack: [{stack}, robot_state_publisher, driver]
-nodes: nodes.yaml
-{more}
-robots:
-  - {{name: robot1, description: rover.urdf, pose: {{x: 1.0}}}}
-  - {{name: robot2, description: rover.urdf, pose: {{x: 3.0, yaw: 1.5}}}}
-companions: {{params: params.yaml}}
-"""
+FLEET = fixture_text("nav2_cells_fleet.yaml")
 ROVER = """\
 <robot name="rover">
   <link name="base_footprint"/> <link name="base_link"/> <link name="base_scan"/>
@@ -74,45 +64,10 @@ ROVER = """\
   <joint name="scan" type="fixed"><parent link="base_link"/><child link="base_scan"/></joint>
 </robot>
 """
-NODES = """\
-nodes:
-  driver:
-    package: my_driver
-    frames: {odom_frame: odom, base_frame: base_footprint}
-    sends: {odom_frame: base_frame}
-    with: [tf_broadcaster]
-    publishes:
-      odom: nav_msgs/msg/Odometry
-      scan: sensor_msgs/msg/LaserScan
-    subscribes:
-      cmd_vel: geometry_msgs/msg/Twist
-"""
+NODES = fixture_text("nav2_cells_nodes.yaml")
 DRIVER = "driver:\n  ros__parameters: {odom_frame: odom, base_frame: base_footprint}\n"
 # What runs besides Nav2 on each robot.
-BESIDE = """\
-import os
-from launch import LaunchDescription
-from launch.actions import GroupAction, IncludeLaunchDescription
-from launch_ros.actions import PushRosNamespace
-from multibot_rewrite.launch import each_robot, node, place
-
-
-def actions(robot):
-    state = "robot_state_publisher"
-    return [
-        node(state, describe=True, package=state, executable=state),
-        node("driver", files="params.yaml", package="my_driver", executable="driver"),
-        {place}
-    ]
-
-
-def generate_launch_description():
-    def include(**given):
-        return GroupAction([IncludeLaunchDescription({file!r}, launch_arguments=given.items())])
-
-    nav2 = [include(**given) for given in {given!r}]
-    return LaunchDescription([*nav2, each_robot("fleet.yaml", actions)])
-"""
+BESIDE = fixture_text("nav2_cells_beside.txt")
 PROGRAMS = {
     "opennav_docking": "docking_server",
     "opennav_following": "following_server",

@@ -10,3 +10,8 @@ SUPPORT = ROOT / "tests" / "support"
 FIXTURES = ROOT / "fixtures"
 ROBOTS = FIXTURES / "robots"
 CORPUS = ROOT.parent / "shared" / "corpus"
+
+
+def fixture_text(name: str) -> str:
+    """A text that a test alone reads; it may be no valid file of its kind."""
+    return (FIXTURES / "texts" / name).read_text()

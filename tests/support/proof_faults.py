@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from paths import FIXTURES
+from paths import FIXTURES, fixture_text
 
 FILE = FIXTURES / "proof_faults.txt"
 
@@ -38,17 +38,7 @@ ROVER = b"""\
 """
 
 # The touch of two links that are lumped into one.
-TOUCH = b"""\
-<robot name="touch">
-  <link name="base"><collision/></link>
-  <link name="lid"><collision/><collision/></link>
-  <joint name="hinge" type="fixed"><parent link="base"/><child link="lid"/></joint>
-  <gazebo reference="base"><sensor name="bump" type="contact"><contact>
-    <collision>base_collision</collision>
-    <collision>base_fixed_joint_lump__lid_collision_2</collision>
-  </contact></sensor></gazebo>
-</robot>
-"""
+TOUCH = fixture_text("proof_faults_touch.urdf").encode()
 
 MODEL = b"""\
 <sdf version="1.9"><model name="cart">
@@ -68,19 +58,7 @@ GROUPS = b"""\
 ARM = b'<robot name="arm"><link name="a"/><link name="b"/><joint name="j" type="fixed"/></robot>'
 
 # Elements that are there and empty.
-EMPTY = b"""\
-<robot name="empty">
-  <link name="base"/>
-  <gazebo>
-    <plugin name="imu" filename="libgazebo_ros_imu_sensor.so">
-      <ros><namespace></namespace></ros>
-    </plugin>
-    <plugin name="spare" filename="libgazebo_ros_imu_sensor.so">
-      <ros><namespace/></ros>
-    </plugin>
-  </gazebo>
-</robot>
-"""
+EMPTY = fixture_text("proof_faults_empty.urdf").encode()
 
 SOURCES = {"rover": ROVER, "touch": TOUCH, "model": MODEL, "groups": GROUPS, "empty": EMPTY}
 

@@ -11,6 +11,7 @@ from typing import Any, cast
 import yaml
 from fleet_folder import planned_fleet
 from graph_examples import read_example, read_system
+from paths import fixture_text
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.base.findings.finding import SRDF, URDF, XACRO, Finding, Rule
@@ -30,17 +31,7 @@ from multibot_rewrite.rules.launch.judge import judge_launch
 from multibot_rewrite.rules.settings import Settings
 
 # What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
-DESCRIPTION = """\
-<robot name="rover">
-  <link name="base_link"/>
-  <link name="lidar_link"/>
-  <joint name="lidar_joint" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
-  <link name="wheel"/>
-  <joint name="wheel_joint" type="continuous">
-    <parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
-  </joint>
-</robot>
-"""
+DESCRIPTION = fixture_text("rule_examples_description.urdf")
 # Format of an example -> its file, and the key of a fleet file that names it.
 COMPANIONS = {
     "params": ("example.yaml", "params"),
@@ -70,7 +61,7 @@ def found(
 ) -> list[Finding]:
     """Return what the rule finds in an example, with the files that are beside it (its own by
     default)."""
-    _write(folder, rule.beside if beside is None else beside)
+    _write(folder, rule.page.beside if beside is None else beside)
     run = beside_example if _is_alone(rule) else RUNNERS[_format(rule)]
     findings = run(rule, example, folder)
     return [it for it in findings if it.code == rule.code]
@@ -171,7 +162,7 @@ def _fleet(
     description: str = DESCRIPTION,
 ) -> list[Finding]:
     """What is found in a fleet file of ``text`` and, where that says nothing of them, ``keys``."""
-    if "robot.urdf" not in rule.beside:
+    if "robot.urdf" not in rule.page.beside:
         _write(folder, {"robot.urdf": description})
     said = yaml.safe_load(text) or {}
     options = {it: value for it, value in rule.options.items() if it != BUILT}

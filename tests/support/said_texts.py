@@ -75,7 +75,7 @@ def rule_words() -> Iterator[tuple[str, str]]:
 
 def help_words() -> Iterator[tuple[str, str]]:
     """What the help of each command says, with its name; no example and no list of exit codes."""
-    for it in (*COMMANDS.values(), *PROGRAMS):
+    for it in (*COMMANDS.values(), *PROGRAMS.values()):
         yield from ((it.name, text) for text in (it.about, *it.more.split("\n\n")))
         yield from ((it.name, text) for text in it.exit_codes.split("; "))
         for option in (option for group in it.groups for option in group.options):

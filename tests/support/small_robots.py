@@ -30,3 +30,27 @@ def init(folder: Path, *words: str) -> int:
 def taken(folder: Path, *words: str) -> Any:
     assert init(folder, *words) == 0
     return yaml.safe_load((folder / "fleet.yaml").read_text())
+
+
+UP = """import os
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+HERE = os.path.dirname(__file__)
+def given(name):
+    path = os.path.join(HERE, name)
+    if name.endswith("sdf"):
+        return Node(package="ros_gz_sim", executable="create", arguments=["-file", path])
+    text = Command(["xacro ", path]) if name.endswith("xacro") else open(path).read()
+    program = "robot_state_publisher"
+    return Node(package=program, executable=program, parameters=[{"robot_description": text}])
+def generate_launch_description():
+    drivers = [Node(package="own", executable=f"driver{at}") for at in range(DRIVERS)]
+    return LaunchDescription([*map(given, FILES), *drivers])
+"""
+
+
+def loads(*files: str, drivers: int = 0) -> str:
+    """A launch file that gives these descriptions to publishers and spawners; without drivers
+    it shows them."""
+    return UP.replace("FILES", repr(files)).replace("DRIVERS", str(drivers))

@@ -67,9 +67,11 @@ OF_DESCRIPTIONS = {
 # A description and a stack -> the codes of warnings about what the description lacks.
 LACKING = {
     # Its one sensor is a colour camera: no scanner, no depth.
-    ("sdf", "rtabmap"): {"MG303"},
+    ("sdf", "rtabmap"): {"MF861"},
     **{("sdf", it): set() for it in ("slam_toolbox", "nav2_slam", "nav2_slam_composed")},
 }
+# What waits for a camera that the description has not.
+WITHOUT_CAMERA = {("gz", "image_proc"): {"MF861"}}
 
 
 class Cell(NamedTuple):
@@ -141,6 +143,7 @@ def pair_faults(one: str, other: str, release: str, folder: Path) -> list[str]:
         known = {"MG323", "MG408"}
     for stack in (one, other):
         known = known | refused(cell._replace(stack=stack))
+        known = known | WITHOUT_CAMERA.get((cell.robot, stack), set())
     # It waits for its file: which transforms it sends is not known before.
     known = known | {"MG408"} if "cartographer" in (one, other) else known
     return [str(it) for it in findings(cell, folder) if it.code not in known]
@@ -191,6 +194,7 @@ def faults(cell: Cell, folder: Path) -> list[str]:
     wrong += [f"no {code}" for code in sorted(wanted - errors)]
     if not wanted:
         own = OF_DESCRIPTIONS[cell.robot] | LACKING.get(cell[:2], set())
+        own = own | WITHOUT_CAMERA.get(cell[:2], set())
         wrong += [str(it) for it in found if it.level != ERROR and it.code not in own]
     return wrong
 

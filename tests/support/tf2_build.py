@@ -17,28 +17,10 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
+from paths import fixture_text
+
 # The wheels' targets name a Python include folder of the machine they were made on.
-_CMAKE = """\
-cmake_minimum_required(VERSION 3.21)
-project(tf2_msgs)
-foreach(package ament_cmake geometry_msgs action_msgs rosidl_default_generators)
-  find_package(${package} REQUIRED)
-endforeach()
-get_property(targets DIRECTORY PROPERTY IMPORTED_TARGETS)
-foreach(target ${targets})
-  get_target_property(folders ${target} INTERFACE_INCLUDE_DIRECTORIES)
-  if(folders)
-    list(FILTER folders EXCLUDE REGEX "^/opt/python/")
-    set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${folders}")
-  endif()
-endforeach()
-# rclpy goes by C alone.
-list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "(introspection|support)_cpp")
-include_directories(${PYTHON_FOLDERS})
-rosidl_generate_interfaces(
-  tf2_msgs msg/TFMessage.msg action/LookupTransform.action DEPENDENCIES geometry_msgs action_msgs)
-ament_package()
-"""
+_CMAKE = fixture_text("tf2_build_cmake.txt")
 _FILES = {
     "msg/TFMessage.msg": "geometry_msgs/TransformStamped[] transforms\n",
     "action/LookupTransform.action": (

@@ -23,6 +23,7 @@ from typing import Any, NamedTuple
 
 import yaml
 from fleet_folder import planned_fleet
+from paths import fixture_text
 from vendor_rows import parameter_rows
 from vendor_sources import WITHOUT, install, packages_below, sources_folder
 
@@ -33,18 +34,7 @@ HERE = Path(__file__).parent
 PAGE = HERE.parent.parent / "docs" / "vendors.md"
 RECORDER = HERE / "launch_recorder.py"
 ROBOT, OTHER = "robot1", "robot2"
-HEAD = """\
-# Vendors' robots: the plan and what their launch files start
-
-Made by `MULTIBOT_SOURCES=FOLDER python tests/support/vendor_systems.py --write`. It runs the vendors'
-launch files in the real `launch`, with programs that do nothing. *Named* are those of the started nodes
-that the plan has, *topics* those whose topics, services and actions it has too, *wrong* nodes that
-must run by the plan and that nothing starts. *Files* is the plan by the robot's own files and stacks,
-*launch* has its launch files besides, *before* stacks alone. Without `--write` it prints each node.
-
-| system | nodes | before | files: named | topics | wrong | launch: named | topics | wrong |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|\
-"""
+HEAD = fixture_text("vendor_systems_head.txt")
 # Of the spawner: options with a value.
 _VALUED = (
     *("-c", "--controller-manager", "-p", "--param-file", "-n", "--namespace", "-t"),

@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from launched_programs import launched
+from paths import fixture_text
 from told_nodes import nodes_of, words_of
 
 from multibot_rewrite import load_fleet
@@ -38,19 +39,7 @@ HELP = (
     ("How do I begin?", "multibot init --help", 13),
     ("What is it built with?", "multibot build --help", 22),
 )
-HEAD = """\
-# From one description to two robots that run
-
-Made by `python tests/support/walk.py REPOSITORY > tests/support/walk.md`, in a checkout of
-[{name}]({origin}): every
-command was run, and what it printed is below. Nothing but `--help` is needed to find the next one.
-
-{table}
-
-The launch is the real launch and launch_ros. In place of ROS's programs and the simulator there are
-programs that write down what they are told, and nodes that have the names, namespaces and remap rules
-that they were told; `graph.json` is what `multibot snapshot -o graph.json` sees of these.
-"""
+HEAD = fixture_text("walk_head.txt")
 _SECONDS = re.compile(r"\d+\.\d s")
 
 

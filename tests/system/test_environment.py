@@ -15,7 +15,16 @@ from multibot_rewrite.system.environment import (
     unfinished,
     view_caveats,
 )
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, UNKNOWN_NODE, End, Node
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    UNKNOWN_NODE,
+    End,
+    Node,
+)
 
 USUAL = DiscoverySettings(0, "SUBNET", (), "", "", False)
 
@@ -218,3 +227,38 @@ def test_discovery_is_not_finished_while_a_node_or_its_ends_are_missing() -> Non
     (served,) = unfinished([Node("/driver")], [], "h:1")
     assert served.message.endswith("set ROS_SUPER_CLIENT=TRUE")
     assert (bare.incomplete, unknown.incomplete, served.incomplete) == (True, True, True)
+
+
+def serving(node: str, namespace: str = "/robot1") -> tuple[End, ...]:
+    """The ends that every node has, as far as they count here."""
+    name = f"{namespace}/{node}"
+    service = End(SERVICE, SERVES, f"{name}/get_parameters", "", "", name, None, "p")
+    return service, end("p", name, f"{name}/out")
+
+
+MANY = tuple(own for it in range(6) for own in serving(f"node{it}"))
+
+
+@pytest.mark.parametrize(
+    ("more", "half"),
+    [
+        pytest.param((), "", id="all seen"),
+        pytest.param((end("p", "/robot1/lidar"), end("p", "/robot1/lidar", "/odom")), "/robot1/lidar",
+                     id="its readers have not come yet"),
+        pytest.param((end("p", "/robot1/_hidden"),), "", id="a tool, which is made without services"),
+        pytest.param((end("p", "/lidar"), End(TOPIC, SUBSCRIBES, "/odom", "", "", "/lidar", None, "p")),
+                     "", id="it reads: it is made without services"),
+        pytest.param((end("p", "/a"), end("p", "/b")), "", id="a quarter has none: so it is here"),
+    ],
+)  # fmt: skip
+def test_a_node_of_which_only_publishers_came_is_seen_in_half(
+    more: tuple[End, ...], half: str
+) -> None:
+    ends = (*MANY, *more)
+    nodes = [Node(it) for it in {it.node for it in ends}]
+    found = [it for it in unfinished(nodes, ends, "") if it.code == "nodes-without-readers"]
+    assert [it.incomplete for it in found] == [True] * bool(half)
+    assert half in "".join(it.message for it in found)
+    # Of a few nodes nobody can say what all have.
+    few = [it for it in ends if it.node[-1] in "01r"]
+    assert not [*unfinished([], few, "")]

@@ -43,6 +43,7 @@ from multibot_rewrite.system.records import (
     alternatives,
     answering,
     clocks,
+    doubts,
     incomplete,
     may_miss,
     nodes_by_robot,
@@ -98,6 +99,16 @@ def test_answers_are_added_to_what_is_known() -> None:
     assert (said.parameters, said.controllers) == ((rate, speed), (arm, leg))
     assert answering(said) == {"/a", "/x"}
     assert with_answers(system, [Answer("/b")]) == system
+
+
+def test_who_was_asked_and_did_not_answer_is_named() -> None:
+    """That of a node of which the life cycle alone was asked may not be installed here."""
+    system = System(nodes=tuple(map(Node, ("/a", "/b", "/c"))))
+    asked = [Question(it, f"{it}/get_parameters", GET_PARAMETERS) for it in ("/a", "/b")]
+    asked += [Question("/c", "/c/get_state", GET_STATE)]
+    (silent,) = doubts(with_answers(system, [Answer("/b")], asked))
+    assert silent.message.startswith("/a did not answer --state within 5 s")
+    assert not doubts(with_answers(system, [Answer("/a"), Answer("/b")], asked))
 
 
 def test_which_clock_a_node_goes_by() -> None:

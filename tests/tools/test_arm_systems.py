@@ -19,7 +19,7 @@ from declared_graph import endpoints, facts
 from fleet_folder import planned_fleet
 from lxml import etree
 from nav2_graphs import environment
-from paths import FIXTURES
+from paths import FIXTURES, fixture_text
 
 from multibot_rewrite import compare
 from multibot_rewrite.base.rosnames import bind, resolve_bound
@@ -57,21 +57,7 @@ WAITS |= {
     for sep in "/_"
     for release in ("kilted", "lyrical")
 }
-ARM = """\
-<robot name="arm">
-  <link name="world"/><link name="base"/><link name="tool"/>
-  <joint name="fixed" type="fixed"><parent link="world"/><child link="base"/></joint>
-  <joint name="joint1" type="revolute">
-    <parent link="base"/><child link="tool"/>
-    <limit lower="-1" upper="1" effort="1" velocity="1"/>
-  </joint>
-  <ros2_control name="arm" type="system">
-    <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
-    <joint name="joint1"><command_interface name="position"/><state_interface name="position"/></joint>
-    <sensor name="tcp_pose"/>
-  </ros2_control>
-</robot>
-"""
+ARM = fixture_text("arm_systems_arm.urdf")
 
 
 @cache

@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 from waiting import wait_until
 
 from tools.bringups import running
@@ -202,38 +203,7 @@ def test_a_stub_writes_down_how_it_was_started(tmp_path: Path) -> None:
     assert (row["files"], row["environ"]["MODEL"]) == ({"p.yaml": "a: 1"}, "x")
 
 
-LAUNCH = """\
-import os
-from launch import LaunchDescription
-from launch.actions import (
-    ExecuteProcess, IncludeLaunchDescription, RegisterEventHandler, SetEnvironmentVariable, TimerAction)
-from launch.event_handlers import OnProcessExit
-from launch.launch_description_sources import PythonLaunchDescriptionSource
-from launch.substitutions import PathJoinSubstitution
-from launch_ros.actions import Node
-from launch_ros.substitutions import FindPackageShare
-
-
-def generate_launch_description():
-    own = FindPackageShare('acme')
-    there = [FindPackageShare('not_here'), '/launch/x.launch.py']
-    first = Node(package='acme', executable='first', name='first', namespace='sub',
-                 respawn=True, prefix='gdb --args',
-                 parameters=[PathJoinSubstitution([own, 'config', 'p.yaml']), {'b': 'y'}],
-                 remappings=[('scan', '/front')], arguments=['--fast'])
-    return LaunchDescription([
-        SetEnvironmentVariable('MODEL', 'x'),
-        first,
-        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[
-            Node(package='acme', executable='second')])),
-        TimerAction(period=900.0, actions=[
-            ExecuteProcess(cmd=['ros2', 'run', 'acme', 'third', '-v'])]),
-        Node(package='controller_manager', executable='spawner', arguments=['a', 'b', '-c', '/m']),
-        ExecuteProcess(cmd=['touch /etc/x; MicroXRCEAgent udp4'], shell=True),
-        IncludeLaunchDescription(
-            PythonLaunchDescriptionSource(there), launch_arguments={'k': 'v'}.items()),
-    ])
-"""
+LAUNCH = fixture_text("bringups_launch.txt")
 
 
 @pytest.mark.slow

@@ -4,26 +4,11 @@
 from __future__ import annotations
 
 import pytest
+from paths import fixture_text
 
 from tools.interfaces.launch_files import LaunchedNode, launched_nodes
 
-PYTHON = """\
-def generate_launch_description():
-    namespace = LaunchConfiguration('namespace')
-    common = [('/tf', 'tf'), ('/tf_static', 'tf_static')]
-    return LaunchDescription([
-        Node(package='nav', executable='server', remappings=common + [('cmd_vel', 'cmd_vel_nav')]),
-        launch_ros.actions.LifecycleNode(
-            package='nav', executable='server', name='planner', namespace=namespace),
-        ComposableNodeContainer(
-            package='rclcpp_components', executable='component_container',
-            name=[namespace, '_box'], namespace='',
-            composable_node_descriptions=[
-                ComposableNode(package='nav', plugin='nav::Server', name='smoother', remappings=common),
-            ]),
-        Node(package='tool', executable=compute(), name=name_of(), remappings=rules()),
-    ])
-"""
+PYTHON = fixture_text("launch_files_python.txt")
 
 
 def test_a_launch_file_in_python() -> None:
@@ -45,21 +30,7 @@ def test_a_launch_file_is_never_run() -> None:
     )
 
 
-XML = """\
-<launch>
-  <!-- <node pkg="no" exec="no"/> -->
-  <group>
-    <node pkg="joy" exec="joy_node" name="joy" namespace="$(var ns)">
-      <remap from="joy" to="pad"/>
-      <remap from="/tf" to="tf"/>
-    </node>
-  </group>
-  <node_container pkg="rclcpp_components" exec="component_container" name="box">
-    <composable_node pkg="nav" plugin="nav::Server" name="planner"/>
-  </node_container>
-  <arg name="node"/>
-</launch>
-"""
+XML = fixture_text("launch_files_xml.xml")
 
 
 def test_a_launch_file_in_xml() -> None:
@@ -70,22 +41,7 @@ def test_a_launch_file_in_xml() -> None:
     )
 
 
-YAML = """\
-launch:
-- arg: {name: x}
-- node:
-    pkg: joy
-    exec: joy_node
-    name: joy
-    remap:
-    - {from: joy, to: pad}
-- node_container:
-    pkg: rclcpp_components
-    exec: component_container
-    name: box
-    composable_node:
-    - {pkg: nav, plugin: "nav::Server", name: planner}
-"""
+YAML = fixture_text("launch_files_yaml.yaml")
 
 
 def test_a_launch_file_in_yaml() -> None:

@@ -67,7 +67,7 @@ def test_every_section_of_the_vocabulary_is_on_its_page() -> None:
 
 def test_every_command_and_option_is_on_the_page() -> None:
     page = made()["commands.md"]
-    for command in (*PROGRAMS, *COMMANDS.values()):
+    for command in (*PROGRAMS.values(), *COMMANDS.values()):
         assert f" {command.name}\n" in page
         for option in (it for group in command.groups for it in group.options):
             assert f"`{', '.join(option.names)}" in page or option.keywords["metavar"] in page

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite.producers.sources.cpp import read_cpp
 from multibot_rewrite.producers.sources.records import Place
@@ -131,19 +132,7 @@ def test_python_2_has_no_parameters() -> None:
     assert list(python_parameters("print 'a'", PLACE, "old")) == []
 
 
-LIBRARY = """\
-drive:
-  odom_frame_id:
-    type: string
-    default_value: "odom"
-    read_only: true
-  wheels: {type: string_array, default_value: [], validation: {unique<>: null, size_lt<>: [5]}}
-  gains:
-    __map_wheels:
-      p: {type: double, default_value: 0.0, validation: {gt_eq<>: [0.0]}}
-  limit: {type: double}
-  empty: {type: string, default_value: ""}
-"""
+LIBRARY = fixture_text("parameter_sources_library.yaml")
 
 
 def test_the_parameters_of_a_library() -> None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.declared.shared import Command, Option
+from multibot_rewrite.cli.declared.options import Command, Option
 from tools.pages.markdown import ESCAPED
 
 HEAD = """\
@@ -19,7 +19,7 @@ What `--help` of each command says. Where ROS is sourced, `ros2 multibot` is `mu
 def page() -> str:
     """The page, Markdown."""
     named = [
-        *((it.name, it) for it in PROGRAMS),
+        *PROGRAMS.items(),
         *((f"multibot {name}", it) for name, it in COMMANDS.items()),
     ]
     return "\n".join((HEAD, *(line for it in named for line in _command(*it))))

@@ -77,7 +77,8 @@ def listed(rules: Iterable[Rule]) -> Iterator[tuple[str, str, str, str]]:
 
 def examples(rule: Rule) -> list[tuple[str, str]]:
     """Titles and texts of its examples, and of the files beside them."""
-    good = "" if rule.good == rule.fixed else rule.good
-    texts = (("Bad", rule.bad), ("Fixed by --fix", rule.fixed), ("Good", good))
-    beside = ((f"Beside it, {name}", text) for name, text in rule.beside.items())
+    page = rule.page
+    good = "" if page.good == page.fixed else page.good
+    texts = (("Bad", page.bad), ("Fixed by --fix", page.fixed), ("Good", good))
+    beside = ((f"Beside it, {name}", text) for name, text in page.beside.items())
     return [(title, text) for title, text in (*texts, *beside) if text.strip()]

@@ -59,6 +59,14 @@ def _characters(text: bytes) -> int:
     return len(text) if text.isascii() else len(text.translate(None, _FOLLOWING))
 
 
+class Remap(NamedTuple):
+    """A remap rule ``old:=new`` for a node of a graph; all are full names."""
+
+    node: str
+    old: str
+    new: str
+
+
 class Finding(NamedTuple):
     """Something that a person should know, and where.
 
@@ -70,7 +78,8 @@ class Finding(NamedTuple):
 
     In a fleet or graph, ``robot`` and ``node`` say who it is about (either may be empty) and
     ``names`` which topics, services, actions or frames. ``robots`` are all of which it is true, that of
-    its words first, where it is one for several or is known by its line.
+    its words first, where it is one for several or is known by its line. ``remaps`` mend it: the rules
+    that the hint names.
     """
 
     code: str
@@ -87,6 +96,7 @@ class Finding(NamedTuple):
     node: str = ""
     names: tuple[str, ...] = ()
     robots: tuple[str, ...] = ()
+    remaps: tuple[Remap, ...] = ()
 
     @property
     def place(self) -> str:
@@ -173,31 +183,6 @@ class Rule(NamedTuple):
         """The page with the examples."""
         return rule_page(self.examples or self.code)
 
-    @property
-    def bad(self) -> str:
-        """A text that has the finding exactly once, in line ``line``."""
-        return self.page.bad
-
-    @property
-    def good(self) -> str:
-        """A text that does not have the finding."""
-        return self.page.good
-
-    @property
-    def fixed(self) -> str:
-        """What the fix makes of ``bad``; empty where there is none."""
-        return self.page.fixed
-
-    @property
-    def line(self) -> int:
-        """The line of ``bad`` with the finding."""
-        return self.page.line
-
-    @property
-    def beside(self) -> Mapping[str, str]:
-        """The files beside the example, by name."""
-        return self.page.beside
-
     def finding(self, message: str, hint: str = "", **place: Any) -> Finding:
         """A finding of this rule; ``place`` are the other fields of ``Finding``; one of a line alone
         is at its first column."""
@@ -243,7 +228,9 @@ _TITLE = lazy_compile(r"(Bad|Fixed|Good|Beside it, `[^`]+`)(?: \(line ([0-9]+)\)
 
 
 class RulePage(NamedTuple):
-    """The words and examples of a rule."""
+    """The words and examples of a rule: ``bad`` has the finding exactly once, in line ``line``, and
+    ``good`` has none; ``fixed`` is what the fix makes of it, if there is one; ``beside`` are files by
+    name."""
 
     what: str = ""
     why: str = ""

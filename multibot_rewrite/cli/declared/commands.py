@@ -1,91 +1,147 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every command line of the package: what it takes, what it is for, what its exit codes mean."""
+"""Every command line of the package, read from its page ``NAME.txt``: what it takes, what it is for,
+what its exit codes mean.
+
+A line that is not indented begins a part: ``key: text``, or ``[title]`` with the options of a group,
+each ``KIND NAME METAVAR ...: what it is for``. What many commands take is in ``shared.txt``: its
+groups by their titles alone, its options by ``--name``, with a text of their own behind it or not.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from itertools import pairwise
 
-from multibot_rewrite.cli.declared.description import ADOPT, JOIN, LINT, POSTFIX, RENAME
-from multibot_rewrite.cli.declared.fleet import BUILD, INIT, PLAN, REHEARSE, VIEW
-from multibot_rewrite.cli.declared.graph import CHECK, CHECK_LAUNCH, SNAPSHOT
-from multibot_rewrite.cli.declared.shared import (
-    DISTRO,
-    GENERAL,
-    RESULT_OUTPUT,
-    TRUST,
-    VOCABULARY,
-    Command,
-    Example,
-    OptionGroup,
-    argument,
-    form,
-    output_group,
-    path_option,
+from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
+from multibot_rewrite.base.findings.finding import LEVELS
+from multibot_rewrite.base.findings.formats import FORMATS
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS, SEPARATORS, WORLD_SYSTEMS
+from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES, VARIABLE
+from multibot_rewrite.cli.declared.options import KINDS, Command, Example, Option, OptionGroup
+from multibot_rewrite.cli.values import MAX_DOMAIN
+
+# What pages say of other modules: the words of a choice, and how they are explained.
+_KNOWN = {
+    "LAYOUTS": "|".join(name for it in LAYOUTS for name in (it.name, it.short)),
+    "layouts": "; ".join(f"{it.name} ({it.short}): {it.about}" for it in LAYOUTS),
+    "layout names": ", ".join(it.name for it in LAYOUTS),
+    "layout": DEFAULT_LAYOUT,
+    "WORLD_SYSTEMS": "|".join(WORLD_SYSTEMS),
+    "separators": " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items()),
+    "shared": ", ".join((*WORLD_FRAMES, *SHARED_TOPICS)),
+    "LEVELS": "|".join(LEVELS),
+    "FORMATS": "|".join(FORMATS),
+    "formats": ", ".join(FORMATS),
+    "RELEASES": "|".join(RELEASES),
+    "releases": ", ".join(RELEASES),
+    "variable": VARIABLE,
+    "release": NEWEST_LTS,
+    "domains": str(MAX_DOMAIN),
+}
+_Part = tuple[str, Sequence[str]]
+
+
+@cache
+def read_command(name: str) -> Command:
+    """Return the command of a page; raises FileNotFoundError where there is none."""
+    fields: dict[str, str] = {}
+    groups: list[OptionGroup] = []
+    examples: tuple[Example, ...] = ()
+    for head, below in _page(name):
+        key, _, text = head.partition(":")
+        if head.startswith("["):
+            groups.append(_group(head.strip("[]"), below))
+        elif key == "examples":
+            examples = tuple(_example(it) for it in below if it)
+        else:
+            fields[key] = text.strip() or _paragraphs(below)
+    return Command(
+        name,
+        fields.get("module", name.replace("-", "_")),
+        fields["usage"],
+        fields["about"],
+        examples,
+        tuple(groups),
+        fields["exit codes"],
+        fields.get("more", ""),
+        fields.get("fail on", ""),
+        "findings first" in fields,
+    )
+
+
+def _page(name: str) -> Iterator[_Part]:
+    path = os.path.join(os.path.dirname(__file__), f"{name}.txt")
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    for word, said in _KNOWN.items():
+        text = text.replace(f"{{{word}}}", said)
+    return _parts(text.splitlines())
+
+
+def _parts(lines: Sequence[str]) -> Iterator[_Part]:
+    """The lines that are not indented, each with those below it, two characters less indented."""
+    starts = [at for at, it in enumerate(lines) if it.strip() and not it.startswith(" ")]
+    for start, end in pairwise((*starts, len(lines))):
+        yield lines[start], [it[2:] for it in lines[start + 1 : end]]
+
+
+def _example(line: str) -> Example:
+    command, _, about = line.partition("    # ")
+    return Example(command, about)
+
+
+def _paragraphs(lines: Sequence[str]) -> str:
+    """Paragraphs in one line each; one that is indented keeps its lines."""
+    parts = "\n".join(lines).strip("\n").split("\n\n")
+    return "\n\n".join(it if it.startswith(" ") else it.replace("\n", " ") for it in parts)
+
+
+def _group(title: str, lines: Sequence[str]) -> OptionGroup:
+    """A group of options; one that is only named is shared."""
+    options = tuple(_option(" ".join((it, *more))) for it, more in _parts(lines))
+    return OptionGroup(title, options) if options else _shared()[title]
+
+
+def _option(text: str) -> Option:
+    """An option as a page has it; one without a kind is shared."""
+    head, _, about = " ".join(text.split()).partition(": ")
+    kind, *words = head.split()
+    if words or kind in KINDS:
+        return KINDS[kind](about, *words)
+    every = (it for group in _shared().values() for it in group.options)
+    found = next(it for it in every if kind in it.names)
+    return found._replace(help=about) if about else found
+
+
+@cache
+def _shared() -> Mapping[str, OptionGroup]:
+    groups = (_group(head.strip("[]"), below) for head, below in _page("shared"))
+    return {it.title: it for it in groups}
+
+
+class _Pages(Mapping[str, Command]):
+    """Commands by name, each read when it is asked for."""
+
+    def __init__(self, *names: str) -> None:
+        self._names = names
+
+    def __getitem__(self, name: str) -> Command:
+        if name not in self._names:
+            raise KeyError(name)
+        return read_command(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+COMMANDS: Mapping[str, Command] = _Pages(
+    *("adopt", "build", "check", "check-launch", "init", "inspect", "join"),
+    *("plan", "rehearse", "rename", "snapshot", "view"),
 )
-
-REPORT_FORMS = ("table", "json")
-
-INSPECT = Command(
-    "inspect",
-    "inspect",
-    "%(prog)s [CODE... | NAME | FILE] [NAME:=VALUE...] [options]",
-    "Explain a finding, a plugin, a xacro, a fleet or a node.",
-    (
-        Example("multibot inspect MB202", "a finding: what it is, why, how to fix it"),
-        Example("multibot inspect MB", "all rules of urdf-lint; MG: those of check"),
-        Example("multibot inspect libgazebo_ros_diff_drive.so", "which of its values are names?"),
-        Example("multibot inspect arm.urdf.xacro", "which argument goes into which names?"),
-        Example("multibot inspect fleet.yaml", "what its launch files start, for whom"),
-        Example("multibot inspect my_package/driver.py", "what a node does, by its source"),
-        Example("multibot inspect --suggest rover.urdf -o acme.vocab", "draft what is missing"),
-        Example("multibot inspect", "all that is known: plugins, then rules"),
-    ),
-    (
-        OptionGroup(
-            "input",
-            (
-                argument(
-                    "words",
-                    "NAME",
-                    "a finding's code, its beginning, or its name; a library, class, element or"
-                    " sensor type; a xacro file, and NAME:=VALUE for it; a fleet file",
-                    "*",
-                ),
-                path_option(
-                    "--suggest",
-                    "write a file of plugin definitions, for the plugins of this description that"
-                    " are not known; NAME:=VALUE is for xacro",
-                ),
-                VOCABULARY,
-                DISTRO,
-                TRUST,
-            ),
-        ),
-        output_group(RESULT_OUTPUT, form(REPORT_FORMS, "how it is written")),
-        GENERAL,
-    ),
-    "0 done; 2 wrong use, an unknown name, or a file that cannot be read",
-    more="To find what an argument affects, the xacro is expanded again with another value for it.",
-)
-
-PROGRAMS = (POSTFIX, LINT)
-COMMANDS: Mapping[str, Command] = MappingProxyType(
-    {
-        it.name: it
-        for it in (
-            ADOPT,
-            BUILD,
-            CHECK,
-            CHECK_LAUNCH,
-            INIT,
-            INSPECT,
-            JOIN,
-            PLAN,
-            REHEARSE,
-            RENAME,
-            SNAPSHOT,
-            VIEW,
-        )
-    }
-)
+# The commands that are programs of their own.
+PROGRAMS: Mapping[str, Command] = _Pages("urdf-postfix", "urdf-lint")

@@ -9,6 +9,7 @@ from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN
 from multibot_rewrite.base.rosnames import check_name_in_code, expand
 from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.spelling.of_runs import asked_alone
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.targets import target_of
 from multibot_rewrite.system.records import ACTION, TOPIC
@@ -51,5 +52,6 @@ def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[s
     for run, end, name in table.ends:
         if run.robot == robot and run.full_name in stack and end.kind in (TOPIC, ACTION):
             above, _, node = stack[run.full_name].rpartition("/")
-            found.setdefault(expand(end.remapped or end.name, above, node), name)
+            asked = end.remapped or asked_alone(run.fact, end)
+            found.setdefault(expand(asked, above, node), name)
     return found

@@ -13,6 +13,7 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
+from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import (
@@ -37,43 +38,6 @@ LONG = 1000
 _UNREADABLE = lazy_compile("No such file|cannot be read|Is a directory|Permission denied")
 _NOT_DEFINED = lazy_compile(
     r"unknown macro name: (?:xacro:)?([\w.]+)|name '(\w+)' is not defined|has no key"
-)
-# What xacro says -> what to do about it; {} stands for the argument that is missing.
-_HINTS = (
-    ("xacro may", "give --trust if you trust the file, or urdf-lint the folder: --roots"),
-    ("variables alone", "give --trust if you trust the file"),
-    ("refused: ", "a xacro file may compute, no more; give --trust if you trust it"),
-    ("not permitted", "a xacro file may compute, no more; give --trust if you trust it"),
-    ("new thread", "a xacro file may compute, no more; give --trust if you trust it"),
-    ("open files", "a xacro file may compute, no more; give --trust if you trust it"),
-    ("MemoryError", "does a macro call itself? it has 2 GiB, --trust lifts the limit"),
-    ("Undefined substitution argument", "give it as {}:=VALUE"),
-    (
-        "AMENT_PREFIX_PATH",
-        "$(find PACKAGE) needs a sourced ROS 2, or its repository beside this one in src/",
-    ),
-    ("No such file", "check the path"),
-    ("Is a directory", "check the path"),
-    (
-        "is not found",
-        "source the workspace it is in; urdf-lint takes a folder above it, too: --roots",
-    ),
-    ("package", "source the workspace that holds it"),
-    ("Undefined block", "give it to the macro, or call it what the macro's params call it: *NAME"),
-    ("Invalid parameter", "the macro has no such parameter: see its params"),
-    ("missing attribute", "add it, an <xacro:arg> needs its default"),
-    ("not a boolean", "write true, false, 1, 0 or an expression"),
-    ("must be valid python identifiers", "use letters, digits and underscores"),
-    ("invalid syntax", "correct the expression"),
-    ("unknown macro name", "check its name and the <xacro:include> it comes from"),
-    ("Undefined parameters", "give the macro all its parameters"),
-    ("is not defined", "define it with <xacro:property> or <xacro:arg>"),
-    ("environment variable", "set it, or use $(optenv NAME DEFAULT)"),
-    ("recursion", "a macro or an include leads back to itself, or elements are nested too deep"),
-    ("not UTF-8", "save it as UTF-8"),
-    ("amplification", "entities are not accepted, write out what they stand for"),
-    ("unbound prefix", 'declare it: xmlns:xacro="http://www.ros.org/wiki/xacro"'),
-    ("not well-formed XML", "correct the XML and try again"),
 )
 
 
@@ -105,8 +69,8 @@ def kept_expansions() -> Iterator[None]:
         _KEPT.reset(before)
 
 
-def _once(key: object, expanded: Callable[[], _T]) -> _T:
-    """Return what was expanded for this key before, or raise the same error."""
+def once_kept(key: object, expanded: Callable[[], _T]) -> _T:
+    """Return what was made for this key before in the block, or raise the same error."""
     kept = _KEPT.get()
     if kept is None:
         return expanded()
@@ -143,7 +107,7 @@ def expand_whole(
         _tell_missing(reach, result.fences)
         return Expanded(_text(path, result, Trace(result, sources, path)), sources.texts)
 
-    return _once((path, frozenset(arguments.items()), find, reach), expanded)
+    return once_kept((path, frozenset(arguments.items()), find, reach), expanded)
 
 
 def expand_traced(
@@ -170,7 +134,7 @@ def expand_traced(
         return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts), Pieces(trace))
 
     given = frozenset(arguments.items()), frozenset(changed.items())
-    return _once((path, data, *given, find, reach, in_pieces), expanded)
+    return once_kept((path, data, *given, find, reach, in_pieces), expanded)
 
 
 def _text(path: str, result: Result, trace: Trace) -> bytes:
@@ -227,7 +191,8 @@ def _message(path: str, failure: Failure, reason: str, trace: Trace) -> str:
     inner = path if inner == os.path.normpath(path) else inner
     if not os.path.isabs(path):
         reason = reason.replace(os.path.join(os.getcwd(), ""), "")
-    hint = next((hint for word, hint in _HINTS if word in reason), "run xacro on it to see more")
+    hints = load_own_yaml(__file__, "xacro_hints.yaml")
+    hint = next((hint for word, hint in hints if word in reason), "run xacro on it to see more")
     argument = reason.partition(" argument ")[2].partition(" ")[0]
     where = f"{inner}:{failure.position[0]}:{failure.position[1]}" if failure.position else ""
     where = where or _place(failure, trace) or inner

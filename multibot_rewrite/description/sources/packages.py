@@ -103,7 +103,7 @@ def sources_around(file: str) -> str:
     return above[1] if own else ""
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=64)
 def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
     """Packages below some folders by name, each with its folders; a folder of that name counts where no
     manifest has it."""

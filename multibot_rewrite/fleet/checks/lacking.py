@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of a stack that end at once, because what they read is in no file of the robot.
+"""Nodes of a stack that end at once, because what they read is in no file of the robot, or wait for
+ever, because no camera of its description sends it.
 
 Sources: moveit2 jazzy moveit_ros/planning/rdf_loader/src/rdf_loader.cpp (no robot_description_semantic,
 no model), ros2_control jazzy hardware_interface/src/component_parser.cpp ("no ros2_control tag"),
@@ -11,13 +12,23 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.robots.fitting.node_topics import topic_of
+from multibot_rewrite.fleet.robots.fitting.sensors import (
+    OF_CAMERAS,
+    offered_topics,
+    sent_as,
+    wanted,
+)
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
-from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP
+from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
 
 CARTOGRAPHER = "cartographer_node"
 LACKING = declare("MF857", "node-without-its-file", ERROR, formats=("fleet",))
+NO_CAMERA = declare("MF861", "node-without-its-camera", WARNING, formats=("fleet",))
 
 
 class Need(NamedTuple):
@@ -60,3 +71,36 @@ def lacking(plan: FleetPlan) -> Iterator[Finding]:
                 continue
             message = f"robot {robot.spec.name!r} runs {node.name} ({node.origin}) with {need.what}"
             yield at_robot(LACKING, robot, message, f"{need.hint}, or leave the stack out")
+
+
+def without_camera(plan: FleetPlan) -> Iterator[Finding]:
+    """Find the nodes of a stack that hear a camera which a simulated robot has not, or of which it has
+    several: nothing says which one is meant."""
+    for robot in (it for it in plan.robots if it.spec.simulator != REAL and not it.spec.launch):
+        nodes = plan.evidence_of(robot).nodes
+        waiting = [it for it in nodes if it.origin.stack and not (it.when or it.shared)]
+        hears = [(it, end, kind) for it in waiting for end, kind in _of_cameras(it)]
+        offered = offered_topics(robot.member, robot.spec) if hears else {}
+        lost = [
+            (it.name, topic_of(it, end), kind)
+            for it, end, kind in hears
+            if topic_of(it, end) not in {*offered.get(kind, ()), *sent_as(nodes, kind)}
+        ]
+        if lost:
+            who, what, kinds = (dict.fromkeys(it) for it in zip(*lost, strict=True))
+            images = [topic for kind in OF_CAMERAS[:2] for topic in offered.get(kind, ())]
+            has = f"its cameras send {shorten(images)}" if images else _NONE
+            hint = _HEAR if any(offered.get(it) for it in kinds) else _TAKE
+            waits = f"nothing sends {', '.join(what)} to {', '.join(who)} of {robot.spec.name!r}"
+            yield at_robot(NO_CAMERA, robot, f"{waits}: {has}", hint)
+
+
+_NONE = "its description has no camera"
+_TAKE = "take a description with a camera that does, or leave the stack out"
+_HEAR = "say which one in `remaps` of a stack of your own (docs/stacks.md), or leave the stack out"
+
+
+def _of_cameras(node: NodeFacts) -> Iterator[tuple[Endpoint, str]]:
+    """Yield what a node hears of a camera, with its kind."""
+    kinds = ((it, wanted(node, it)) for it in node.endpoints if "<" not in it.name)
+    yield from (it for it in kinds if it[1] in OF_CAMERAS)

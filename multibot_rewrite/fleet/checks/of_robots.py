@@ -16,7 +16,7 @@ from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.readback.meeting import OPENED
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.fleet.checks.lacking import lacking
+from multibot_rewrite.fleet.checks.lacking import lacking, without_camera
 from multibot_rewrite.fleet.checks.named_twice import named_twice
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec, Sources
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -56,6 +56,7 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
     for found in plan.evidence.values():
         yield from found.findings
     yield from lacking(plan)
+    yield from without_camera(plan)
     yield from _too_near(plan)
     yield from launched_prefixes(plan)
     yield from moveit_frames(plan)

@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from multibot_rewrite.base import other_words
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.file_kinds import FLEET, refuse_others
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.other_words import other_words
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
 
 Path = tuple[Any, ...]
@@ -168,7 +168,7 @@ def _known(word: object, known: Iterable[object], below: Collection[str] = ()) -
     ``below`` are words that are known one step down, in ``BELOW``.
     """
     words = [str(it) for it in known]
-    other = other_words.KEYS.get(str(word), str(word))
+    other = other_words("keys").get(str(word), str(word))
     if other in words:
         return f"use {other!r}"
     if other in below:

@@ -7,8 +7,11 @@ from __future__ import annotations
 import json
 import os
 import re
+import shlex
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import cache
+from io import StringIO
 from typing import Any, NamedTuple, TypeAlias
 
 import yaml
@@ -42,7 +45,7 @@ def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
                 check_files(inner, (*at, key, number), places)
             continue
         if key == "launch":
-            value = [it.partition(" ")[0] for it in listed(value) if not _of_package(it)]
+            value = [_file_and_rest(it)[0] for it in listed(value) if not _of_package(it)]
         kinds = value.items() if key == "companions" and value else [("", value)]
         for kind, paths in kinds:
             here = (*at, key, kind) if kind else (*at, key)
@@ -97,8 +100,19 @@ def _launch_path(folder: str, text: str) -> str:
     """What follows ``ros2 launch``, with the path of its file relative to the working directory."""
     if _of_package(text):
         return text
-    file, blank, arguments = text.partition(" ")
-    return f"{_joined(folder, file)}{blank}{arguments}"
+    file, rest = _file_and_rest(text)
+    return f"{shlex.quote(_joined(folder, file))} {rest}".rstrip()
+
+
+def _file_and_rest(text: str) -> tuple[str, str]:
+    """The first word of what follows ``ros2 launch``, as a shell has it, and what follows that."""
+    rest = StringIO(text)
+    words = shlex.shlex(rest, posix=True)
+    words.whitespace_split, words.commenters = True, ""
+    with suppress(ValueError):  # it is told where the arguments are read
+        return words.get_token() or "", rest.read()
+    file, _, more = text.partition(" ")
+    return file, more
 
 
 def _joined(folder: str, path: str) -> str:
@@ -110,8 +124,9 @@ def _joined(folder: str, path: str) -> str:
 
 def _of_package(text: str) -> bool:
     """Is it a package and the name of a file in it, not a path?"""
-    words = text.split()
-    return len(words) > 1 and not any("=" in it for it in words[:2])
+    package, rest = _file_and_rest(text)
+    file = next(iter(rest.split()), "")
+    return bool(file) and "=" not in package + file
 
 
 def listed(value: Any) -> Sequence[Any]:

@@ -152,7 +152,8 @@ def system_of_graph(
     around = dict(os.environ) | ({} if domain is None else {"ROS_DOMAIN_ID": str(domain)})
     settings(around)
     seen = observe(Request(seconds, headers=True), around)
-    return with_answers(seen, ask(questions(seen), ANSWER_SECONDS, around) if states else ())
+    asked = [*questions(seen)] if states else []
+    return with_answers(seen, ask(asked, ANSWER_SECONDS, around) if states else (), asked)
 
 
 def judge(system: System) -> list[Finding]:

@@ -6,8 +6,10 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import lru_cache
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import RemapRule
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.knowledge.parameters import KnownNodes
@@ -57,7 +59,16 @@ def known_here(
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
     """All that these launch files start, with the robot in the place of ``{robot}``; raises as
     ``launched_robot``."""
-    return joined([_graph(it, _times(it.file)) for it in _own(orders, robot)])
+    return joined([*map(_read, _own(orders, robot))])
+
+
+def _read(order: LaunchOrder) -> LaunchGraph:
+    """However its path is written, a launch file is read once; what is wrong is said of the path that
+    was given."""
+    whole = order._replace(file=os.path.abspath(order.file))
+    with suppress(InputError):
+        return _graph(whole, _times(whole.file))
+    return launch_graph(order)
 
 
 @lru_cache

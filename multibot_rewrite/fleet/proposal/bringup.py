@@ -10,16 +10,15 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import is_called_as_switch, other_values
-from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.proposal.launches import (
     Bringup,
     Reading,
     is_of_robot,
     read_any,
     read_as,
+    read_named,
 )
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import (
@@ -29,8 +28,6 @@ from multibot_rewrite.producers.launch.records import (
     LaunchOrder,
 )
 
-# A robot to read a launch file for.
-ANY = "robot1"
 # Launch files that are read with their own arguments, and orders of one of them with a switch.
 _MOST, _MOST_SWITCHES = 16, 8
 _PUBLISHERS = ("robot_state_publisher", "robot_state_publisher::RobotStatePublisher")
@@ -80,10 +77,7 @@ class Robot(NamedTuple):
 
 def bringup_as_named(order: LaunchOrder) -> Bringup:
     """The launch file that was named. Raises InputError where it cannot be read, or starts nothing."""
-    graph = launch_of([order], ANY)
-    unread = [it.message for it in graph.notes if not it.parameters]
-    if unread and not graph.nodes:
-        raise InputError(f"{order.file}: the launch file cannot be read: {unread[0]}")
+    graph = read_named(order).graph
     return Bringup(order, graph, _is_simulated(graph))
 
 
@@ -107,6 +101,14 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
             first, *others = sorted(fits, key=lambda it: (_tries(it, simulated), _rank(it)))
             return Bringup(first.order, first.graph, simulated, tuple(it.order for it in others))
     return None
+
+
+def processes_of_robot(it: Reading) -> int:
+    """How many processes a launch file starts for a robot, its simulator as one; none where it is a
+    trial, or neither publishes a description nor simulates one. Raises nothing."""
+    simulates = _is_simulated(it.graph)
+    starts = simulates or any(map(_publishes, it.graph.nodes))
+    return len({*_own(it.graph)}) + simulates if starts and not _tries(it, True) else 0
 
 
 def _with_own_arguments(

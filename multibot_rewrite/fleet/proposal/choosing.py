@@ -1,24 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which of several descriptions is the robot: what launch files load, and whose names the files beside
-them have. Where nothing says it, the likeliest has rivals.
+"""Which of several descriptions is the robot: what launch files load that start one, and whose names
+the files beside them have. Where nothing says it, the likeliest has rivals.
 """
 
 from __future__ import annotations
 
 import os
-import re
-import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.description.sources.expand import once_kept
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.description.sources.packages import package_of
+from multibot_rewrite.fleet.proposal.bringup import processes_of_robot
+from multibot_rewrite.fleet.proposal.launches import Reading
 from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import names_of_files
-from multibot_rewrite.fleet.proposal.searching import Found, home_of, text_of
+from multibot_rewrite.fleet.proposal.searching import Found, loaded_by, text_of
 
 # What descriptions of a part alone are called.
 _PART = lazy_compile(
@@ -29,37 +28,17 @@ _COPY = lazy_compile(r"(?<![ (_-])[ (_-]+copy\b\)?|(?<!\s)\s*\(\d+\)")
 _BUILDER = "MoveItConfigsBuilder"
 _BUILT = lazy_compile(_BUILDER + r"""\(\s*(?:robot_name\s*=\s*)?["'](\w+)["']""")
 _BUILT_PACKAGE = lazy_compile(r"""\bpackage_name\s*=\s*["'](\w+)["']""")
-# Files that are shown where nothing says which is meant.
-MOST_SHOWN = 6
 # With a share of its names that is so many times as large, files are for this description.
 _MORE = 2
 
 
-class Undecided(UsageError):
-    """Nothing says which of some files is meant: ``files`` have what is to be said of each."""
-
-    def __init__(self, what: str, files: Mapping[str, str], found: Found, *before: str) -> None:
-        """``before`` are files that are named beside the one that is meant, as are those that were."""
-        self.files = files
-        named = [*before, *found.meant, next(iter(files))]
-        home = os.path.abspath(home_of(named[0]))
-        folders = [it for it in found.folders if os.path.abspath(it) != home]
-        shown = shorten(map(self.said, files), MOST_SHOWN)
-        command = f"multibot init {shlex.join([*folders, *named])}"
-        super().__init__(f"{what}: {shown}; name one: {command}")
-
-    def said(self, path: str) -> str:
-        """A file as it is shown."""
-        return f"{path} ({self.files[path]})" if self.files[path] else path
-
-
 class Candidate(NamedTuple):
-    """A description and what speaks for it: how many launch files load it, whether its package is named
-    after it, how many of its names the files beside it have; ``part`` is whether it is called like a
-    part, or the package of another description uses its package."""
+    """A description and what speaks for it: how many processes the launch file starts that loads it,
+    whether its package is named after it, how many of its names the files beside it have; ``part`` is
+    whether it is called like a part, or the package of another description uses its package."""
 
     robot: Looked
-    launched: int
+    started: int
     of_package: bool
     named: int
     part: bool
@@ -100,10 +79,11 @@ def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
 
 def may_be_partners(path: str, found: Found) -> Iterator[str]:
     """Files of the other kind that may be of the same robot: an SDF of a URDF, a URDF of an SDF. They
-    are called alike, or a launch file names both."""
+    are called alike, or a launch file loads both."""
+    launched = [paths for _, paths in loaded(found) if os.path.realpath(path) in paths]
     for other in found.every:
         if is_model(other) != is_model(path) and (
-            _stem(other) == _stem(path) or _are_launched_together(path, other, found)
+            _stem(other) == _stem(path) or any(os.path.realpath(other) in it for it in launched)
         ):
             yield other
 
@@ -126,17 +106,6 @@ def is_model(path: str) -> bool:
     return ".sdf" in os.path.basename(path) or path.endswith(".model")
 
 
-def _are_launched_together(path: str, other: str, found: Found) -> bool:
-    both = [_word_for(it) for it in (path, other)]
-    return any(all(it in text_of(launch) for it in both) for launch in found.launch)
-
-
-def _word_for(path: str) -> str:
-    """What names a description in a launch file: a model by its folder."""
-    base = os.path.basename(path)
-    return base if base != "model.sdf" else os.path.basename(os.path.dirname(path))
-
-
 def acts(it: Looked) -> bool:
     """Can it move, or does it sense? A model of a thing has at most a plugin of its own."""
     if it.tag != "sdf" or it.links > 1 or any(_moving(it)):
@@ -148,7 +117,7 @@ def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
     links, moving = frozenset(_links(it)), frozenset(_moving(it))
     return Candidate(
         it,
-        launches_of(it.path, found),
+        processes_with(it.path, found),
         names_its_package(it.path),
         len(said & (links | moving)),
         is_called_like_a_part(it.path),
@@ -180,22 +149,20 @@ def names_its_package(path: str) -> bool:
 
 
 def _rank(it: Candidate) -> tuple[object, ...]:
-    """By kind, launched, of its package, named; then what is no copy, for a simulator, has
-    ``<ros2_control>``, a short path."""
+    """By kind, by what its launch file starts, of its package, named; then what is no copy, for a
+    simulator, has ``<ros2_control>``, a short path."""
     robot = it.robot
     is_copy = _COPY.search(os.path.basename(robot.path).lower()) is not None
     more = is_copy, robot.simulator == NO_SIMULATOR, not robot.control, len(robot.path), robot.path
-    return *it.kind, not it.launched, not it.of_package, -it.named, *more
+    return *it.kind, -it.started, not it.of_package, -it.named, *more
 
 
 def _is_behind(it: Candidate, best: Candidate) -> bool:
-    if it.kind != best.kind or (it.moving < best.moving and not it.launched):
+    if it.kind != best.kind or (it.moving < best.moving and not it.started):
         return True
-    if it.of_package != best.of_package and it.launched == best.launched:
-        return best.of_package
-    if best.launched and not it.launched:
+    if it.started < best.started or it.of_package < best.of_package:
         return True
-    return best.launched >= it.launched and best.share > _MORE * it.share
+    return best.share > _MORE * it.share
 
 
 def _same_robot(it: Candidate, best: Candidate) -> bool:
@@ -209,26 +176,24 @@ def _same_robot(it: Candidate, best: Candidate) -> bool:
     return bool(names) and (it.links == best.links or (within and len(bases) > 1))
 
 
-def launches_of(path: str, found: Found) -> int:
-    """How many launch files load this description, or worlds have this model. Of files of one base name
-    it is that of the package that the launch file names or is in, of models that of the folder."""
-    worlds = found.worlds if path.endswith(".sdf") else ()
-    return len(launched_by(path, found)) + sum(
-        f"model://{_own(path)}" in text_of(it) for it in worlds
+def processes_with(path: str, found: Found) -> int:
+    """How many processes of a robot the launch file starts that loads this description, and most."""
+    real = os.path.realpath(path)
+    return max((processes_of_robot(it) for it, paths in loaded(found) if real in paths), default=0)
+
+
+def launched_descriptions(found: Found) -> list[str]:
+    """The descriptions that the launch file loads which was named, or else those that do which start a
+    robot."""
+    each = (paths for it, paths in loaded(found) if found.named or processes_of_robot(it))
+    return [*dict.fromkeys(path for paths in each for path in paths.values())]
+
+
+def loaded(found: Found) -> list[tuple[Reading, Mapping[str, str]]]:
+    """The launch files, each with the descriptions that it loads, by their real paths."""
+    return once_kept(
+        ("loaded", found), lambda: [(it, loaded_by(it.graph, found)) for it in found.read]
     )
-
-
-def launched_by(path: str, found: Found) -> list[str]:
-    """Return the launch files that load a description."""
-    base = os.path.basename(path)
-    alike = [it for it in found.every if os.path.basename(it) == base]
-    pattern = re.compile(rf"""(?<![\w.-]){re.escape(base)}(?![\w.-])""")
-    return [it for it in found.launch if _loads(it, pattern, _own(path), len(alike) > 1)]
-
-
-def _own(path: str) -> str:
-    """Return what a description is in: its package, or the folder after which a model is called."""
-    return os.path.basename(os.path.dirname(path)) if path.endswith(".sdf") else _package(path)
 
 
 def is_srdf_launched(path: str, found: Found) -> bool:
@@ -247,13 +212,6 @@ def _built_packages(text: str) -> set[str]:
         return set()
     usual = (f"{it}_moveit_config" for it in _BUILT.findall(text))
     return {*_BUILT_PACKAGE.findall(text)} or {*usual}
-
-
-def _loads(launch: str, pattern: re.Pattern[str], own: str, several: bool) -> bool:
-    text = text_of(launch)
-    if pattern.search(text) is None:
-        return False
-    return not several or (bool(own) and (own in text or own == _package(launch)))
 
 
 def _package(path: str) -> str:

@@ -15,18 +15,21 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, launched_by
-from multibot_rewrite.fleet.proposal.fitting import Fitting, check_winner, fitting, not_started
+from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, loaded
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import (
     LEAST,
+    Fitting,
     best_folders,
+    check_winner,
+    fitting,
     hundredths_known,
     moveit_of_others,
     names_shown,
+    not_started,
     of_others,
 )
-from multibot_rewrite.fleet.proposal.searching import Found, text_of, without
+from multibot_rewrite.fleet.proposal.searching import Found, without
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 
@@ -80,8 +83,9 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     left |= _with_others_names(robot, every)
     found = without(every, left)
     kinds = (it for it in KINDS if it not in ("params", "moveit"))
-    own = {package_of(it) for it in (robot.path, *launched_by(robot.path, found))}
-    strange = _of_other_packages(robot, found, own)
+    launching = (it.file for it, paths in loaded(found) if os.path.realpath(robot.path) in paths)
+    own = {package_of(it) for it in (robot.path, *launching)}
+    strange = _of_other_packages(found, own)
     left |= strange
     found = without(found, strange)
     files = {
@@ -174,7 +178,7 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
     loaded = {*_loaded(robot)}
     asked = {*filter(lambda it: it in found.meant or os.path.abspath(it) in loaded, found.params)}
     read = []
-    for path in _nearest(robot, found.params, found.launch):
+    for path in _nearest(robot, found.params):
         try:
             nodes = given_nodes([read_yaml(read_file(path), path)], known)
         except InputError as error:
@@ -214,25 +218,13 @@ def _with_others_names(robot: Looked, found: Found) -> dict[str, str]:
     return {it: reason.format(share) for it, share in known.items() if share < LEAST}
 
 
-def _of_other_packages(
-    robot: Looked, found: Found, own: Collection[tuple[str, str] | None]
-) -> dict[str, str]:
-    """RViz configs of packages that do not name the robot's, and that show none of its links: those of
-    a vendor's driver beside it."""
-    home = package_of(robot.path)
-    naming = [
-        it for it in found.launch if package_of(it) in own or (home and home[0] in text_of(it))
-    ]
-    packages = {*own, *map(package_of, naming), None}
-    strange = (
-        it
-        for it in found.rviz
-        if package_of(it) not in packages
-        and it not in found.meant
-        and not names_shown(it)
-        and not any(os.path.basename(it) in text_of(launch) for launch in naming)
-    )
-    return dict.fromkeys(strange, "it is of a package that does not name the robot's")
+def _of_other_packages(found: Found, own: Collection[tuple[str, str] | None]) -> dict[str, str]:
+    """RViz configs of packages that neither have nor launch the robot, and that show none of its links:
+    those of a vendor's driver beside it."""
+    own = {*own, None}
+    apart = (it for it in found.rviz if package_of(it) not in own and it not in found.meant)
+    reason = "it is of a package that does not launch the robot"
+    return {it: reason for it in apart if not names_shown(it)}
 
 
 def _best_known(robot: Looked, paths: Sequence[str]) -> list[str]:
@@ -240,23 +232,17 @@ def _best_known(robot: Looked, paths: Sequence[str]) -> list[str]:
     return sorted(_nearest(robot, paths), key=lambda it: -hundredths_known(robot, it))
 
 
-def _nearest(
-    robot: Looked,
-    paths: Sequence[str],
-    launch: Sequence[str] = (),
-) -> list[str]:
-    """What the description itself loads first, what is in its own package, what a launch file names,
-    and by how like its own the paths are."""
+def _nearest(robot: Looked, paths: Sequence[str]) -> list[str]:
+    """What the description itself loads first, what is in its own package, and by how like its own the
+    paths are."""
     words, home = set(_WORD.findall(robot.path.lower())), package_of(robot.path)
     loaded = set(_loaded(robot))
 
-    def distance(path: str) -> tuple[bool, bool, bool, int, int, str]:
-        base = os.path.basename(path)
-        named = any(base in text_of(it) for it in launch)
+    def distance(path: str) -> tuple[bool, bool, int, int, str]:
         like = len(words & set(_WORD.findall(path.lower())))
         first = os.path.abspath(path) not in loaded
         more = len(set(_WORD.findall(path.lower())) - words)
-        return first, package_of(path) != home, not named, -like, more, path
+        return first, package_of(path) != home, -like, more, path
 
     return sorted(paths, key=distance)
 

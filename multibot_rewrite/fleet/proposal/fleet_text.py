@@ -5,23 +5,22 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from math import inf
 from typing import Any
 
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.base.wording import one_line
+from multibot_rewrite.base.wording import one_line, shorten
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.proposal.launches import Bringup, Row, said_of
+from multibot_rewrite.fleet.proposal.launches import Bringup, Row, order_text, said_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
 from multibot_rewrite.producers.launch.once import once_for_all
-from multibot_rewrite.producers.launch.records import LaunchOrder
 
-# Files not taken that are named.
-MOST = 10
+# Files not taken that are named, and launch files beside the robot's that cannot be read.
+MOST, MOST_UNREAD = 10, 3
 
 
 def text_of(it: Proposal, file: str) -> str:
@@ -66,14 +65,23 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield "# No launch file is taken: none, or no single one, starts this robot. What they start;"
         yield f"# to say which: multibot init {shlex.quote(home)} --launch FILE NAME:=VALUE"
         yield from _placed(it.started, folder)
-    if it.unread:
+    few = it.others_unread if len(it.others_unread) <= MOST_UNREAD else ()
+    if it.unread or few:
         yield ""
         yield "# Of launch files could not be read:"
-        yield from _placed(it.unread, folder)
+        yield from _placed((*it.unread, *few), folder)
+    if len(it.others_unread) > len(few):
+        yield ""
+        yield f"# {_unread(it.others_unread, folder)}"
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
     yield "robots:"
     yield from (f"  - {_flow(robot)}" for robot in _robots(it, folder))
+
+
+def _unread(rows: Sequence[Row], folder: str) -> str:
+    names = shorten([os.path.relpath(file, folder) for file, _, _ in rows], 1)
+    return f"{len(rows)} launch files could not be read: {names}; init --verbose says why of each"
 
 
 def _placed(rows: Iterable[Row], folder: str) -> Iterator[str]:
@@ -157,16 +165,6 @@ def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tu
     whys = ("Files for one robot; the build writes one of each for every robot",)
     if files:
         yield "companions", (files, whys)
-
-
-def order_text(it: LaunchOrder, folder: str) -> str:
-    """Return what follows ``ros2 launch``, for a fleet file in a folder."""
-    file = (
-        [it.package, os.path.basename(it.file)]
-        if it.package
-        else [os.path.relpath(it.file, folder)]
-    )
-    return shlex.join([*file, *(f"{name}:={value}" for name, value in it.arguments)])
 
 
 def _launched(it: Bringup) -> Iterator[str]:

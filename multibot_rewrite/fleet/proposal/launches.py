@@ -5,6 +5,7 @@ one starts with those that it is given."""
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
@@ -12,12 +13,15 @@ from typing import NamedTuple
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.sources.included_by import data_of_file
+from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.producers.launch.child import read_launch_files
 from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
 from multibot_rewrite.system.tool_nodes import is_viewer
 
+# A robot to read a launch file for.
+ANY = "robot1"
 # For each launch file.
 _SECONDS = 10.0
 # Names of parameters that are shown of one process.
@@ -54,6 +58,16 @@ class Bringup(NamedTuple):
     def name(self) -> str:
         """The name of the launch file, without its folder."""
         return os.path.basename(self.order.file)
+
+
+def read_named(order: LaunchOrder) -> Reading:
+    """A launch file that was named, as it is launched. Raises InputError where it cannot be read, or
+    starts nothing."""
+    graph = launch_of([order], ANY)
+    unread = [it.message for it in graph.notes if not it.parameters]
+    if unread and not graph.nodes:
+        raise InputError(f"{order.file}: the launch file cannot be read: {unread[0]}")
+    return Reading(order, graph)
 
 
 def read_any(launch: Sequence[str]) -> list[Reading]:
@@ -95,10 +109,22 @@ def _time(file: str) -> tuple[int, int]:
     return found.st_mtime_ns, found.st_size
 
 
+def order_text(it: LaunchOrder, folder: str) -> str:
+    """Return what follows ``ros2 launch``, for a fleet file in a folder."""
+    file = (
+        [it.package, os.path.basename(it.file)]
+        if it.package
+        else [os.path.relpath(it.file, folder)]
+    )
+    return shlex.join([*file, *(f"{name}:={value}" for name, value in it.arguments)])
+
+
 def not_read(read: Iterable[Reading]) -> Iterator[Row]:
-    """Yield what of each launch file could not be read: the first of it."""
+    """Yield what of each launch file could not be read: the first of it. What is not known of one node
+    is told by the build, not what a launch file asks of the machine or of a program."""
     for it in read:
-        notes = [one for one in it.graph.notes if not (one.parameters or one.missing)]
+        notes = [one for one in it.graph.notes if not one.missing]
+        notes = [one for one in notes if not one.parameters or one.place.line == 1]
         if it.why:
             yield it.file, 1, it.why
         elif notes:

@@ -21,7 +21,6 @@ from multibot_rewrite.companions.named_file import PARAMS
 from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.own_names import ROBOT
-from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_said
 from multibot_rewrite.fleet.file.robot_spec import REAL
@@ -32,7 +31,6 @@ from multibot_rewrite.fleet.proposal.launches import (
     Reading,
     Row,
     not_read,
-    read_any,
     started,
 )
 from multibot_rewrite.fleet.proposal.looking import (
@@ -45,7 +43,7 @@ from multibot_rewrite.fleet.proposal.looking import (
     with_controllers,
 )
 from multibot_rewrite.fleet.proposal.owners import of_other_robots
-from multibot_rewrite.fleet.proposal.searching import Found, text_of, without
+from multibot_rewrite.fleet.proposal.searching import Found, without
 from multibot_rewrite.fleet.proposal.seeing import Wanted
 from multibot_rewrite.rules.files.plugin_names import classes_of_other_releases
 from multibot_rewrite.rules.files.releases import elsewhere
@@ -89,8 +87,8 @@ class Proposal(NamedTuple):
     their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
     ``refused`` files that do not go with the robots and ``broken`` descriptions that cannot be read,
     each with the reason. ``started`` is what launch files start where none of them is the robot's,
-    ``unread`` what could not be read of them. ``chosen`` is what is not as the files have it, so that
-    the fleet builds."""
+    ``unread`` what could not be read of those of the robots, ``others_unread`` of other ones.
+    ``chosen`` is what is not as the files have it, so that the fleet builds."""
 
     keys: Mapping[str, Choice]
     members: Sequence[Member]
@@ -100,6 +98,7 @@ class Proposal(NamedTuple):
     refused: Mapping[str, str] = {}
     started: tuple[Row, ...] = ()
     unread: tuple[Row, ...] = ()
+    others_unread: tuple[Row, ...] = ()
     broken: Mapping[str, str] = {}
     chosen: str = ""
 
@@ -247,11 +246,11 @@ def propose(
         **worlds_of(members),
     }
     poses = poses_of(members, wanted.apart)
-    every = read_any(found.launch)
+    every = found.read
     bringups = [it.bringup for it in robots if it.bringup]
     other = (one for it in every for one in it.graph.nodes if not bringups)
-    near = (it for it in every if _may_start(it.file, robots))
-    unread = (*(Reading(it.order, it.graph) for it in bringups), *near)
+    unread = dict.fromkeys(not_read(Reading(it.order, it.graph) for it in bringups))
+    others = dict.fromkeys(not_read(every))
     return Proposal(
         keys,
         members,
@@ -260,18 +259,8 @@ def propose(
         _others(found, robots),
         refused,
         tuple(started(other)),
-        tuple(dict.fromkeys(not_read(unread))),
-    )
-
-
-def _may_start(file: str, robots: Iterable[Looked]) -> bool:
-    """Is a launch file of the package of one of the robots, or does it name its description?"""
-    own = package_of(file) or os.path.dirname(os.path.abspath(file))
-    text = text_of(file)
-    return any(
-        own == (package_of(it.path) or os.path.dirname(os.path.abspath(it.path)))
-        or os.path.basename(it.path) in text
-        for it in robots
+        tuple(unread),
+        tuple(it for it in others if it not in unread),
     )
 
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Container, Iterable, Iterator, Sequence
+import shlex
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -22,6 +23,7 @@ from multibot_rewrite.base.file_kinds import (
 )
 from multibot_rewrite.base.left_out import source_folders
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.sources.included_by import (
     MOST_FILES,
     TESTS,
@@ -32,9 +34,17 @@ from multibot_rewrite.description.sources.included_by import (
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.outputs.output_file import PLAN
-from multibot_rewrite.fleet.proposal.launches import read_any
+from multibot_rewrite.fleet.proposal.launches import (
+    Reading,
+    order_text,
+    read_any,
+    read_named,
+)
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 
 _BUILT = frozenset((MANIFEST, PLAN))
+# Files that are shown where nothing says which is meant.
+MOST_SHOWN = 6
 _ENDS = (
     ".urdf",
     ".sdf",
@@ -76,7 +86,7 @@ class Found(NamedTuple):
     """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched.
 
     ``descriptions`` are those that were named, if any were; ``every`` are all that are there. ``meant``
-    are files beside them that were named.
+    are files beside them that were named, ``named`` is the launch file that was.
     """
 
     descriptions: tuple[str, ...] = ()
@@ -91,10 +101,25 @@ class Found(NamedTuple):
     folders: tuple[str, ...] = ()
     every: tuple[str, ...] = ()
     meant: tuple[str, ...] = ()
+    named: tuple[LaunchOrder, ...] = ()
+
+    @property
+    def words(self) -> list[str]:
+        """What says the launch file that was named; raises nothing."""
+        words = (shlex.split(order_text(it, os.curdir)) for it in self.named)
+        return [word for it in words for word in ("--launch", *it)]
+
+    @property
+    def read(self) -> list[Reading]:
+        """What its launch files start: one that was named as it is launched, others with any arguments.
+
+        Raises InputError for one that was named and cannot be read."""
+        return [*map(read_named, self.named)] or read_any(self.launch)
 
 
-def search(paths: Sequence[str]) -> Found:
-    """What there is for the descriptions and folders that are named.
+def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
+    """What there is for the descriptions and folders that are named, or for the ``launch`` file: no
+    other one counts then.
 
     With a description goes what is in its package; raises UsageError for a path that is not there,
     InputError for a file of another kind.
@@ -120,19 +145,61 @@ def search(paths: Sequence[str]) -> Found:
     homes = dict.fromkeys((*folders, *map(home_of, apart)))
     every = dict.fromkeys((*(path for home in homes for path in _files(home)), *meant))
     kinds: dict[str, list[str]] = {}
-    for path, kind in _sorted(every):
+    for path, kind in _sorted(every, [*map(read_named, launch)]):
         kinds.setdefault(kind, []).append(path)
     kinds["every"] = kinds.get("descriptions", [])
     if files:
         kinds["descriptions"] = files
     fields = {kind: tuple(its) for kind, its in kinds.items() if kind}
-    return Found(**fields, folders=tuple(homes), meant=tuple(meant))
+    if launch:
+        fields["launch"] = tuple(it.file for it in launch)
+    return Found(**fields, folders=tuple(homes), meant=tuple(meant), named=tuple(launch))
+
+
+def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
+    """The descriptions that a launch file loads, by their real paths: it reads the file, gives it to a
+    node, or starts a world with the model."""
+    known = {os.path.realpath(it): it for it in found.every}
+    words = (it for node in graph.nodes for it in node.arguments if it.endswith(_ENDS))
+    real = dict.fromkeys((*(it.file for it in graph.read), *map(os.path.realpath, words)))
+    texts = [text_of(it) for it in real if it in map(os.path.realpath, found.worlds)]
+    models = (it for it in known if any(_is_in_world(it, text) for text in texts))
+    own = {it: known.get(it) or os.path.relpath(it) for it in (*real, *models)}
+    return {it: path for it, path in own.items() if it in known or _is_description(it)}
+
+
+def _is_in_world(model: str, text: str) -> bool:
+    return f"model://{os.path.basename(os.path.dirname(model))}<" in text
+
+
+def _is_description(path: str) -> bool:
+    return os.path.isfile(path) and _kind(path, data_of_file(path)) == "descriptions"
+
+
+class Undecided(UsageError):
+    """Nothing says which of some files is meant: ``files`` have what is to be said of each."""
+
+    def __init__(self, what: str, files: Mapping[str, str], found: Found, *before: str) -> None:
+        """``before`` are files that are named beside the one that is meant, as are those that were."""
+        self.files = files
+        named = [*before, *found.meant, next(iter(files))]
+        home = os.path.abspath(home_of(named[0]))
+        folders = [it for it in found.folders if os.path.abspath(it) != home]
+        shown = shorten(map(self.said, files), MOST_SHOWN)
+        command = f"multibot init {shlex.join([*folders, *named, *found.words])}"
+        super().__init__(f"{what}: {shown}; name one: {command}")
+
+    def said(self, path: str) -> str:
+        """A file as it is shown."""
+        return f"{path} ({self.files[path]})" if self.files[path] else path
 
 
 def without(found: Found, paths: Container[str]) -> Found:
     """The same without some files, of whatever kind."""
-    kept = (tuple(it for it in its if it not in paths) for its in found)
-    return Found(*kept)
+    kept = {
+        kind: tuple(it for it in its if it not in paths) for kind, its in found._asdict().items()
+    }
+    return found._replace(**kept)
 
 
 def home_of(file: str) -> str:
@@ -170,7 +237,7 @@ def _can_be_named(path: str) -> bool:
     return path.isascii() or not any("\ud800" <= it <= "\udfff" for it in path)
 
 
-def _sorted(paths: Iterable[str]) -> Iterator[tuple[str, str]]:
+def _sorted(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[str, str]]:
     """Each path with its kind; those that others include, and no launch file loads, are none."""
     kinds: dict[str, str] = {}
 
@@ -183,7 +250,8 @@ def _sorted(paths: Iterable[str]) -> Iterator[tuple[str, str]]:
     parts = parts_among(kinds, includers(texts()))
     # One that a launch file expands by itself is a robot.
     launch = [it for it, kind in kinds.items() if kind == "launch"] if parts else []
-    loaded = {one.file for it in read_any(launch) for one in it.graph.read}
+    read = named or read_any(launch)
+    loaded = {one.file for it in read for one in it.graph.read}
     parts = {it for it in parts if os.path.realpath(it) not in loaded}
     yield from (
         (it, kind) for it, kind in kinds.items() if kind != "descriptions" or it not in parts

@@ -18,17 +18,16 @@ from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.bringup import Robot, bringup_as_named, bringup_of
 from multibot_rewrite.fleet.proposal.choosing import (
     Candidate,
-    Undecided,
     acts,
     chosen,
     is_called_like_a_part,
-    launches_of,
+    launched_descriptions,
     may_be_partners,
-    names_its_package,
     partner,
+    processes_with,
 )
 from multibot_rewrite.fleet.proposal.companions import srdf_of
-from multibot_rewrite.fleet.proposal.launches import Bringup, read_any
+from multibot_rewrite.fleet.proposal.launches import Bringup
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
     Looked,
@@ -40,7 +39,7 @@ from multibot_rewrite.fleet.proposal.looking import (
     with_own_arguments,
     with_semantic_arguments,
 )
-from multibot_rewrite.fleet.proposal.searching import Found, search
+from multibot_rewrite.fleet.proposal.searching import Found, Undecided, search
 from multibot_rewrite.producers.launch.records import LaunchOrder
 
 # Descriptions of a folder that are looked at.
@@ -96,19 +95,30 @@ def see(wanted: Wanted) -> Seen:
     that launch files load where it cannot be read.
     """
     wanted.tell(f"looking for robots in {', '.join(wanted.paths)}")
-    found = search(wanted.paths)
+    found = search(wanted.paths, wanted.launch or ())
     reach = Reach(trust=wanted.trust)
-    values = NeededValues(read_any(found.launch))
-    every = found.descriptions
-    if len(every) > MOST:
-        every = tuple(sorted(every, key=lambda it: -launches_of(it, found)))[:MOST]
+    values = NeededValues(found.read)
     look_at = partial(look, given=wanted.arguments, reach=reach, values=values)
-    looked = []
-    for at, it in enumerate(every, 1):
-        wanted.tell(f"{at} of {len(every)} descriptions: {it}")
-        looked.append(look_at(it))
-    named = [it for it in looked if it.path in map(os.path.normpath, wanted.paths)]
-    return _named(wanted, found, named, look_at) if named else _likeliest(wanted, found, looked)
+
+    def look_at_all(paths: Sequence[str]) -> list[Looked]:
+        looked = []
+        for at, it in enumerate(paths[:MOST], 1):
+            wanted.tell(f"{at} of {len(paths)} descriptions: {it}")
+            looked.append(look_at(it))
+        return looked
+
+    if {*found.descriptions} & {*map(os.path.normpath, wanted.paths)}:
+        return _named(wanted, found, look_at_all(found.descriptions), look_at)
+    launched = look_at_all(launched_descriptions(found))
+    if not any(it.fault or _is_robot(it) for it in launched):
+        return _likeliest(wanted, found, look_at_all(found.descriptions))
+    # Those that no launch file loads are not looked at then.
+    known = {it.path for it in launched}
+    return _likeliest(wanted, found, launched, [it for it in found.every if it not in known])
+
+
+def _is_robot(it: Looked) -> bool:
+    return it.links > 0 and acts(it)
 
 
 def _named(
@@ -122,38 +132,35 @@ def _named(
     return Seen(found, [_with_partner(named[0], beside, wanted)], True, (), named)
 
 
-def _likeliest(wanted: Wanted, found: Found, looked: Sequence[Looked]) -> Seen:
-    """The robots of a folder, the likeliest first."""
-    usable = [it for it in looked if it.links and acts(it)]
+def _likeliest(
+    wanted: Wanted, found: Found, looked: Sequence[Looked], rest: Sequence[str] = ()
+) -> Seen:
+    """The robots of a folder, the likeliest first; no launch file loads the ``rest``."""
+    usable = [*filter(_is_robot, looked)]
     if not usable:
         others = f" (of {len(looked)} files none is a robot)" if looked[1:] else ""
-        _refuse(_by_launches(looked, found), others)
+        _refuse(_by_launches(looked, found), _other_one(rest[0], found) if rest else others)
         where = ", ".join(found.folders or map(os.path.normpath, wanted.paths))
         raise UsageError(f"{where}: no description of a robot is there; give a URDF, xacro or SDF")
     best = chosen(usable, found)
     likeliest = best.order[0]
-    rather = _rather(likeliest, looked, found)
-    launched = any(launches_of(it.path, found) for it in rather[:1])
-    other = f"for another one: multibot init {shlex.quote(likeliest.robot.path)}"
-    _refuse(rather, f"; the launch files load it; {other}" if launched else f"; {other}")
+    _refuse(_rather(likeliest, looked, found), _other_one(likeliest.robot.path, found))
     # The name of a model tells what it carries: x500_lidar.
     if likeliest.part and not likeliest.moving and likeliest.robot.tag == "robot":
         said = {likeliest.robot.path: "it is called as a part, and nothing in it moves"}
         raise Undecided("no description of a whole robot is there", said, found)
     order, rivals, alike = ([it.robot for it in its] for its in best)
-    known = {*_partners(order[0], found)}
-    beside = [it for it in usable if it in alike or it.path in known]
+    partners = {*_partners(order[0], found)}
+    beside = [it for it in usable if it in alike or it.path in partners]
     first = _with_partner(order[0], beside, wanted)
     left = [] if first == order[0] else [order[0]]
     rivals = [it for it in rivals if it.path not in (first.path, first.model)]
-    unread = (it for it in looked if it.fault and _may_be_meant(it, first, found))
+    own = package_of(first.path)
+    unread = (
+        it for it in looked if it.fault and (best.order[0].started or package_of(it.path) == own)
+    )
     broken = {it.path: it.fault.removeprefix(f"{it.path}: ") for it in unread}
     return Seen(found, [first, *order[1:]], False, rivals, [*left, *alike], broken)
-
-
-def _may_be_meant(it: Looked, first: Looked, found: Found) -> bool:
-    """Is a description of the same package, or do launch files load it?"""
-    return package_of(it.path) == package_of(first.path) or launches_of(it.path, found) > 0
 
 
 def _partners(it: Looked, found: Found) -> list[str]:
@@ -173,21 +180,24 @@ def _with_partner(it: Looked, others: Sequence[Looked], wanted: Wanted) -> Looke
 
 
 def _rather(likeliest: Candidate, looked: Sequence[Looked], found: Found) -> list[Looked]:
-    """Return the descriptions that cannot be read, and are as likely to be the robot: as many launch
-    files load them; all where the likeliest cannot move."""
-    least = max(1, likeliest.launched), likeliest.of_package
+    """Return the descriptions that cannot be read, and are as likely to be the robot: their launch file
+    starts as much; all where the likeliest cannot move."""
     broken = _by_launches([it for it in looked if it.fault], found)
     if not likeliest.moving:
         return broken
     whole = (it for it in broken if not is_called_like_a_part(it.path))
-    return [
-        it for it in whole if (launches_of(it.path, found), names_its_package(it.path)) >= least
-    ]
+    return [it for it in whole if processes_with(it.path, found) >= max(1, likeliest.started)]
 
 
 def _by_launches(looked: Iterable[Looked], found: Found) -> list[Looked]:
-    """Those that cannot be read, and that launch files load, first."""
-    return sorted(looked, key=lambda it: (not it.fault, -launches_of(it.path, found)))
+    """Those first that cannot be read, and whose launch file starts most."""
+    return sorted(looked, key=lambda it: (not it.fault, -processes_with(it.path, found)))
+
+
+def _other_one(path: str, found: Found) -> str:
+    """What is said behind the fault of a description: how another one is taken."""
+    why = "the launch files load it; " if launched_descriptions(found) else ""
+    return f"; {why}for another one: multibot init {shlex.join([path, *found.words])}"
 
 
 def _refuse(which: Sequence[Looked], more: str) -> None:
@@ -209,11 +219,10 @@ def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> li
     )
     own = [with_own_arguments(it, tree, reach) for it in launched]
     made = [in_its_world(it, _is_simulated(it, wanted), reach) for it in own]
-    values = NeededValues(read_any(found.launch))
-    return [
-        with_semantic_arguments(it, srdf_of(it, found), reach, values) if found.srdf else it
-        for it in made
-    ]
+    if not found.srdf:
+        return made
+    values = NeededValues(found.read)
+    return [with_semantic_arguments(it, srdf_of(it, found), reach, values) for it in made]
 
 
 def _bringup(it: Looked, wanted: Wanted, found: Found) -> Bringup | None:

@@ -13,6 +13,7 @@ from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
 from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.expand import once_kept
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.as_planned import is_of_sources
 from multibot_rewrite.fleet.checks.read_back import read_back
@@ -23,8 +24,7 @@ from multibot_rewrite.fleet.file.fleet_data import (
 )
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.fleet.proposal.choosing import Undecided
+from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
@@ -39,7 +39,7 @@ from multibot_rewrite.fleet.proposal.propose import (
     propose,
     two_simulators,
 )
-from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.fleet.proposal.searching import Found, Undecided
 from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, with_arguments
 
 # Builds without files that turned out not to go with a robot, and descriptions that are tried.
@@ -177,20 +177,25 @@ def errors_of(
     """Return why a fleet does not build: the file, if one is at fault, and a line each. What else is
     right is read back, as a build does: what that finds of the sources (``of_sources``) is in any
     layout."""
-    folder = os.path.abspath("out")
     try:
-        plan = plan_fleet(read_fleet(source, "", os.environ), trust=trust)
-        made = make_outputs(plan, folder)
-        found = {*made.findings, *plan.fleet.table.problems}
-        if not any(it.level == ERROR for it in found):
-            back = read_back(plan, made, folder)
-            asked = (it for it in back if of_sources or not _is_of_sources(it, found))
-            found |= {*asked}
+        plan, found, back = once_kept((source, trust), lambda: _built(source, trust))
     except MultibotError as error:
         place = (source.path,) if isinstance(source, FleetText) else ()
         return [("", without_place(str(error), *place))]
-    errors = sorted((it for it in found if it.level == ERROR), key=by_place)
+    asked = (it for it in back if of_sources or not _is_of_sources(it, found))
+    errors = sorted((it for it in (*found, *asked) if it.level == ERROR), key=by_place)
     return [(_file(it), _line(it)) for it in grouped(plan.with_names(errors), plan.words)]
+
+
+def _built(source: FleetSource, trust: bool) -> tuple[FleetPlan, Set[Finding], Set[Finding]]:
+    """A fleet as a build has it: what is found of it, and what is found where it is read back."""
+    folder = os.path.abspath("out")
+    plan = plan_fleet(read_fleet(source, "", os.environ), trust=trust)
+    made = make_outputs(plan, folder)
+    found = frozenset((*made.findings, *plan.fleet.table.problems))
+    wrong = any(it.level == ERROR for it in found)
+    back = frozenset(() if wrong else read_back(plan, made, folder)) - found
+    return plan, found, back
 
 
 def _is_of_sources(it: Finding, told: Set[Finding]) -> bool:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from multibot_rewrite.base.config import listed_files, type_name
@@ -79,20 +80,8 @@ def _one_of(given: KeyValue, allowed: Sequence[str]) -> str:
     return word
 
 
-def _level(given: KeyValue) -> str:
-    return _one_of(given, LEVELS)
-
-
-def _release(given: KeyValue) -> str:
-    return _one_of(given, RELEASES)
-
-
 def targets(given: KeyValue) -> tuple[str, ...]:
     return tuple(_one_of(given._replace(value=it), TARGETS) for it in _texts(given))
-
-
-def _robots(given: KeyValue) -> tuple[str, ...]:
-    return checked_robots(_texts(given), given.where)
 
 
 def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
@@ -115,10 +104,6 @@ def _file(given: KeyValue) -> str:
     if not os.path.isfile(path):
         raise UsageError(f"{given.where}: no file {given.value!r} in {given.folder}")
     return path
-
-
-def _files(given: KeyValue) -> tuple[str, ...]:
-    return listed_files(given.where, given.folder, given.value)
 
 
 def _folders(given: KeyValue) -> tuple[str, ...]:
@@ -190,7 +175,7 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "ignore": _codes,
     "per-file-ignores": _per_file,
     "levels": _levels,
-    "robots": _robots,
+    "robots": lambda it: checked_robots(_texts(it), it.where),
     "layout": _text,
     "affix": _text,
     "topics": _text,
@@ -200,13 +185,13 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "shared-topics": _texts,
     "targets": targets,
     "roots": _folders,
-    "distro": _release,
+    "distro": partial(_one_of, allowed=RELEASES),
     "urdf": _file,
-    "vocabulary": _files,
+    "vocabulary": lambda it: listed_files(*it),
     "xacro": _argument_sets,
     "exclude": _excluded,
     "baseline": _path,
-    "fail-on": _level,
+    "fail-on": partial(_one_of, allowed=LEVELS),
     "seconds": _seconds,
 }
 # Keys whose field has another name.

@@ -31,7 +31,6 @@ from multibot_rewrite.description.sources.child.frames import (
     received,
 )
 from multibot_rewrite.description.sources.child.system import die_with_parent
-from multibot_rewrite.description.sources.packages import package_of, sources_around
 from multibot_rewrite.producers.launch.confined import NOT_FENCED, NotFencedError, confine
 from multibot_rewrite.producers.launch.door import is_there
 from multibot_rewrite.producers.launch.read import UnreadableError, read_graph
@@ -67,7 +66,7 @@ def main() -> None:
                 continue
             folder = os.path.join(tempfile.gettempdir(), f"{at}")
             os.mkdir(folder)
-            same = package_of(order.file), sources_around(order.file), order.roots
+            same = frozenset(packages_for(order.file, order.roots).items())
             first = linked.setdefault(same, folder)
             if first == folder:
                 link_sources(order.file, order.roots, folder)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What ``Command`` substitutions would print, where that is known without starting their programs.
+"""What ``Command`` substitutions would print, where that is known without starting their programs, and
+what a launch file sees of the machine.
 
 A xacro file is expanded behind the boundary that all xacro files have, and ``urdf-postfix`` is this
 package's own. Other programs are not started: their output is empty. Source: launch jazzy,
@@ -10,10 +11,14 @@ from __future__ import annotations
 
 import io
 import os
+import pathlib
 import shlex
 import subprocess
+import sys
+import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
+from errno import ENOENT
 from functools import lru_cache
 from importlib import import_module
 from types import MappingProxyType
@@ -97,6 +102,52 @@ class _Program:
         return 0
 
     poll = kill = terminate = wait
+
+
+# Below these is what a machine has: devices, and what its kernel says of it; but for what all have.
+_OF_MACHINE = ("/dev/", "/proc/", "/run/", "/sys/")
+_EVERYWHERE = frozenset(("/dev/null", "/dev/random", "/dev/urandom", "/dev/zero"))
+# What Python tells before it asks for addresses; the fences refuse that.
+_NETWORK = frozenset(("socket.__new__", "socket.getaddrinfo", "socket.gethostbyname"))
+
+
+def see_no_machine(lost: list[str]) -> None:
+    """From now on folders of devices are empty, and nothing is there of what one machine alone has;
+    what a launch file asks for is in the list."""
+
+    def tell(what: str) -> None:
+        said = f"it looks at {what} of the machine, and sees nothing of it here; --trust shows it"
+        if said not in lost:
+            lost.append(said)
+
+    def blind(look: Callable[..., Any], answer: Callable[[str], Any]) -> Callable[..., Any]:
+        def looked(path: Any = os.curdir, *words: Any, **options: Any) -> Any:
+            named = path is not None and not isinstance(path, int)
+            place = os.path.abspath(os.fsdecode(path)) if named else ""
+            if not f"{place}/".startswith(_OF_MACHINE) or place in _EVERYWHERE:
+                return look(path, *words, **options)
+            tell(place)
+            return answer(place)
+
+        return looked
+
+    def is_not_there(path: str) -> Any:
+        raise FileNotFoundError(ENOENT, os.strerror(ENOENT), path)
+
+    scan = os.scandir
+    answers: Mapping[str, Callable[[str], Any]] = {
+        "listdir": lambda _: [],
+        "scandir": lambda _: scan(tempfile.mkdtemp()),
+        "access": lambda _: False,
+        "stat": is_not_there,
+        "lstat": is_not_there,
+    }
+    # Python 3.10 has a copy of them for its paths.
+    for holder in (os, getattr(pathlib, "_NormalAccessor", None)):
+        for name in answers if holder else ():
+            made = blind(getattr(holder, name, vars(os)[name]), answers[name])
+            setattr(holder, name, made if holder is os else staticmethod(made))
+    sys.addaudithook(lambda event, _: tell("the network") if event in _NETWORK else None)
 
 
 def faults(context: Any) -> list[str]:

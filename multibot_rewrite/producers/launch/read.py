@@ -9,7 +9,12 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from multibot_rewrite.producers.launch.commands import faults, read_commands, start_nothing
+from multibot_rewrite.producers.launch.commands import (
+    faults,
+    read_commands,
+    see_no_machine,
+    start_nothing,
+)
 from multibot_rewrite.producers.launch.describe import SIMULATORS, Visit, changed_environment
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import (
@@ -41,11 +46,8 @@ from multibot_rewrite.producers.launch.source_packages import (
 from multibot_rewrite.producers.launch.stand_in import contents, standing_in
 from multibot_rewrite.producers.launch.stand_in.packages import FindPackageShare
 from multibot_rewrite.producers.launch.unknown_modules import add_unknown
-from multibot_rewrite.producers.launch.visit import visit_all
+from multibot_rewrite.producers.launch.visit import ASKED, visit_all
 from multibot_rewrite.system.records import Place
-
-# What launch asks a description for.
-_ASKED = "get_launch_arguments_with_include_launch_description_actions"
 
 
 class UnreadableError(Exception):
@@ -69,6 +71,8 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     keep_sources()
     lines, reads = read_commands(), keep_reads()
     unsure = [] if order.trusted else start_nothing(lines)
+    if not order.trusted:
+        see_no_machine(unsure)
     # A launch file may look at the command line itself.
     sys.argv = order.command_line
     missing: list[str] = []
@@ -193,7 +197,7 @@ def _declared(description: Any) -> tuple[LaunchArgument, ...]:
     """The arguments of a launch file and of what it includes, each once; a default that is made of
     others is not known."""
     found: dict[str, LaunchArgument] = {}
-    for it, _ in getattr(description, _ASKED)():
+    for it, _ in getattr(description, ASKED)():
         given = it.default_value
         parts = given if isinstance(given, list | tuple) else [given or ""]
         plain = [one if isinstance(one, str) else getattr(one, "text", None) for one in parts]
@@ -220,7 +224,7 @@ def _described(order: LaunchOrder) -> Any:
     sources = of_launch("launch_description_sources")
     source = sources.AnyLaunchDescriptionSource(os.path.abspath(order.file))
     made = source.get_launch_description(of_launch().LaunchContext(noninteractive=True))
-    if not hasattr(made, _ASKED):
+    if not hasattr(made, ASKED):
         what = f"its generate_launch_description() returns {_what(made)}"
         raise UnreadableError(f"{what}; return a LaunchDescription")
     return made
@@ -232,7 +236,7 @@ def _what(made: object) -> str:
 
 def _check_given(description: Any, order: LaunchOrder) -> None:
     """Raises UnreadableError without an argument that the file itself has to be given."""
-    found = getattr(description, _ASKED)()
+    found = getattr(description, ASKED)()
     for it, includes in found:
         free = (
             order.every

@@ -81,10 +81,13 @@ class _Xacro:
 
 def files_read(lines: Iterable[str], reads: Reads) -> tuple[FileRead, ...]:
     """The xacros that ``lines`` of programs and the launch file expand, with their arguments, and other
-    files that it reads."""
-    xacros = (*filter(None, map(xacro_of, lines)), *reads.xacros)
+    files that it reads, or that a line gives a program of the vendor's."""
+    expanded = {it: xacro_of(it) for it in lines}
+    xacros = (*filter(None, expanded.values()), *reads.xacros)
+    words = (word for line, it in expanded.items() if it is None for word in line.split())
+    given = (FileRead(it) for it in words if it.endswith(_ENDS) and os.path.isfile(it))
     other = (FileRead(it) for it in reads.paths if it.endswith(_KEPT))
-    real = (it._replace(file=os.path.realpath(it.file)) for it in (*xacros, *other))
+    real = (it._replace(file=os.path.realpath(it.file)) for it in (*xacros, *given, *other))
     return tuple(dict.fromkeys(real))
 
 

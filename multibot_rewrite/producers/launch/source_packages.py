@@ -12,6 +12,7 @@ import os
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 from multibot_rewrite.base.lazy import lazy_compile
@@ -37,19 +38,23 @@ def link_sources(file: str, roots: Iterable[str], folder: str) -> None:
     launch ``file``."""
     for name, path in packages_for(file, roots).items():
         link_share(name, path, _shared(name, os.path.join(folder, SOURCES)))
+        _has_python(name, path)  # known to the forks that ask for it
 
 
 def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
     """Make the packages known that ``link_sources`` has linked. What is installed is found first, then
     what is below the roots."""
     for name, path in packages_for(file, roots).items():
-        if os.path.isfile(os.path.join(path, name, "__init__.py")) or _installs_python(path):
+        if _has_python(name, path):
             sys.path.append(path)
     _search(os.path.join(folder, SOURCES))
 
 
-def _installs_python(folder: str) -> bool:
-    """Does its CMakeLists.txt install a Python package of another name than its own?"""
+@cache
+def _has_python(name: str, folder: str) -> bool:
+    """Has it a Python package of its own name, or does its CMakeLists.txt install another one?"""
+    if os.path.isfile(os.path.join(folder, name, "__init__.py")):
+        return True
     with suppress(OSError, UnicodeDecodeError):
         text = Path(folder, "CMakeLists.txt").read_text("utf-8")
         names = _PYTHON.findall(text)

@@ -10,14 +10,19 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any, cast
 
+import yaml
+
 from multibot_rewrite.producers.launch.door import of_launch
 from multibot_rewrite.system.parameters import ANY_NAME
 
 
 def add_unknown(name: str) -> None:
     """Make a Python package importable, with every module below it; the Python of a launch file alone
-    is to have it."""
+    is to have it. In YAML that the launch file writes, what is taken of it is a text."""
     sys.meta_path.append(_Finder(name))
+    for dumper in ("Dumper", "SafeDumper", "CDumper", "CSafeDumper"):
+        if made := getattr(yaml, dumper, None):
+            made.add_multi_representer(Unknown, lambda it, _: it.represent_str(STOOD_FOR))
 
 
 def is_unknown(value: object) -> bool:
@@ -47,6 +52,11 @@ class Unknown:
         # launch asks for its own class where it takes texts.
         found: type = of_launch().Substitution
         return found
+
+    def __mro_entries__(self, _: tuple[object, ...]) -> tuple[type]:
+        """A class that has it for its base: what it takes of the base is unknown."""
+        own = {"_multibot_module": self._multibot_module, "__init__": lambda *_, **__: None}
+        return (type("Base", (Unknown,), own),)
 
     def __getattr__(self, name: str) -> Unknown:
         if name.startswith("__"):

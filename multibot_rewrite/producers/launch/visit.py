@@ -66,6 +66,8 @@ _PASSED = (
 
 _ENDED = "groups and their launch configurations have ended by then"
 _INCLUDE = "IncludeLaunchDescription"
+# What launch asks a description for.
+ASKED = "get_launch_arguments_with_include_launch_description_actions"
 # They give further entities: with ``every`` whatever their conditions say.
 _GIVING = ("GroupAction", "OpaqueFunction", _INCLUDE)
 # The locals of a launch that are of this package.
@@ -153,9 +155,23 @@ def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
         return None
     include = included(entity, seen)
     seen.includes.append(include)
+    if is_unknown(entity.launch_arguments):
+        _hand_on(entity, seen)
     found = _execute(entity, seen)
     unread_of(path_of(entity, seen.context), dict(include.arguments), seen)
     return found
+
+
+def _hand_on(entity: Any, seen: Visit) -> None:
+    """Give an include all that is set: a package that is not here makes its arguments. What it has to
+    be given, and nothing sets, is empty."""
+    source = entity.launch_description_source
+    asked = getattr(source.get_launch_description(seen.context), ASKED)()
+    needed = {it.name: "" for it, _ in asked if it.default_value is None}
+    own = "launch_arguments" in vars(entity)
+    name = "launch_arguments" if own else "_IncludeLaunchDescription__launch_arguments"
+    setattr(entity, name, tuple({**needed, **seen.context.launch_configurations}.items()))
+    seen.note("a package that is not here makes the arguments of the include", parameters=True)
 
 
 def _pass(entity: Any, seen: Visit) -> None:

@@ -119,6 +119,22 @@ def cut_short(names: Sequence[str], endpoints: Iterable[End]) -> Iterator[Caveat
     yield Caveat("cut-short", True, f"{text}; give a longer --timeout")
 
 
+def unannounced(announced: int, here: int, nodes: int, lost: int) -> Iterator[Caveat]:
+    """Yield a caveat where fewer participants of this machine ``announced`` themselves than are
+    ``here`` by their ports (both with the observer's); ``nodes`` were seen, datagrams ``lost``."""
+    silent = here - announced
+    if silent <= 0:
+        return
+    about = round(nodes * (here - 1) / max(announced - 1, 1))
+    seen = f"{nodes} of about {about} nodes seen: " if nodes and announced > 1 else ""
+    dropped = f", and this machine lost {plural(lost, 'datagram')} meanwhile" if lost > 0 else ""
+    text = (
+        f"{seen}{silent} of {plural(here - 1, 'program')} in this domain on this machine announced no"
+        f" nodes{dropped}; they are stopped, still starting, or use another discovery range: look again"
+    )
+    yield Caveat("programs-unannounced", True, text)
+
+
 def not_heard(silent: Sequence[str]) -> Iterator[Caveat]:
     """Where the time was over before messages could come."""
     which = f" on {shorten(silent, SEVERAL)}" if silent else ""

@@ -109,7 +109,7 @@ def take_snapshot(session: GraphSession) -> System:
     seconds = session.now()
     names, endpoints = complete_view(session, cache)
     # Who names what is expected does not wait for anything that may be late.
-    late = () if why == EXPECTED else clock.starved()
+    late = () if why == EXPECTED else [*clock.starved(), *_unannounced(session, names)]
     more = [*late, *(assemble.cut_short(names, endpoints) if session.over() else ())]
     ears.update(endpoints)
     while not session.over() and ears.keep_waiting():
@@ -117,6 +117,17 @@ def take_snapshot(session: GraphSession) -> System:
     if ears.keep_waiting():
         more += assemble.not_heard(ears.silent())
     return _snapshot(session, names, endpoints, ears, (why, seconds, last), more)
+
+
+def _unannounced(session: GraphSession, names: Sequence[str]) -> Iterator[Caveat]:
+    """Yield a caveat where programs of this machine have ports of the domain and announce nothing."""
+    here, node = participants_here(session.domain()) or 0, session.node
+    if here and here > len(queries.on_this_machine(node, queries.participants(node))):
+        # What is no ROS program says on no topic of the middleware what it has, and may have topics.
+        found = queries.participants(node) | queries.participants_with_topics(node)
+        announced = len(queries.on_this_machine(node, found))
+        lost = lost_here(session.domain()) - session.lost
+        yield from assemble.unannounced(announced, here, len(names), lost)
 
 
 def watch(session: GraphSession) -> Iterator[System]:
@@ -149,7 +160,7 @@ def watch(session: GraphSession) -> Iterator[System]:
             seen = _snapshot(session, names, endpoints, ears, (why, session.now(), ()))
             other = answers.update(seen, quiet, session.now())
             if new or other:
-                yield with_answers(seen, answers.states)
+                yield with_answers(seen, answers.states, answers.asked)
         spent = time.thread_time() - began
 
 
@@ -329,6 +340,7 @@ class Answers:
         self._ask, self._parameters = ask, parameters
         self._asked = -AGAIN_SECONDS
         self.states: tuple[Answer, ...] = ()
+        self.asked: tuple[Question, ...] = ()
 
     def old(self, now: float) -> bool:
         """Whether it is time to ask again."""
@@ -341,8 +353,10 @@ class Answers:
         """
         there = {node.name for node in seen.nodes}
         found = {it.node: it for it in self.states if it.node in there}
+        self.asked = tuple(it for it in self.asked if it.node in there)
         if quiet and self._parameters is not None:
-            found |= {it.node: it for it in self._ask(questions(seen, self._parameters))}
+            self.asked = tuple(questions(seen, self._parameters))
+            found |= {it.node: it for it in self._ask(self.asked)}
             self._asked = now
         before, self.states = self.states, tuple(found[it] for it in sorted(found))
         return before != self.states

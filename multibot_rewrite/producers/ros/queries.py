@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from multibot_rewrite.producers.ros import assemble
+from multibot_rewrite.system.environment import machine
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -31,6 +32,8 @@ NodeQuery = tuple[str, str, Callable[..., Any]]
 _NO_LIMIT = 2**63 - 1
 # Source: rmw_dds_common; a GID of DDS begins with its participant.
 _OF_PARTICIPANTS, _GUID_PREFIX = "ros_discovery_info", 12
+# Every node of rclcpp and rclpy publishes it.
+PARAMETER_EVENTS = "/parameter_events"
 
 
 def node_names(node: Any) -> list[str]:
@@ -42,8 +45,26 @@ def node_names(node: Any) -> list[str]:
 def participants(node: Any) -> frozenset[str]:
     """The participants that have announced themselves, this process's own among them: each writes on a
     topic of the middleware which nodes it has."""
-    found = node.get_publishers_info_by_topic(_OF_PARTICIPANTS, no_mangle=True)
-    return frozenset(bytes(it.endpoint_gid)[:_GUID_PREFIX].hex() for it in found)
+    return _participants_of(node.get_publishers_info_by_topic(_OF_PARTICIPANTS, no_mangle=True))
+
+
+def participants_with_topics(node: Any) -> frozenset[str]:
+    """Return the participants that publish or subscribe to any topic."""
+    topics = [name for name, _ in node.get_topic_names_and_types()]
+    sides = node.get_publishers_info_by_topic, node.get_subscriptions_info_by_topic
+    return frozenset().union(*(_participants_of(side(it)) for it in topics for side in sides))
+
+
+def on_this_machine(node: Any, found: Iterable[str]) -> list[str]:
+    """Return those of the participants on the machine of ``node``, as far as their GUIDs tell."""
+    events = node.get_publishers_info_by_topic(PARAMETER_EVENTS)
+    own = _participants_of(it for it in events if it.node_name == node.get_name())
+    machines = set(map(machine, own))
+    return [it for it in found if machine(it) in machines]
+
+
+def _participants_of(infos: Iterable[Any]) -> frozenset[str]:
+    return frozenset(bytes(it.endpoint_gid)[:_GUID_PREFIX].hex() for it in infos)
 
 
 def enclaves(node: Any) -> dict[str, str]:

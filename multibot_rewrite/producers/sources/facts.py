@@ -71,6 +71,7 @@ _ACTIONS = {
 _FLAGS = {"True": True, "true": True, "False": False, "false": False}
 _INFO, _SET_INFO = "<camera_info>", "<~>set_camera_info"
 _CAMERAS = ("advertise", "advertiseCamera", "create_camera_publisher")
+_WITH_INFO = (*_CAMERAS[1:], "create_camera_subscription")
 LOOKED_UP = "looked up"
 
 
@@ -201,14 +202,11 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
             name=name, parameter=parameter, when=_both(when, more), transport=images
         )
         yield end
-        if images and it.api.function != "advertise" and "<" not in name:
+        if it.api.function in _WITH_INFO and type_ == IMAGE and "<" not in name:
             info = f"{name.rpartition('/')[0]}/camera_info".lstrip("/" if name[:1] != "/" else "")
             own = end._replace(name=info, type="sensor_msgs/msg/CameraInfo", transport=False)
-            yield own._replace(
-                parameter="",
-                beside=name,
-                fixed=f"it is derived from the name that {name} is remapped to",
-            )
+            # Since then image_transport makes it of the image's name with its rules applied (#326).
+            yield own._replace(parameter="", beside=name if has_release("kilted+", release) else "")
 
 
 def _each(text: str) -> Iterator[str]:
@@ -349,7 +347,10 @@ def _sends(
             continue
         words = [_frame_word(rows[0].text) for rows in pair]
         if all(words) and words[0] != words[1]:
-            sends.append(SentTransform(words[0], words[1]))
+            # That a callback may never run is no switch.
+            asked = "&".join(it for it in sent.asked.split("&") if it != OTHERWISE)
+            switch = _condition(names, sent.spot, asked)
+            sends.append(SentTransform(words[0], words[1], "" if switch == PERHAPS else switch))
             frames += [_frame_of(names, rows[0], it) for rows, it in zip(pair, words, strict=True)]
     return tuple(dict.fromkeys(sends)), tuple(frames)
 

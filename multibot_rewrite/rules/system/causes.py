@@ -11,6 +11,7 @@ from functools import lru_cache
 from itertools import islice, zip_longest
 from typing import NamedTuple
 
+from multibot_rewrite.base.findings.finding import Remap
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.base.rosnames import check_topic_name, expand
@@ -39,6 +40,7 @@ class Cause(NamedTuple):
     hint: str
     file: str = ""
     line: int = 0
+    remaps: tuple[Remap, ...] = ()
 
 
 def caused(hint: str, place: str) -> Cause:

@@ -11,7 +11,7 @@ from fnmatch import translate
 from math import inf, isinf
 
 from multibot_rewrite.base.conventions import CLOCK
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
@@ -44,11 +44,16 @@ def no_clock(seen: Index) -> Iterator[Finding]:
         message = (
             f"on simulated time (use_sim_time), but no node publishes {CLOCK}: {shorten(nodes)}"
         )
+        remaps: tuple[Remap, ...] = ()
         cause = "use_sim_time: false on a real robot, or start the simulator's bridge for /clock"
         if other := next((it for it in seen.topics if it.type == _TYPE and it.publishers), None):
             message += f"; {other.publishers[0].node} publishes {other.name}"
-            cause = f"pass the rule {other.name}:={CLOCK}: all robots have one clock"
-        yield no_clock.finding(message, cause, robot=robot, node=nodes[0], names=(CLOCK,))
+            sender = other.publishers[0].node
+            cause = f"pass the rule {other.name}:={CLOCK} to {sender}: all robots have one clock"
+            remaps = (Remap(sender, other.name, CLOCK),)
+        yield no_clock.finding(
+            message, cause, robot=robot, node=nodes[0], names=(CLOCK,), remaps=remaps
+        )
 
 
 def _clocks(seen: Index) -> tuple[str, ...]:

@@ -13,14 +13,14 @@ from multibot_rewrite.base.conventions import (
     is_from_outside,
     team,
 )
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.causes import Spelled, alike
 from multibot_rewrite.rules.system.matching import STAMPED
 from multibot_rewrite.rules.system.names import ABSENT, nobody_in
-from multibot_rewrite.rules.system.sharing import own_namespace
+from multibot_rewrite.rules.system.sharing import own_names
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, RUNS, SUBSCRIBES, TOPIC, End
@@ -28,6 +28,7 @@ from multibot_rewrite.system.tool_nodes import is_hidden, is_tool, is_viewer, la
 
 # A person drives with these.
 _BY_HAND = lazy_compile("teleop|joy|keyboard|gamepad")
+_CHOOSE = "put twist_mux before the robot's driver, each sender with a topic of its own"
 _VELOCITY = "geometry_msgs/msg/Twist"
 # The topics of RViz's own tools.
 _OFFERED = ("goal_pose", "initialpose", "clicked_point")
@@ -45,14 +46,13 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
         robots = robots_of(seen, nodes)
         if len(robots) > 1:
             message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
-            cause = own_namespace(seen, name, robots[0])
+            cause = own_names(seen, ends, robots)
+            if joystick:
+                cause = cause._replace(hint=f"{cause.hint}; or give each its own enable_button")
             yield command_for_several_robots.finding(
-                message,
-                f"{cause}; or give each its own enable_button" if joystick else cause,
-                level=WARNING if joystick else ERROR,
-                node=nodes[0],
-                names=(name,),
-            )
+                message, level=WARNING if joystick else ERROR, node=nodes[0], names=(name,),
+                **cause._asdict(),
+            )  # fmt: skip
 
 
 @system_rule("MG308", "command-without-reader", ERROR, absence=True, drawn="leak")
@@ -69,9 +69,14 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
     spelled: dict[str, Spelled] = {}
     for name, ends in unread.items():
         same = obeyed[ends.type]
-        robots = plainly[ends.type, name]
+        robots, mine = plainly[ends.type, name], robots_of(seen, nodes_of(ends.publishers))
+        if len(mine) == 1:
+            # What another robot reads is not meant for it.
+            own = seen.of_robot(mine[0], TOPIC, seen.plain(name))
+            robots = [own.name] if own and own.name != name and _obeyed(own) else []
         spelled[ends.type] = spelled.get(ends.type) or Spelled(same)
-        near = next(iter(robots), "") or alike(name, spelled[ends.type], ends.type)
+        is_own = lambda it: len(mine) != 1 or seen.robot(it) in ("", mine[0])  # noqa: B023, E731
+        near = next(iter(robots), "") or alike(name, spelled[ends.type], ends.type, is_own)
         meant = near or _of_a_mux(seen, ends)
         meant = meant or _of_a_person(seen, ends, same)
         if meant:
@@ -174,13 +179,27 @@ def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     wanted = seen.by_name[TOPIC, meant].type
     if set(wanted.split(" | ")).isdisjoint(ends.type.split(" | ")):
         several += f"; it reads {wanted}, not {ends.type}"
+    remaps = tuple(Remap(it, ends.name, meant) for it in nodes_of(at_work(ends.publishers)))
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
+    if others := _sends_already(seen, meant):
+        remaps, cause = (), f"{reader} obeys {others} there: {_CHOOSE}{several}"
     # RViz offers these from the start.
     usual = last_word(ends.name) in _OFFERED and is_viewer(node) and not is_hidden(node)
     level = NOTE if usual else WARNING if is_viewer(node) and not is_hidden(node) else ERROR
     return command_to_nobody.finding(
-        message, cause, level=level, robot=seen.robot(node), node=node, names=(ends.name, meant)
-    )
+        message, cause, level=level, robot=seen.robot(node), node=node, names=(ends.name, meant),
+        remaps=() if wanted != ends.type else remaps,
+    )  # fmt: skip
+
+
+def _sends_already(seen: Index, name: str) -> str:
+    """Return who sends velocities to a reader that does not choose between them; empty for nobody."""
+    there = seen.by_name[TOPIC, name]
+    if not words.moves(seen.plain(name), there.type) or any(
+        chooses(it) for it in nodes_of(there.subscribers)
+    ):
+        return ""
+    return shorten(nodes_of(at_work(there.publishers))) if there.publishers else ""
 
 
 @system_rule(
@@ -252,7 +271,7 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
         tool = next((node for node in teams.values() if is_tool(node)), max(teams.values()))
         others = [node for node in teams.values() if node != tool]
         message = f"publishes {ends.name} beside {shorten(others)}, and {readers[0]} obeys both"
-        cause = "put twist_mux before the robot's driver, each sender with a topic of its own"
+        cause = _CHOOSE
         robot = seen.robot(ends.name) or seen.robot(readers[0])
         yield several_command_senders.finding(
             message, cause, robot=robot, node=tool, names=(ends.name,)

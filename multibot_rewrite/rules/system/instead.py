@@ -7,19 +7,28 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from functools import cache, partial
 
 from multibot_rewrite.base.conventions import chooses, is_from_outside, team
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, ends_of, once, spaces
-from multibot_rewrite.system.records import CALLS, RUNS, SERVICE, SUBSCRIBES, UNKNOWN_NODES, End
+from multibot_rewrite.system.records import (
+    CALLS,
+    PUBLISHES,
+    RUNS,
+    SERVICE,
+    SUBSCRIBES,
+    UNKNOWN_NODES,
+    End,
+)
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 _DIGITS = lazy_compile(r"_?\d+")
 # So alike that it is a slip: cmd_vel_smoth, not cmd_vel_ui beside cmd_vel_nav.
 _SLIP = 0.85
-_MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
+MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
 # Every node serves them, or many do: another one of such a type says nothing.
 COMMON = (
     "rcl_interfaces/",
@@ -80,9 +89,27 @@ def _orphan(seen: Index, end: End) -> Ends | None:
 
 
 def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
-    """Is it made of what is missing, as slam_toolbox shows the scan that it reads?"""
-    readers = {it.node for it in ends_of(seen, end.name) if it.role == SUBSCRIBES}
+    """Is it made of what is missing, as slam_toolbox shows the scan that it reads, or by way of others
+    of its type, as an image is rectified of one that is debayered?"""
+    readers = _readers(seen)(end.name, end.type)
     return bool(ends.publishers) and readers.issuperset(it.node for it in ends.publishers)
+
+
+@once
+def _readers(seen: Index) -> Callable[[str, str], frozenset[str]]:
+    return cache(partial(_waiting, seen))
+
+
+def _waiting(seen: Index, name: str, type_: str) -> frozenset[str]:
+    """Return the nodes that read a topic, and those that read what these make of it."""
+    readers: set[str] = set()
+    names = [name]
+    for it in names:
+        own = {one.node for one in ends_of(seen, it) if one.role == SUBSCRIBES} - readers
+        readers |= own
+        sent = (one for node in own for one in seen.by_node[node] if one.role == PUBLISHES)
+        names += [one.name for one in sent if one.type == type_]
+    return frozenset(readers)
 
 
 def _is_costmap(ends: Ends) -> bool:
@@ -250,7 +277,7 @@ def in_other_namespace(seen: Index, end: End) -> str:
 def listed_in_vain(seen: Index, end: End) -> str:
     """The node that a lifecycle manager has in its list and nothing starts; empty for none."""
     node = end.name.rpartition("/")[0]
-    manager = end.kind == SERVICE and last_word(end.node).startswith(_MANAGER)
+    manager = end.kind == SERVICE and last_word(end.node).startswith(MANAGER)
     return node if manager and end.name.endswith(_CHANGE) and node not in seen.nodes else ""
 
 

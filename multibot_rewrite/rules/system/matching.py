@@ -37,13 +37,16 @@ def types_differ(seen: Index) -> Iterator[Finding]:
     for ends in seen.by_name.values():
         every = (*ends.publishers, *ends.subscribers, *ends.servers, *ends.clients)
         planned = by_plan.get((ends.kind, ends.name), frozenset())
-        if planned and not planned >= {end.type for end in every}:
+        types = {(end.type, end.type_hash) for end in every}
+        if len(types) == 1 and (not planned or every[0].type in planned):
+            continue
+        if planned and not planned >= {it for it, _ in types}:
             asked = (it for it in every if it.role != SUBSCRIBES or not seen.is_tool(it.node))
             if apart := _apart(asked, {(it, "") for it in planned}):
                 yield from (_not_as_planned(seen, ends, own, planned) for own in apart.values())
                 continue
         givers, takers = ends[3:5] if ends.kind == TOPIC else ends[5:7]
-        if len({(end.type, end.type_hash) for end in every}) < 2:
+        if len(types) < 2:
             continue
         # Of a side alone the first one counts.
         others = givers if takers else givers[:1]
@@ -60,7 +63,8 @@ def planned_types(seen: Index) -> Mapping[tuple[str, str], Set[str]]:
     found: dict[tuple[str, str], set[str]] = defaultdict(set)
     for end in seen.expected.by_key.values() if seen.expected else ():
         types = found[end.kind, end.name]
-        types.update(end.also)
+        if end.also:
+            types.update(end.also)
         if end.type:
             types.add(end.type)
     return found

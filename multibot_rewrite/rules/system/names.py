@@ -8,13 +8,14 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, S
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses, is_from_outside, team
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import NONE, Spelled, alike
 from multibot_rewrite.rules.system.instead import (
     COMMON,
+    MANAGER,
     in_other_namespace,
     listed_in_vain,
     sent_instead,
@@ -79,21 +80,27 @@ def _published_instead(
     seen: Index, end: End, published: dict[str, Ends], unheard: dict[str, Ends]
 ) -> str:
     """The published topic that was probably meant; empty for none."""
-    above = (it for it in _written_out(end.node, end.name) if it in published)
-    captured = next((it for it in above if published[it].type == end.type), "")
-    if captured:
-        return captured
     robot, owner = seen.robot(end.node), seen.robot(end.name)
+    own = {"", robot or owner}
+    above = (it for it in _written_out(end.node, end.name) if it in published)
+    fitting = (it for it in above if published[it].type == end.type)
+
+    def mine(it: str) -> bool:
+        return not own.isdisjoint(map(seen.robot, nodes_of(published[it].publishers)))
+
+    if captured := next(filter(mine, fitting), ""):
+        return captured
     if not owner and robot:
         # Its own robot has it: whether or not others read it as well.
-        own = (it for it in _by_plain(seen).get((robot, end.name), ()) if it in published)
-        return next((it for it in own if published[it].type == end.type), "")
-    if not owner and (mine := _of_a_robot_without(seen, end, published)):
-        return mine
+        same = (it for it in _by_plain(seen).get((robot, end.name), ()) if it in published)
+        return next((it for it in same if published[it].type == end.type), "")
+    if not owner and (lacking := _of_a_robot_without(seen, end, published)):
+        return lacking
 
     def is_of_another(it: str) -> bool:
-        sent = it in published and nodes_of(published[it].publishers) != (end.node,)
-        return sent and not _is_of_other_robot(seen, end.name, it)
+        if it not in published or nodes_of(published[it].publishers) == (end.node,):
+            return False
+        return not _is_of_other_robot(seen, end.name, it) and (not owner or mine(it))
 
     bare = seen.plain(end.name)
     hidden = [_without_own_name(end), *_hiding(seen, end.name)]
@@ -202,20 +209,28 @@ def _missed_topic(
     message = (
         f"subscribes to {end.name}{also}, which no node publishes; {sender} publishes {other.name}"
     )
+    remaps = tuple(Remap(it.node, end.name, other.name) for it in (end, *more))
+    each = " to each" if more else ""
     # The side in the wrong place is the one whose name has no robot, or is below the node.
     if _is_doubled(other.name, end.name):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
+        remaps = (Remap(sender, other.name, end.name),)
     elif seen.robot(end.name) and not seen.robot(other.name):
         cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
+        remaps = tuple(Remap(it, other.name, end.name) for it in nodes_of(other.publishers))
     elif other.type != end.type:
         message += f" as {last_word(other.type)}"
         cause = f"make both one type: set it in a parameter of one side, or convert {other.name}"
+        remaps = ()
     else:
-        cause = f"pass the rule {end.name}:={other.name}, or write {other.name} in its parameters"
+        cause = (
+            f"pass the rule {end.name}:={other.name}{each}, or write {other.name} in its parameters"
+        )
     level = NOTE if is_viewer(sender) else level
     return topic_names_miss.finding(
         message, cause + see((other.publishers[0], end)),
-        level=level, robot=robot, node=end.node, names=(end.name, other.name), **where([end]),
+        level=level, robot=robot, node=end.node, names=(end.name, other.name), remaps=remaps,
+        **where([end]),
     )  # fmt: skip
 
 
@@ -307,12 +322,20 @@ def _node_like(seen: Index, listed: str) -> str:
 def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> Finding:
     servers = seen.by_name[end.kind, other].servers
     cause = f"pass the rule {end.name}:={other}, or start it in the namespace of the robot"
+    remaps: tuple[Remap, ...] = (Remap(end.node, end.name, other),)
+    managed = [it.node for it in seen.by_name[end.kind, other].clients if _manages(it.node)]
+    if _manages(end.node) and managed:
+        cause, remaps = f"{managed[0]} calls that: leave {end.node} out", ()
     clicked = is_viewer(end.node) and not is_spawner(end.node)
     return server_names_miss.finding(
         f"{lost}; {nodes_of(servers)[0]} serves {other}", cause + see((servers[0], end)),
         level=NOTE if clicked else level, robot=seen.robot(end.node) or seen.robot(other),
-        node=end.node, names=(end.name, other), **where([end]),
+        node=end.node, names=(end.name, other), remaps=remaps, **where([end]),
     )  # fmt: skip
+
+
+def _manages(node: str) -> bool:
+    return last_word(node).startswith(MANAGER)
 
 
 def _served_instead(seen: Index, end: End, served: _Served) -> str:

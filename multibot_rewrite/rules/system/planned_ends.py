@@ -192,10 +192,9 @@ def _planned_for_several(plan: Index, seen: Index) -> Iterator[Finding]:
     relays, there, robot_of = copying_nodes(plan.system), seen.by_key, plan.robot_of
     of_one = plan.of_names.exact
     for key in plan.by_key:
-        end = there.get(key)
-        if not end or end.sure != RUNS or key[3] in of_one:
+        if key[3] in of_one or key[0] not in robot_of or key[0] in relays:
             continue
-        if key[0] in robot_of and key[0] not in relays:
+        if (end := there.get(key)) and end.sure == RUNS:
             users[key[3]].append(end)
     for name, ends in users.items():
         robots = unique(plan.robot_of[it.node] for it in ends)

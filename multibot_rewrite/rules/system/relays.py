@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import chooses
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, Finding, Remap
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
@@ -72,6 +72,7 @@ def limits_left_out(seen: Index) -> Iterator[Finding]:
                     robot=seen.robot(node),
                     node=node,
                     names=(ends.name,),
+                    remaps=(Remap(node, ends.name, f"{ends.name.rpartition('/')[0]}/cmd_vel_nav"),),
                 )
 
 
@@ -90,6 +91,7 @@ def _mux_left_out(seen: Index) -> Iterator[Finding]:
                         robot=seen.robot(drivers[0]),
                         node=drivers[0],
                         names=(given.name, ends.name),
+                        remaps=tuple(Remap(it, given.name, ends.name) for it in drivers),
                     )
 
 

@@ -5,14 +5,15 @@ or a file that only one process can open."""
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.system.causes import Cause
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of, robots_of
+from multibot_rewrite.system.index import NO_NAMESPACE, Ends, Index, at_work, nodes_of, robots_of
 from multibot_rewrite.system.records import (
     CALIBRATION,
     COMPUTER,
@@ -21,17 +22,42 @@ from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,
     Address,
+    End,
 )
-from multibot_rewrite.system.tool_nodes import last_word
+from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 
-def own_namespace(seen: Index, name: str, robot: str) -> str:
-    """What to do about a name that the robots share: how each gets its own."""
-    return (
-        "each robot needs its own: write a relative name in the node's code or parameters;"
-        f" or start it in the namespace of {robot} with the rule {name}:={name.strip('/')}"
-        " (--ros-args -r, remappings= in the launch file)"
+def own_names(seen: Index, ends: Ends, robots: Sequence[str]) -> Cause:
+    """Return how each robot gets a topic of its own in place of one that they share; where a node of no
+    robot sends it, no remap rule gives each robot a sender."""
+    outside = [] if NO_NAMESPACE in robots else outsiders(seen, ends.publishers)
+    if outside:
+        one = "start one" if len(outside) == 1 else "start them"
+        return Cause(f"{shorten(outside)} sends it to all robots: {one} for each, in its namespace")
+    users = nodes_of((*ends.publishers, *ends.subscribers))
+    owner, plain = seen.robot(ends.name), seen.plain(ends.name)
+    spaces = {it: it.rpartition("/")[0] for it in users if seen.robot(it) not in ("", owner)}
+    remaps = (Remap(it, ends.name, f"{space}{plain}") for it, space in spaces.items() if space)
+    if owner:
+        others = robots_of(seen, spaces)
+        return Cause(
+            f"a namespace, remap rule or parameter of {and_then(others)} names {owner}; pass the rule"
+            f" {ends.name}:={plain.strip('/')} to {shorten(spaces)}",
+            remaps=tuple(remaps),
+        )
+    readers = [] if NO_NAMESPACE in robots else outsiders(seen, ends.subscribers)
+    more = f"; then {shorten(readers)} has to read those of all robots" if readers else ""
+    return Cause(
+        "each robot needs its own: write a relative name in the code or parameters of these nodes, or"
+        f" pass the rule {ends.name}:={ends.name.strip('/')} to each that uses it, in the namespace of"
+        f" its robot (--ros-args -r, remappings= in the launch file){more}",
+        remaps=() if readers else tuple(remaps),
     )
+
+
+def outsiders(seen: Index, ends: Iterable[End]) -> list[str]:
+    """Return the nodes that have these ends and belong to no robot."""
+    return [it for it in nodes_of(at_work(ends)) if not seen.robot(it) and not is_viewer(it)]
 
 
 @system_rule("MG320", "topic-of-several-robots", ERROR, drawn="leak", meant=(PUBLISHES, SUBSCRIBES))
@@ -52,8 +78,10 @@ def _sent_by_several(seen: Index) -> Iterator[Finding]:
         orders = words.moves(plain, ends.type) and bool(seen.robot(ends.name))
         if len(robots) > 1 and words.is_of_one_robot(plain, ends.type) and not orders:
             message = f"{and_then(robots)} publish on {ends.name}: {shorten(nodes)}"
-            cause = own_namespace(seen, ends.name, robots[0])
-            yield topic_of_several_robots.finding(message, cause, node=nodes[0], names=(ends.name,))
+            cause = own_names(seen, ends, robots)._asdict()
+            yield topic_of_several_robots.finding(
+                message, **cause, node=nodes[0], names=(ends.name,)
+            )
 
 
 @system_rule("MG321", "data-of-another-robot", ERROR, drawn="cross-talk", meant=(SUBSCRIBES,))
@@ -103,8 +131,10 @@ def _read_by_several(seen: Index) -> Iterator[Finding]:
         senders = robots_of(seen, nodes_of(ends.publishers))
         if len(robots) > 1 and len(senders) < 2:
             message = f"{and_then(robots)} all read {ends.name}: {shorten(nodes)}"
-            cause = own_namespace(seen, ends.name, robots[0])
-            yield topic_of_several_robots.finding(message, cause, node=nodes[0], names=(ends.name,))
+            cause = own_names(seen, ends, robots)._asdict()
+            yield topic_of_several_robots.finding(
+                message, **cause, node=nodes[0], names=(ends.name,)
+            )
 
 
 @system_rule("MG323", "two-maps", ERROR, meant=(PUBLISHES,))

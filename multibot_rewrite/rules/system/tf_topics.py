@@ -9,8 +9,13 @@ from collections.abc import Container, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.system.tf_trees import by_child, taken_elsewhere
-from multibot_rewrite.rules.system.transforms import collide
+from multibot_rewrite.rules.system.tf_trees import (
+    by_child,
+    frames_by_topic,
+    home_of,
+    taken_elsewhere,
+)
+from multibot_rewrite.rules.system.transforms import collide, tf_remaps
 from multibot_rewrite.system.index import Index, Tree
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, incomplete
 from multibot_rewrite.system.tf_copies import static_topic
@@ -49,7 +54,7 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
             deaf = [it for it in heard[topic] if it not in heard.get(home, ())]
             if deaf:
                 yield _elsewhere(seen, robot, home, topic, deaf, "hear")
-    yield from _frames_of_another(seen)
+    yield from _frames_of_another(seen, senders)
     yield from _frames_beside(seen, senders)
     yield from _rviz_hears_nothing(seen)
 
@@ -66,26 +71,82 @@ def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
                 f"start it with -r {tree.topic}:={sent[0]}"
                 f" -r {static_topic(tree.topic)}:={static_topic(sent[0])}, one for each robot",
                 level=WARNING, robot=seen.robot(rviz[0]), node=rviz[0], names=(tree.topic,),
+                remaps=tf_remaps(rviz, tree.topic, sent[0]),
             )  # fmt: skip
 
 
-def _frames_of_another(seen: Index) -> Iterator[Finding]:
-    """One robot's frames on another one's topic, where it is not known who sends them."""
-    for tree in seen.trees:
-        owner = seen.robot(tree.topic)
-        if not owner or any(map(seen.robot, tree.senders)):
-            continue
-        found: dict[str, list[str]] = defaultdict(list)
-        for edge in tree.edges:
-            found[seen.frame_robot(edge.child)].append(edge.child)
-        for robot, frames in found.items():
-            if robot not in ("", owner):
-                yield tf_on_two_topics.finding(
-                    f"{shorten(frames)} of {robot} on {tree.topic}, which is of {owner}",
-                    f"start its nodes in its own namespace, with the rules {_REMAP}",
-                    robot=robot,
-                    names=(*unique(frames), tree.topic),
-                )
+def _frames_of_another(
+    seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
+) -> Iterator[Finding]:
+    """One robot's frames on another one's topic: whoever sends them, where it is the other's by the
+    plan; else where it is not known who does."""
+    for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
+        home = home_of(seen.expected, tree) if seen.expected else ()
+        owners = home or [it for it in (seen.robot(tree.topic),) if it]
+        found: dict[str, list[Edge]] = defaultdict(list)
+        for it in tree.edges if owners else ():
+            robot, is_odd = seen.frame_robot(it.child), _is_of_its_tree if home else _is_of_nobody
+            if robot not in ("", *owners) and is_odd(seen, tree, it):
+                found[robot].append(it)
+        for robot, edges in found.items():
+            sends = tree.topic in senders.get(robot, ()) or _is_relayed(seen, tree, robot)
+            if not (sends or _has_names_of(seen, tree, owners, robot, edges)):
+                yield _on_anothers(seen, tree, owners[0] if not home else "", robot, edges)
+
+
+def _on_anothers(seen: Index, tree: Tree, owner: str, robot: str, edges: Sequence[Edge]) -> Finding:
+    frames, home = unique(it.child for it in edges), seen.home.get(robot, "")
+    verb = "is" if len(frames) == 1 else "are"
+    expected = f"{verb} on {tree.topic}, expected on {home}"
+    where = f"on {tree.topic}, which is of {owner}" if owner else expected
+    known = [it for it in tree.senders if it in seen.nodes and not owner]
+    wrong = f"; or {shorten(known)} has its description or parameters" if known else ""
+    return tf_on_two_topics.finding(
+        f"{shorten(frames)} of {robot} {where}",
+        f"start its nodes in its own namespace, with the rules {_REMAP}{wrong}",
+        robot=robot, names=(*frames, tree.topic, *filter(None, [home])),
+    )  # fmt: skip
+
+
+def _is_of_its_tree(seen: Index, _: Tree, edge: Edge) -> bool:
+    """Is it between frames of one robot, or what that sends by the plan? What is below another robot's
+    frame is where that one sees it."""
+    one = seen.frame_robot(edge.child) == seen.frame_robot(edge.parent)
+    return one or (edge.parent, edge.child) in seen.senders
+
+
+def _is_of_nobody(seen: Index, tree: Tree, edge: Edge) -> bool:
+    """Has no robot's node sent it, and is it no copy that a known node makes, and nothing seen?"""
+    trees = _trees_of(seen, seen.frame_robot(edge.child))
+    copied = any(edge.child in by_child(seen)[it.topic] for it in trees) and edge.publishers
+    sees = seen.frame_robot(edge.parent) == seen.robot(tree.topic)
+    return not (copied or sees or any(map(seen.robot, edge.publishers or tree.senders)))
+
+
+def _trees_of(seen: Index, robot: str) -> Iterator[Tree]:
+    return (it for it in seen.trees if seen.robot(it.topic) == robot)
+
+
+def _is_relayed(seen: Index, tree: Tree, robot: str) -> bool:
+    """Has the plan a node of the robot there, or does one that sends there hear the robot's tree?"""
+    plan, topics = seen.expected, (tree.topic, static_topic(tree.topic))
+    own = plan.own.get(robot, ()) if plan else ()
+    planned = plan.by_key if plan else ()
+    heard = (node for it in _trees_of(seen, robot) for node in it.listeners)
+    keys = ((node, TOPIC, PUBLISHES, it) for node in own for it in topics)
+    return any(it in planned for it in keys) or any(node in tree.senders for node in heard)
+
+
+def _has_names_of(
+    seen: Index, tree: Tree, owners: Sequence[str], robot: str, edges: Sequence[Edge]
+) -> bool:
+    """Has the robot all of it, and lacks one whose topic it is frames of its own, while its nodes run?
+    Then these have the names of the robot, and a frame that is not received is the finding."""
+    plan, children = seen.expected, by_child(seen).get(seen.home.get(robot, ""), {})
+    if not plan or not seen.nodes or any(it.child not in children for it in edges):
+        return False
+    there = frames_by_topic(seen)[tree.topic]
+    return any(not there >= {*plan.declared[it].frames} for it in owners)
 
 
 def _frames_beside(
@@ -101,9 +162,7 @@ def _frames_beside(
     for tree in (it for it in called_tf if it.topic not in elsewhere):
         found: dict[str, list[Edge]] = defaultdict(list)
         for it in tree.edges if not seen.robot(tree.topic) else ():
-            robot = seen.frame_robot(it.child)
-            known = it.publishers or robot in seen.home
-            if robot and robot == seen.frame_robot(it.parent) and known:
+            for robot in _whose(seen, it):
                 found[robot].append(it)
         for robot in (it for it in found if it in senders or it in seen.home):
             home = _home(seen, robot, senders.get(robot, {}))
@@ -120,6 +179,19 @@ def _frames_beside(
                 f"start it in the namespace of {robot}, with the rules {_REMAP}",
                 level=level, robot=robot, node=node, names=(*frames, tree.topic, home),
             )  # fmt: skip
+
+
+def _whose(seen: Index, edge: Edge) -> Sequence[str]:
+    """The robot of a transform; of one without a robot's name the robots that have it by the plan and
+    lack it, where it is not known which nodes run."""
+    robot, plan = seen.frame_robot(edge.child), seen.expected
+    if robot:
+        known = edge.publishers or robot in seen.home
+        return [robot] if robot == seen.frame_robot(edge.parent) and known else ()
+    if not plan or seen.nodes or edge.publishers:
+        return ()
+    planned = [it for it, frames in plan.frames_of.items() if edge.child in frames]
+    return [it for it in planned if edge.child not in by_child(seen).get(seen.home[it], ())]
 
 
 def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whole: bool) -> bool:
@@ -168,15 +240,13 @@ def _elsewhere(
 ) -> Finding:
     does = f"{verb}s" if len(nodes) == 1 else verb
     message = f"{shorten(nodes)} {does} tf on {topic}, but the tf of {robot} is on {home}"
-    return tf_on_two_topics.finding(
-        message, _remap(seen, robot, home, topic), robot=robot, node=nodes[0], names=(topic, home)
-    )
-
-
-def _remap(seen: Index, robot: str, home: str, topic: str) -> str:
     other = seen.robot(topic)
-    if other not in ("", robot):
-        return f"a namespace or remap rule of {robot} names {other}"
-    target = "tf" if home.startswith(f"/{robot}/") else home
-    rules = f"-r {topic}:={target} -r {static_topic(topic)}:={static_topic(target)}"
-    return f"pass {rules}: to the whole process, where the node shares one"
+    hint, remaps = f"a namespace or remap rule of {robot} names {other}", tf_remaps((), "", "")
+    if other in ("", robot):
+        target = "tf" if home.startswith(f"/{robot}/") else home
+        rules = f"-r {topic}:={target} -r {static_topic(topic)}:={static_topic(target)}"
+        hint = f"pass {rules}: to the whole process, where the node shares one"
+        remaps = tf_remaps(nodes, topic, home)
+    return tf_on_two_topics.finding(
+        message, hint, robot=robot, node=nodes[0], names=(topic, home), remaps=remaps
+    )

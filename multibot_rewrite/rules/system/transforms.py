@@ -8,13 +8,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES, WORLD_FRAMES
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Remap
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.system.causes import Cause
 from multibot_rewrite.rules.system.planned_frames import with_more_names
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.records import SUBSCRIBES, Edge
+from multibot_rewrite.system.tf_copies import static_topic
 from multibot_rewrite.system.tool_nodes import last_word
 
 _STATIC = "static_transform_publisher"
@@ -91,8 +93,10 @@ def robots_frames_collide(seen: Index) -> Iterator[Finding]:
         if who:
             bare = _bare_frames(seen, tree)
             message = f"{who} on {tree.topic}: {shorten(bare, SEVERAL)}"
-            cause = _either(tree, robots_of(seen, tree.senders))
-            yield robots_frames_collide.finding(message, cause, names=(*bare, tree.topic))
+            cause = _apart(seen, tree, robots_of(seen, tree.senders))
+            yield robots_frames_collide.finding(
+                message, **cause._asdict(), names=(*bare, tree.topic)
+            )
 
 
 def collide(seen: Index, tree: Tree) -> str:
@@ -144,12 +148,31 @@ def _named_frames(seen: Index, tree: Tree) -> Iterator[str]:
     return (it for it in frames if seen.frame_robot(it))
 
 
-def _either(tree: Tree, robots: Sequence[str]) -> str:
-    namespaced = any(node.startswith(f"/{robot}/") for robot in robots for node in tree.senders)
+def _apart(seen: Index, tree: Tree, robots: Sequence[str]) -> Cause:
+    """Return how frames of several robots on one topic get apart: by their names where some have them,
+    else by topics, too."""
+    senders = f"the senders are {shorten(tree.senders, SEVERAL)}"
+    named = "put the robot's name into these frames (urdf-postfix; a node's in its parameters)"
+    if any(_named_frames(seen, tree)):
+        return Cause(f"{named}; {senders}")
+    if seen.robot(tree.topic):
+        return Cause(f"start the nodes of one of the two in another namespace; {senders}")
     rules = "pass -r /tf:=tf -r /tf_static:=tf_static to every node of a robot"
-    own = rules if namespaced else f"give each robot a namespace and {rules}"
-    senders = shorten(tree.senders, SEVERAL)
-    return f"{own}, or put its name into its frames (urdf-postfix); the senders are {senders}"
+    nodes = [it for it in (*tree.senders, *tree.listeners) if it.startswith(f"/{seen.robot(it)}/")]
+    own = rules if nodes else f"give each robot a namespace and {rules}"
+    remaps = (
+        it
+        for node in nodes
+        for it in tf_remaps([node], tree.topic, f"{node.rpartition('/')[0]}{tree.topic}")
+    )
+    whole = len(robots) == len(robots_of(seen, nodes))
+    return Cause(f"{own}, or {named}; {senders}", remaps=tuple(remaps) if whole else ())
+
+
+def tf_remaps(nodes: Iterable[str], topic: str, home: str) -> tuple[Remap, ...]:
+    """Return the rules that move nodes from one tf topic to another, with the static one."""
+    pairs = (topic, home), (static_topic(topic), static_topic(home))
+    return tuple(Remap(node, *pair) for node in nodes for pair in pairs)
 
 
 @system_rule("MG403", "tf-cycle", ERROR)

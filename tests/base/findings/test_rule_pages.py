@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import FOLDER, RulePage, read_page, rule_page
 from multibot_rewrite.lint import catalogue
@@ -14,37 +15,7 @@ from multibot_rewrite.rules.launch.judge import RULES as LAUNCHED
 
 PAGES = {it.stem for it in Path(FOLDER).glob("*.md")}
 OTHER_EXAMPLES = {it.examples for it in (*RULES.values(), *LAUNCHED) if it.examples}
-TEXT = """\
-# MB000 a-rule
-
-It finds
-a thing.
-
-**Why.** It hurts.
-
-**Fix.** Do this.
-
-Bad (line 2):
-
-````xml
-<a>
-```
-</a>
-````
-
-Good:
-
-```xml
-<a/>
-```
-
-Beside it, `robot.urdf`:
-
-```xml
-
-<robot/>
-```
-"""
+TEXT = fixture_text("rule_pages_text.txt")
 
 
 def test_each_rule_has_a_page_and_each_page_a_rule() -> None:

@@ -40,25 +40,25 @@ def test_the_examples_of_a_rule_for_which_a_fleet_is_built(code: str, tmp_path: 
 
 
 def judge_examples(rule: Rule, tmp_path: Path) -> None:
-    (finding,) = found(rule, rule.bad, tmp_path)
+    (finding,) = found(rule, rule.page.bad, tmp_path)
     # What is found, and what to do.
     assert finding.message
     assert finding.hint
-    assert bool(finding.edits) == bool(rule.fixed)
+    assert bool(finding.edits) == bool(rule.page.fixed)
     (tmp_path / "good").mkdir()
-    assert found(rule, rule.good, tmp_path / "good") == []
+    assert found(rule, rule.page.good, tmp_path / "good") == []
     if set(WITHOUT_FILE) & set(rule.formats):
         # The line names the node or one of the topics or frames, else the robot.
         about = [it for it in (finding.node, *finding.names) if it] or [finding.robot]
-        assert any(it in rule.bad.splitlines()[rule.line - 1] for it in about if it)
+        assert any(it in rule.page.bad.splitlines()[rule.page.line - 1] for it in about if it)
         return
-    assert finding.line == rule.line
+    assert finding.line == rule.page.line
     assert Path(finding.file).parent == tmp_path if finding.file else finding.place != "graph"
 
 
 @pytest.mark.parametrize("code", [code for code in EXAMPLES if code in TOLD])
 def test_the_level_of_an_example_and_what_it_is_about(code: str, tmp_path: Path) -> None:
-    (it,) = found(RULES[code], RULES[code].bad, tmp_path)
+    (it,) = found(RULES[code], RULES[code].page.bad, tmp_path)
     level, about = TOLD[code]
     assert it.level == level
     if set(WITHOUT_FILE) & set(RULES[code].formats):
@@ -68,13 +68,13 @@ def test_the_level_of_an_example_and_what_it_is_about(code: str, tmp_path: Path)
         assert lines[it.line - 1][it.column - 1 :].lstrip().startswith(about)
 
 
-@pytest.mark.parametrize("code", [code for code in EXAMPLES if RULES[code].fixed])
+@pytest.mark.parametrize("code", [code for code in EXAMPLES if RULES[code].page.fixed])
 def test_the_fix_makes_just_what_is_shown(code: str, tmp_path: Path) -> None:
     rule = RULES[code]
-    (finding,) = found(rule, rule.bad, tmp_path)
+    (finding,) = found(rule, rule.page.bad, tmp_path)
     bad = Path(finding.file).read_bytes()
     text, left = fix(finding.file, bad, Settings(select=(code,), **cast(Any, rule.options)))
-    assert text.decode() == whole(rule.fixed)
+    assert text.decode() == whole(rule.page.fixed)
     assert left == []
 
 
@@ -87,7 +87,7 @@ def test_a_finding_of_a_line_alone_is_at_its_first_column() -> None:
 
 
 def test_the_codes_with_a_fix() -> None:
-    fixed = {code for code, it in RULES.items() if it.fixed}
+    fixed = {code for code, it in RULES.items() if it.page.fixed}
     assert fixed == {
         "MB002",
         "MB126",

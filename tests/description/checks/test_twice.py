@@ -8,32 +8,12 @@ from itertools import pairwise, product
 
 import pytest
 from lxml import etree
-from paths import ROBOTS
+from paths import ROBOTS, fixture_text
 
 from multibot_rewrite import RewriteRefused, rewrite, rewrite_all, strip
 from multibot_rewrite.description.checks.twice import is_part
 
-ROVER = """\
-<robot name="rover">
-  <link name="base_link"/>
-  <link name="left_wheel"/>
-  <link name="camera_link"/>
-  <joint name="left_wheel_joint" type="continuous">
-    <parent link="base_link"/>
-    <child link="left_wheel"/>
-  </joint>
-  <joint name="camera_joint" type="fixed">
-    <parent link="base_link"/>
-    <child link="camera_link"/>
-  </joint>
-  <gazebo>
-    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
-      <ros><namespace>/demo</namespace><remapping>cmd_vel:=cmd</remapping></ros>
-      <left_joint>left_wheel_joint</left_joint>
-    </plugin>
-  </gazebo>
-</robot>
-"""
+ROVER = fixture_text("twice_rover.urdf")
 PLAIN = ROVER.partition("  <gazebo>")[0] + "</robot>\n"
 PLUGIN = '<gazebo><plugin name="p" filename="libgazebo_ros_diff_drive.so">{}</plugin></gazebo>'
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")

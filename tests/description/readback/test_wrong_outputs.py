@@ -5,28 +5,12 @@ from __future__ import annotations
 
 import pytest
 from description_calls import NEWEST_LTS, load_vocabulary, make_naming, meetings, read, same_for_all
-from paths import FIXTURES
+from paths import FIXTURES, fixture_text
 from proof_faults import Fault, read_faults
 
 from multibot_rewrite import rewrite
 
-RUNNING = b"""\
-<robot name="rover">
-  <link name="base"/>
-  <gazebo>
-    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
-      <ros><namespace>/demo</namespace><remapping>cmd_vel:=cmd</remapping></ros>
-      <publish_odom>true</publish_odom>
-      <publish_odom_tf>TRUE</publish_odom_tf>
-      <robot_base_frame>base</robot_base_frame>
-    </plugin>
-    <plugin name="imu" filename="libgazebo_ros_imu_sensor.so"/>
-  </gazebo>
-  <gazebo reference="base">
-    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
-  </gazebo>
-</robot>
-"""
+RUNNING = fixture_text("wrong_outputs_running.urdf").encode()
 FAULTS = read_faults(FIXTURES / "meeting_faults.txt")
 LEAST = 25
 

@@ -6,28 +6,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES
+from paths import FIXTURES, fixture_text
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.cli.urdf_postfix import main
 from multibot_rewrite.description.library import explain
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
-ROBOT = """\
-<robot name="rover">
-  <link name="base"/>
-  <link name="laser"><visual><geometry><mesh filename="package://p/laser.dae"/></geometry></visual></link>
-  <joint name="fixed" type="fixed"><parent link="base"/><child link="laser"/></joint>
-  <gazebo reference="lost"/>
-  <gazebo>
-    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
-      <odometry_frame>map</odometry_frame>
-      <robot_base_frame>base</robot_base_frame>
-    </plugin>
-    <plugin name="own" filename="libown.so"><place>laser</place><speed>3</speed></plugin>
-  </gazebo>
-</robot>
-"""
+ROBOT = fixture_text("explain_robot.urdf")
 SRDF = '<robot name="rover">\n<group name="all">\n<link name="base"/>\n</group></robot>'
 
 

@@ -16,6 +16,7 @@ from typing import Any
 
 import pytest
 from description_calls import NEWEST_LTS, Template, Vocabulary, library, make_naming
+from paths import fixture_text
 
 from multibot_rewrite import VocabularyError
 from multibot_rewrite.description import pipeline
@@ -24,35 +25,7 @@ from multibot_rewrite.description.rewriters.tree import Tree
 
 FILES = (trees.__file__, library.__file__)
 # What a rover needs of the vocabulary: a section in a section, a block, a chosen plugin, a keep.
-TEXT = """\
-[element robot]
-at: /
-@name declares model
-[element link]
-at: robot
-@name declares link
-[element parent]
-at: joint
-@link uses link
-[element joint]
-at: robot
-@name declares joint
-child@link uses link
-[element gazebo]
-at: robot
-@reference uses link joint
-[element plugin]
-at: gazebo
-select: plugin
-@name declares node
-[block frames]
-frame uses frame link
-[plugin drive]
-opens: nothing
-with: frames
-wheel[@side=left] uses joint
-label keep a label
-"""
+TEXT = fixture_text("interleaved_text.txt")
 ROBOT = b"""\
 <robot name="r"><link name="a"/><link name="b"/>
 <joint name="j"><parent link="a"/><child link="b"/></joint>

@@ -12,26 +12,13 @@ from pathlib import Path
 
 import pytest
 from counted_steps import growth
+from paths import fixture_text
 
 from multibot_rewrite.description.rewriters.patterns import Pattern, PatternError
 
 LETTERS = string.ascii_letters + string.digits + "_"
 GXX = shutil.which("g++")
-REFEREE = """
-#include <iostream>
-#include <regex>
-#include <string>
-int main() {
-  std::string pattern, name;
-  while (std::getline(std::cin, pattern) && std::getline(std::cin, name)) {
-    try {
-      std::cout << std::regex_match(name, std::regex(pattern)) << '\\n';
-    } catch (const std::regex_error &) {
-      std::cout << "error\\n";
-    }
-  }
-}
-"""
+REFEREE = fixture_text("patterns_referee.txt")
 
 
 def test_a_letter_digit_or_underscore_means_itself() -> None:

@@ -15,37 +15,13 @@ from description_calls import (
     check_vocabulary,
     load_vocabulary,
 )
+from paths import fixture_text
 
 from multibot_rewrite import VocabularyError, rewrite
 
 HEAD = "[plugin mine]\nabout: a test\n"
-NEW_PLUGIN = """\
-# of my own
-[plugin my_winch my_hoist]
-about: a winch
-opens: nothing
-@name        declares node
-rope/from    uses link
-cable@joint  uses joint
-brakes       uses joint form=list   # all of them
-label        keep a label for people
-spool_frame  uses frame default=spool
-"""
-ROBOT = """\
-<robot name="crane">
-  <link name="base"/>
-  <link name="hook"/>
-  <joint name="lift" type="prismatic"><parent link="base"/><child link="hook"/></joint>
-  <gazebo>
-    <plugin name="winch" filename="lib{library}.so">
-      <rope><from>base</from></rope>
-      <cable joint="lift"/>
-      <brakes>lift, other</brakes>
-      <label>hook</label>
-    </plugin>
-  </gazebo>
-</robot>
-"""
+NEW_PLUGIN = fixture_text("vocabulary_new_plugin.txt")
+ROBOT = fixture_text("vocabulary_robot.urdf")
 
 
 def write(folder: Path, text: str) -> str:

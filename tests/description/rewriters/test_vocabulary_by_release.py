@@ -7,39 +7,11 @@ from pathlib import Path
 
 import pytest
 from description_calls import RELEASES, builtin_tree, load_vocabulary
+from paths import fixture_text
 
 from multibot_rewrite.base.model import VocabularyError
 
-TEXT = """
-[block shared]
-old  uses link  releases=<=jazzy
-both uses joint
-
-[plugin beam]
-with: shared
-publishes: beam
-both uses link releases=kilted+
-rate uses joint releases=humble
-rate uses link releases=rolling  # another meaning
-never keep it is a number releases=humble
-
-[plugin beam]
-releases: lyrical+
-publishes: beam_info
-
-[plugin young]
-releases: kilted, rolling
-frame uses frame
-
-[element ray]
-at: robot
-releases: <=humble
-@link uses link
-
-[element part]
-at: ray
-@link uses link
-"""
+TEXT = fixture_text("vocabulary_by_release_text.txt")
 
 
 @pytest.fixture

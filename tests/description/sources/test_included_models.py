@@ -10,6 +10,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite import InputError, rewrite, strip
 from multibot_rewrite.base.findings.finding import ERROR
@@ -24,42 +25,10 @@ from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings
 
 IGN = next(filter(None, map(shutil.which, ("gz", "ign"))), "")
-BASE = """<?xml version="1.0"?>
-<sdf version="1.9">
-  <model name="base">
-    <pose>0 0 0.2 0 0 0</pose>
-    <!-- two
-         lines -->
-    <link name="base_link"/>
-    <link name="rotor"><pose>0 0 1 0 0 0</pose></link>
-    <joint name="spin" type="revolute">
-      <parent>base_link</parent><child>rotor</child>
-      <axis><xyz expressed_in="__model__">0 0 1</xyz></axis>
-    </joint>
-    <frame name="top"><pose>0 0 2 0 0 0</pose></frame>
-    <frame name="tip" attached_to="rotor"/>
-    {0}
-  </model>
-</sdf>
-"""
+BASE = fixture_text("included_models_base.sdf")
 CAM = """<sdf version="1.9"><model name="cam"><link name="camera_link">
 <sensor name="eye" type="imu"><topic>tilt</topic></sensor></link></model></sdf>"""
-ROVER = """<?xml version="1.0"?>
-<sdf version="1.9">
-  <model name="rover">
-    <include merge="true">
-      <uri>model://mid</uri>
-      <pose>1 2 3 0 0 0</pose>
-    </include>
-    <include><uri>model://cam</uri><name>front</name>
-      <pose relative_to="top">0 0 1 0 0 0</pose></include>
-    <joint name="mount" type="fixed"><parent>base_link</parent><child>front::camera_link</child></joint>
-    <plugin filename="gz-sim-joint-state-publisher-system" name="gz::sim::systems::JointStatePublisher">
-      <joint_name>spin</joint_name>
-    </plugin>
-  </model>
-</sdf>
-"""
+ROVER = fixture_text("included_models_rover.sdf")
 MID = '<sdf version="1.9"><model name="mid"><include merge="1"><uri>base</uri></include></model></sdf>'
 
 

@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite.description.sources.packages import (
     find_in,
@@ -157,19 +158,7 @@ def test_a_file_that_a_build_installs_elsewhere(tree: Path) -> None:
     assert in_sources(str(tree / "urdf" / "arm.xacro")) == ""
 
 
-CMAKE = """\
-# install(DIRECTORY b/config DESTINATION share/${PROJECT_NAME})
-install(DIRECTORY bringup/conf/ DESTINATION share/${PROJECT_NAME}/config)
-install(
-  DIRECTORY bringup/launch a/config
-  DESTINATION share/arm/)
-install(FILES one.yaml DESTINATION "share/${PROJECT_NAME}/params")
-install(DIRECTORY description/ DESTINATION share/${PROJECT_NAME})
-install(DIRECTORY other/maps DESTINATION share/other)
-install(TARGETS own DESTINATION lib/${PROJECT_NAME})
-install(DIRECTORY DESTINATION)
-install(DIRECTORY b
-"""
+CMAKE = fixture_text("package_folders_cmake.txt")
 
 
 @pytest.mark.parametrize(

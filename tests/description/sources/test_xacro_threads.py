@@ -11,6 +11,7 @@ import threading
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 from waiting import wait_until
 
 from multibot_rewrite import rewrite
@@ -23,27 +24,7 @@ FILE = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
 </xacro:macro><link name="base"/><xacro:arm n="1"/><xacro:arm n="2"/></robot>"""
 SIDES = [f"s{at}" for at in range(8)]
 # A cold start: the server and the tree of rewriters are made by eight threads at once.
-COLD = """
-import sys, threading
-from multibot_rewrite import rewrite
-sys.setswitchinterval(1e-5)
-made, ready = {}, threading.Barrier(8)
-def run(side):
-    ready.wait()
-    for again in range(2):
-        made[side, again] = rewrite(sys.argv[1], "robot1", xacro_args={"side": side}).text
-sides = [f"s{at}" for at in range(8)]
-threads = [threading.Thread(target=run, args=(it,)) for it in sides]
-[it.start() for it in threads]
-[it.join() for it in threads]
-others = {side: [it for it in sides if it != side] for side in sides}
-wrong = [
-    key for key in ((side, again) for side in sides for again in range(2))
-    if key not in made or made[key].count(f'"{key[0]}_1/robot1"') != 2
-    or any(f'"{it}_' in made[key] for it in others[key[0]])
-]
-print(wrong)
-"""
+COLD = fixture_text("xacro_threads_cold.txt")
 FEW, MANY = 2, 20
 
 

@@ -26,7 +26,7 @@ from expected_names import (
     spelled,
 )
 from lxml import etree
-from paths import CORPUS, FIXTURES
+from paths import CORPUS, FIXTURES, fixture_text
 from postfix_command import run
 from real_robots import spread
 from refusals import STOPPED, check_refusal
@@ -207,29 +207,7 @@ def test_an_untrue_refusal_is_noticed(why: str, data: str) -> None:
 
 # ---------------------------------------------------------------- the judges see a wrong name
 
-NESTED = b"""<sdf version="1.9">
-  <model name="rover" canonical_link="base">
-    <link name="base"/>
-    <model name="left">
-      <pose relative_to="mount">0 1 0 0 0 0</pose>
-      <link name="wheel"/>
-      <link name="tyre"><pose relative_to="wheel">0 0 1 0 0 0</pose></link>
-      <joint name="wheel_joint" type="fixed"><parent>wheel</parent><child>tyre</child></joint>
-    </model>
-    <model name="right">
-      <link name="wheel"/>
-    </model>
-    <frame name="mount" attached_to="base"/>
-    <frame name="hub" attached_to="left::wheel"/>
-    <joint name="axle" type="revolute">
-      <parent>base</parent>
-      <child>left::wheel</child>
-      <axis><xyz expressed_in="hub">0 1 0</xyz></axis>
-    </joint>
-    <joint name="other_axle" type="fixed"><parent>mount</parent><child>right::wheel</child></joint>
-  </model>
-</sdf>
-"""
+NESTED = fixture_text("sdf_nested.sdf").encode()
 WRONG = [
     pytest.param(b'attached_to="base/robot1"', b'attached_to="base"', id="not-renamed"),
     pytest.param(b">left_robot1::wheel/", b">right_robot1::wheel/", id="another-model"),
@@ -245,20 +223,7 @@ DECLARED = [
 
 
 # A name that is a link here and a joint there.
-TWO_KINDS = b"""<sdf version="1.9">
-  <model name="m">
-    <model name="a"><link name="x"/><frame name="on_link" attached_to="x"/></model>
-    <model name="b">
-      <link name="k"/><link name="l"/>
-      <joint name="x" type="fixed"><parent>k</parent><child>l</child></joint>
-      <frame name="on_joint" attached_to="x"/>
-    </model>
-    <frame name="on_a" attached_to="a::x"/>
-    <frame name="on_b" attached_to="b::x"/>
-    <frame name="on_none" attached_to="c::x"/>
-  </model>
-</sdf>
-"""
+TWO_KINDS = fixture_text("sdf_two_kinds.sdf").encode()
 
 
 def test_a_scope_decides_what_a_name_is_of() -> None:

@@ -8,27 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from paths import fixture_text
 from urdfdom_cases import CHECK, check_urdf
 
 from multibot_rewrite import rewrite, strip
 
-ROBOT = """\
-<robot name="arm" version="{}">
-  <link name="base_link"/>
-  <link name="tool">
-    <collision>
-      <origin quat_xyzw="0 0 0.6 0.8"/><geometry><capsule length="1" radius="0.1"/></geometry>
-    </collision>
-  </link>
-  <joint name="elbow" type="continuous">
-    <parent link="base_link"/><child link="tool"/><origin xyz="1 0 0" quat_xyzw="0 0.6 0 0.8"/>
-    <limit effort="1" velocity="1"{}/>
-  </joint>
-  <gazebo reference="tool"><sensor name="touch" type="contact">
-    <contact><collision>tool_collision</collision></contact>
-  </sensor></gazebo>
-</robot>
-"""
+ROBOT = fixture_text("urdf_versions_robot.urdf")
 FILES = {
     "1.1": ROBOT.format("1.1", ""),
     "1.2": ROBOT.format("1.2", ' acceleration="2" deceleration="3" jerk="5"'),

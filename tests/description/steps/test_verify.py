@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite import InputError, ProofError, RewriteRefused, rewrite, rewrite_all
 from multibot_rewrite.cli.urdf_postfix import main as urdf_postfix
@@ -21,23 +22,7 @@ from multibot_rewrite.description import pipeline
 FILL = "fill"
 
 # A link has as many letters as the frame that is inserted for robot1: odom/robot1.
-ROVER = b"""\
-<robot name="rover">
-  <link name="base"/>
-  <link name="odom_link_1"/>
-  <link name="wheel"><visual><geometry><mesh filename="wheel.stl"/></geometry></visual></link>
-  <joint name="axle" type="continuous"><parent link="base"/><child link="wheel"/></joint>
-  <!-- by hand -->
-  <gazebo>
-    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
-      <update_rate>50</update_rate>
-      <left_joint>axle</left_joint>
-      <robot_base_frame>base</robot_base_frame>
-    </plugin>
-    <plugin name="imu" filename="libgazebo_ros_imu_sensor.so"/>
-  </gazebo>
-</robot>
-"""
+ROVER = fixture_text("verify_rover.urdf").encode()
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 Make = Callable[[list[bytes], str], bytes]
 Wrong = Callable[[bytes], bytes]

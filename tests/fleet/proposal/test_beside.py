@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from small_robots import loads
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.companions import companions_of
@@ -153,8 +154,8 @@ def workspace(folder: Path, files: dict[str, str]) -> Path:
 def test_an_rviz_config_of_a_vendors_package_is_not_the_robots(
     is_named: bool, tmp_path: Path
 ) -> None:
-    """It shows no link of the robot, and its package does not name that of the robot."""
-    launch = "# of rover_description\nrover.urdf" if is_named else "# of its own\n"
+    """It shows no link of the robot, and its package does not launch the robot."""
+    launch = loads("../../rover_description/urdf/rover.urdf") if is_named else "# of its own\n"
     files = {
         "rover_description/urdf/rover.urdf": ROBOT.format("rover"),
         "lidar_driver/rviz/lidar.rviz": LIDAR_VIEW,

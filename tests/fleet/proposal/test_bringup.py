@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 from pathlib import Path
 from typing import Any
@@ -378,3 +379,141 @@ def test_a_launch_file_is_for_one_description(package: Path, capsys: Any) -> Non
     words = ["--launch", str(package / "launch/up.launch.py")]
     assert main(["init", *both, "--yes", "-o", "-", *words]) == 2
     assert "--launch is for one description" in capsys.readouterr().err
+
+
+MODEL = """<sdf version="1.9"><model name="{0}"><link name="{0}_base"/><link name="{0}_wheel"/>
+<joint name="{0}_turn" type="revolute"><parent>{0}_base</parent><child>{0}_wheel</child>
+<axis><xyz>0 1 0</xyz></axis></joint>
+<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/></model></sdf>
+"""
+WORLD = '<sdf version="1.9"><world name="w"><include><uri>model://{}</uri></include></world></sdf>'
+BROKEN = (
+    '<robot name="example" xmlns:xacro="x"><xacro:include filename="$(find gone)/a.xacro"/></robot>'
+)
+READS = (
+    "Node(package='robot_state_publisher', executable='robot_state_publisher', parameters=[{{"
+    "'robot_description': Command(['xacro ', PathJoinSubstitution([FindPackageShare('{0}'), 'urdf', "
+    "'{1}'])])}}])"
+)  # fmt: skip
+SPAWNS = (
+    "Node(package='ros_ign_gazebo', executable='create', arguments=['-file', "
+    + PATH.format("{0}/model.sdf")
+    + "])"
+)
+PLAYS = "ExecuteProcess(cmd=['gz', 'sim', " + PATH.format("worlds/yard.sdf") + "])"
+
+
+@pytest.fixture
+def robots(package: Path) -> Path:
+    """A workspace of several robots, of which nothing but a launch file says which is meant."""
+    for name, text in {
+        "rover/dolly/model.sdf": MODEL.format("dolly"),
+        "rover/cart/model.sdf": MODEL.format("cart"),
+        "rover/worlds/yard.sdf": WORLD.format("cart"),
+        "other/package.xml": "<package><name>other</name></package>",
+        "other/urdf/other.urdf.xacro": XACRO.replace("rover", "other"),
+        "other/urdf/example.urdf.xacro": BROKEN,
+        "other/launch/other.launch.py": "x = 'other.urdf.xacro', 'example.urdf.xacro'\n",
+    }.items():
+        file = package.parent / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    return package.parent
+
+
+@pytest.mark.parametrize(
+    ("actions", "description"),
+    [
+        (READS.format("rover", "rover.urdf.xacro"), "rover/urdf/rover.urdf.xacro"),
+        (READS.format("other", "other.urdf.xacro"), "other/urdf/other.urdf.xacro"),
+        (SPAWNS.format("dolly"), "rover/dolly/model.sdf"),
+        (SPAWNS.format("cart"), "rover/cart/model.sdf"),
+        (PLAYS, "rover/cart/model.sdf"),
+        (READS.format("other", "other.urdf.xacro").replace("'xacro '", "'ros2 run own make -i '"),
+         "other/urdf/other.urdf.xacro"),
+        (RSP.format(f", arguments=[{PATH.format('urdf/rover.urdf.xacro')}]"),
+         "rover/urdf/rover.urdf.xacro"),
+    ],
+)  # fmt: skip
+def test_the_launch_file_that_is_named_says_which_description(
+    actions: str, description: str, robots: Path, capsys: Any
+) -> None:
+    """No other one is looked at: one that cannot be read stops nothing, and none is offered."""
+    (file,) = write(robots / "rover/launch", {"up": f"{actions}; {DRIVER}"})
+    out = robots / "fleet.yaml"
+    assert main(["init", str(robots), "--launch", file, "--yes", "-o", str(out)]) == 0
+    fleet = yaml.safe_load(out.read_text())
+    assert (fleet["description"], fleet["launch"]) == (description, "rover/launch/up.launch.py")
+    assert "descriptions" not in capsys.readouterr().err
+    assert "example.urdf.xacro" not in out.read_text()
+
+
+def test_its_own_description_that_cannot_be_read_is_one_line(robots: Path, capsys: Any) -> None:
+    """The command for another one keeps the launch file."""
+    (file,) = write(robots / "rover/launch", {"up": READS.format("other", "example.urdf.xacro")})
+    assert main(["init", str(robots), "--launch", file, "--yes", "-o", "-"]) == 2
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1 and "package 'gone' is not found" in said
+
+
+def test_a_question_about_files_keeps_the_launch_file(robots: Path, capsys: Any) -> None:
+    """The launch file says nothing of the description, and the answer is about this launch file."""
+    (file,) = write(robots / "rover/launch", {"one's own": f"{PUBLISHER}; {DRIVER}"})
+    (robots / "other/urdf/example.urdf.xacro").unlink()
+    shutil.rmtree(robots / "rover/dolly")
+    shutil.rmtree(robots / "rover/cart")
+    words = ["init", str(robots), "--launch", file, "sim:=true", "--yes", "--simulator", "none"]
+    assert main([*words, "-o", "-"]) == 2
+    said = capsys.readouterr().err
+    command = shlex.split(said.strip().rpartition("name one: multibot ")[2])
+    assert "2 descriptions are as likely to be the robot" in said
+    out = robots / "fleet.yaml"
+    assert main([*command, "--yes", "--simulator", "none", "-o", str(out)]) == 0
+    fleet = yaml.safe_load(out.read_text())
+    assert fleet["launch"] == "'rover/launch/one'\"'\"'s own.launch.py' sim:=true"
+
+
+def test_of_several_robots_the_launch_file_that_starts_most_says_which(robots: Path) -> None:
+    write(robots / "rover/launch", {"up": f"{SPAWNS.format('dolly')}; {DRIVER}"})
+    (file,) = write(
+        robots / "rover/launch", {"more": f"{SPAWNS.format('cart')}; {DRIVER}; {LIDAR}"}
+    )
+    out = robots / "fleet.yaml"
+    for name in ("cart", "dolly"):
+        assert main(["init", str(robots), "--yes", "--force", "-o", str(out)]) == 0
+        assert yaml.safe_load(out.read_text())["description"] == f"rover/{name}/model.sdf"
+        # A trial is behind.
+        file = str(Path(file).rename(Path(file).with_name("demo.launch.py")))
+
+
+def test_many_launch_files_that_cannot_be_read_are_one_line(package: Path, capsys: Any) -> None:
+    """Why of each is said where it is asked for; a path has blanks."""
+    write(package / "launch", {"up it": f"{PUBLISHER}; {DRIVER}"})
+    for at in range(5):
+        (package / f"launch/bad{at}.launch.py").write_text(f"raise ValueError('no{at}')\n")
+    assert fleet_of(package)["launch"] == "'rover/launch/up it.launch.py'"
+    text = (package.parent / "fleet.yaml").read_text()
+    said = (
+        "# 5 launch files could not be read: rover/launch/bad0.launch.py and 4 more; init --verbose"
+    )
+    assert said in text and "no3" not in text
+    assert "no3" not in capsys.readouterr().err
+    up = str(package / "launch/up it.launch.py")
+    words = ["init", str(package), "-o", str(package.parent / "fleet.yaml"), "--force", "--yes"]
+    assert main([*words, "--verbose"]) == 0
+    why = capsys.readouterr().err
+    assert all(f"bad{at}.launch.py:1: ValueError: no{at}" in why for at in range(5))
+    # The one that is named is the only one that counts.
+    assert main([*words, "--verbose", "--launch", up]) == 0
+    assert "no3" not in capsys.readouterr().err
+    fleet = yaml.safe_load((package.parent / "fleet.yaml").read_text())
+    assert fleet["launch"] == "'rover/launch/up it.launch.py'"
+
+
+def test_what_the_launch_file_asks_of_the_machine_is_named(package: Path) -> None:
+    (path,) = write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}"})
+    head, _, body = Path(path).read_text().partition("\n")
+    Path(path).write_text(f"{head}\nimport os; PORTS = os.listdir('/dev')\n{body}")
+    fleet_of(package, "--launch", path)
+    text = (package.parent / "fleet.yaml").read_text()
+    assert "#   rover/launch/up.launch.py:1: it looks at /dev of the machine" in text

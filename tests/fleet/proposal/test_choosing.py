@@ -11,12 +11,12 @@ import pytest
 import yaml
 from given_parameters import run_given
 from lxml import etree
-from small_robots import PACKAGE, init, robot, taken
+from small_robots import PACKAGE, init, loads, robot, taken
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.choosing import may_be_partners
-from multibot_rewrite.fleet.proposal.fitting import fitting
 from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.owners import fitting
 from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.spelling.records import Given
@@ -44,7 +44,10 @@ def test_of_two_robots_neither_is_taken(two: Path, capsys: Any) -> None:
 
 @pytest.mark.more
 def test_the_one_that_is_taken_of_two_is_named(two: Path, capsys: Any) -> None:
-    (two / "a.launch.py").write_text("robot = 'tractor.urdf'")
+    """What a launch file loads that starts less may be meant as well; what none loads is not."""
+    (two / "a.launch.py").write_text(loads("digger.urdf", drivers=1))
+    (two / "b.launch.py").write_text(loads("tractor.urdf", drivers=2))
+    (two / "c.urdf").write_text(robot("c", "c_left", "c_right"))
     assert taken(two)["description"] == "tractor.urdf"
     other = f"one of 2 descriptions; for another: multibot init {two}/digger.urdf"
     assert other in capsys.readouterr().err
@@ -84,7 +87,7 @@ def test_of_two_files_that_fit_alike_neither_is_taken(two: Path, capsys: Any) ->
 
 @pytest.mark.more
 def test_the_one_that_a_launch_file_loads_is_taken(two: Path) -> None:
-    (two / "up.launch.py").write_text("path = os.path.join(share, 'tractor.urdf')\n")
+    (two / "up.launch.py").write_text(loads("tractor.urdf"))
     assert taken(two)["description"] == "tractor.urdf"
 
 
@@ -171,7 +174,7 @@ def test_what_is_launched_and_cannot_be_read_is_said(two: Path, capsys: Any) -> 
     wiki = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
     include = '<xacro:include filename="$(find not_there)/a.xacro"/>'
     (two / "real.urdf.xacro").write_text(f'<robot name="real" {wiki}>{include}</robot>')
-    (two / "up.launch.py").write_text("xacro = 'real.urdf.xacro'\n")
+    (two / "up.launch.py").write_text(loads("real.urdf.xacro"))
     assert init(two) == 2
     said = capsys.readouterr().err
     assert len(said.splitlines()) == 1
@@ -278,18 +281,8 @@ def test_rviz_and_srdf_of_another_robot_are_not_taken(two: Path) -> None:
 
 
 @pytest.mark.more
-def test_the_navigation_that_is_launched_is_taken(two: Path) -> None:
-    (two / "tractor.urdf").unlink()
-    section = {"amcl": {"ros__parameters": {"base_frame_id": "digger_base"}}}
-    for name in ("a_nav.yaml", "z_nav.yaml"):
-        (two / name).write_text(yaml.safe_dump(section))
-    (two / "up.launch.py").write_text("params = 'z_nav.yaml'\n")
-    assert taken(two)["companions"]["params"] == ["z_nav.yaml"]
-
-
-@pytest.mark.more
 def test_a_model_that_a_world_has_is_launched_too(tmp_path: Path, capsys: Any) -> None:
-    """A launch file loads another one: both may be meant."""
+    """As one that a launch file puts into a simulator itself: both may be meant."""
     for name in ("cart", "dog"):
         (tmp_path / name).mkdir()
         joint = (
@@ -298,7 +291,11 @@ def test_a_model_that_a_world_has_is_launched_too(tmp_path: Path, capsys: Any) -
         parts = f'<link name="{name}"/><link name="{name}_w"/>{joint.format(name)}'
         model = f'<sdf version="1.9"><model name="{name}">{parts}</model></sdf>'
         (tmp_path / name / "model.sdf").write_text(model)
-    (tmp_path / "dog.launch.py").write_text("model = 'dog/model.sdf'\n")
+    (tmp_path / "dog.launch.py").write_text(loads("dog/model.sdf"))
+    plays = loads().replace("[*map(given", "[given('yard.world'), *map(given")
+    start = 'if name.endswith("world"):\n        return ExecuteProcess(cmd=["gz", "sim", path])'
+    plays = plays.replace("    if name", f"    {start}\n    if name", 1)
+    (tmp_path / "cart.launch.py").write_text(f"from launch.actions import ExecuteProcess\n{plays}")
     (tmp_path / "yard.world").write_text(
         '<sdf version="1.9"><world name="w"><include><uri>model://cart</uri></include></world></sdf>'
     )
@@ -312,7 +309,7 @@ def test_the_robot_is_found_behind_many_things(tmp_path: Path) -> None:
         thing = '<sdf version="1.9"><model name="t"><link name="t"/></model></sdf>'
         (tmp_path / f"a{at}.sdf").write_text(thing)
     (tmp_path / "zebra.urdf").write_text(robot("zebra", "z1", "z2"))
-    (tmp_path / "up.launch.py").write_text("urdf = 'zebra.urdf'\n")
+    (tmp_path / "up.launch.py").write_text(loads("zebra.urdf"))
     assert taken(tmp_path)["description"] == "zebra.urdf"
 
 
@@ -404,8 +401,8 @@ def test_partners_are_of_the_other_kind_and_called_alike_or_launched_together(
     tmp_path: Path,
 ) -> None:
     launch = tmp_path / "a.launch.py"
-    launch.write_text("xacro = 'car.urdf.xacro'; model = 'van/model.sdf'\n")
-    every = (
+    launch.write_text(loads("car.urdf.xacro", "van/model.sdf"))
+    names = (
         "bus.urdf",
         "bus/model.sdf",
         "car.sdf",
@@ -413,6 +410,10 @@ def test_partners_are_of_the_other_kind_and_called_alike_or_launched_together(
         "car/model.sdf",
         "van/model.sdf",
     )
+    every = tuple(str(tmp_path / it) for it in names)
+    for it in every:
+        Path(it).parent.mkdir(exist_ok=True)
+        Path(it).write_text('<robot name="r"><link name="a"/></robot>')
     found = Found(every=every, launch=(str(launch),))
     for path, partners in (
         ("car.urdf.xacro", ["car.sdf", "car/model.sdf", "van/model.sdf"]),
@@ -420,4 +421,5 @@ def test_partners_are_of_the_other_kind_and_called_alike_or_launched_together(
         ("car.sdf", ["car.urdf.xacro"]),
         ("truck.sdf", []),
     ):
-        assert [*may_be_partners(path, found)] == partners, path
+        there = [str(tmp_path / it) for it in partners]
+        assert [*may_be_partners(str(tmp_path / path), found)] == there, path

@@ -8,10 +8,16 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from small_robots import loads
 
-from multibot_rewrite.fleet.proposal.choosing import chosen, launches_of
+from multibot_rewrite.fleet.proposal.choosing import (
+    chosen,
+    launched_descriptions,
+    processes_with,
+)
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.producers.launch.records import LaunchOrder
 
 LINK, JOINT = '<link name="{}"/>', '<joint name="{}" type="{}"/>'
 Made = Callable[..., Looked]
@@ -77,51 +83,28 @@ def test_of_two_alike_the_simulated_one_with_control_and_a_short_path_is_first(m
     assert order(made("b.urdf"), made("a.urdf")) == "a b"
 
 
-def test_what_is_launched_is_first(made: Made, tmp_path: Path) -> None:
-    one, two = made("a.urdf"), made("b.urdf")
-    launch = put(tmp_path, "x.launch.py", "load('b.urdf')")
-    found = Found(every=(one.path, two.path), launch=(launch,))
-    assert order(one, two, found=found) == "b a"
-    assert (launches_of(one.path, found), launches_of(two.path, found)) == (0, 1)
+def test_what_is_launched_is_first_by_how_much_is_started(made: Made, tmp_path: Path) -> None:
+    one, two, three = made("a.urdf"), made("bb.urdf"), made("ccc.urdf")
+    launch = (
+        put(tmp_path, "x.launch.py", loads("bb.urdf", drivers=1)),
+        put(tmp_path, "y.launch.py", loads("ccc.urdf", drivers=2)),
+        put(tmp_path, "test.launch.py", loads("a.urdf", drivers=3)),
+        put(tmp_path, "read.launch.py", "open('a.urdf').read()"),
+    )
+    found = Found(every=(one.path, two.path, three.path), launch=launch)
+    assert order(one, two, three, found=found) == "ccc bb a"
+    assert [processes_with(it.path, found) for it in (one, two, three)] == [0, 2, 3]
+    assert launched_descriptions(found) == [two.path, three.path]
+    # One that was named counts whatever it is called and starts.
+    named = found._replace(named=(LaunchOrder(launch[2]),))
+    assert launched_descriptions(named) == [one.path]
 
 
-@pytest.mark.parametrize(
-    ("said", "times"),
-    [
-        ("'b.urdf'", 1),
-        ("bb.urdf", 0),
-        ("b.urdf.xacro", 0),
-        ("-b.urdf", 0),
-        ("x/b.urdf", 1),
-        ("b-urdf", 0),
-    ],
-)
-def test_a_launch_file_loads_what_it_names(said: str, times: int, tmp_path: Path) -> None:
-    launch = put(tmp_path, "x.launch.py", said)
-    path = put(tmp_path, "b.urdf", text("a"))
-    assert launches_of(path, Found(every=(path,), launch=(launch,))) == times
-
-
-def test_of_files_of_one_name_that_of_the_package_is_launched(tmp_path: Path) -> None:
-    package = "<package><name>{}</name></package>"
-    paths = []
-    for name in ("one", "two"):
-        put(tmp_path, f"{name}/package.xml", package.format(name))
-        paths.append(put(tmp_path, f"{name}/r.urdf", text("a")))
-    inside = put(tmp_path, "two/x.launch.py", "r.urdf")
-    named = put(tmp_path, "y.launch.py", "of one: r.urdf")
-    both = Found(every=tuple(paths), launch=(inside,))
-    assert [launches_of(it, both) for it in paths] == [0, 1]
-    both = both._replace(launch=(named,))
-    assert [launches_of(it, both) for it in paths] == [1, 0]
-
-
-def test_a_model_is_called_by_its_folder(tmp_path: Path) -> None:
-    model = put(tmp_path, "rover/model.sdf", "<sdf/>")
-    worlds = (put(tmp_path, "a.world", "model://rover"), put(tmp_path, "b.world", "model://other"))
-    assert launches_of(model, Found(every=(model,), worlds=worlds)) == 1
-    urdf = put(tmp_path, "rover/r.urdf", text("a"))
-    assert launches_of(urdf, Found(every=(urdf,), worlds=worlds)) == 0
+def test_of_files_of_one_name_that_which_is_read_is_launched(tmp_path: Path) -> None:
+    paths = tuple(put(tmp_path, f"{name}/r.urdf", text("a")) for name in ("one", "two"))
+    launch = put(tmp_path, "x.launch.py", loads("two/r.urdf"))
+    found = Found(every=paths, launch=(launch,))
+    assert [processes_with(it, found) for it in paths] == [0, 1]
 
 
 def rivals(*robots: Looked, found: Found | None = None) -> tuple[list[str], list[str]]:
@@ -135,7 +118,7 @@ def test_who_may_be_meant_as_well(made: Made, tmp_path: Path) -> None:
     # Another kind, and a part of the first one's joints, are not.
     assert rivals(first, made("bb.urdf", "xyz", "")) == ([], [])
     assert rivals(first, made("bb.urdf", "xyz", "j")) == ([], [])
-    launch = put(tmp_path, "x.launch.py", "a.urdf")
+    launch = put(tmp_path, "x.launch.py", loads("a.urdf"))
     paths = (first.path, other.path)
     assert rivals(first, other, found=Found(every=paths, launch=(launch,))) == ([], [])
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from small_robots import PACKAGE, init, robot, taken
+from small_robots import PACKAGE, init, loads, robot, taken
 
 from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
 from multibot_rewrite.cli.multibot import main
@@ -42,11 +42,11 @@ def test_what_was_not_read_is_named_with_the_reason(tetra: Path, capsys: Any) ->
     assert "for another: multibot init" not in said, "no other one can be read"
 
 
-@pytest.mark.parametrize("launched", ["tetra_gz.xacro", "tetra_gz.xacro' 'base.urdf"])
+@pytest.mark.parametrize("launched", [["tetra_gz.xacro"], ["tetra_gz.xacro", "base.urdf"]])
 def test_another_one_is_not_taken_for_what_launch_files_load(
-    launched: str, tetra: Path, capsys: Any
+    launched: list[str], tetra: Path, capsys: Any
 ) -> None:
-    (tetra / "sim.launch.py").write_text(f"files = '{launched}'\n")
+    (tetra / "sim.launch.py").write_text(loads(*launched))
     assert init(tetra) == 2
     said = capsys.readouterr().err
     assert len(said.splitlines()) == 1 and "not_there.xacro" in said
@@ -57,7 +57,7 @@ def test_another_one_is_not_taken_for_what_launch_files_load(
 
 def test_a_part_that_cannot_be_read_stops_nothing(tetra: Path) -> None:
     (tetra / "tetra_gz.xacro").rename(tetra / "gripper.xacro")
-    (tetra / "sim.launch.py").write_text("files = 'gripper.xacro' 'base.urdf'\n")
+    (tetra / "sim.launch.py").write_text(loads("gripper.xacro", "base.urdf"))
     assert taken(tetra)["description"] == "base.urdf"
 
 
@@ -83,7 +83,7 @@ def test_of_rivals_the_one_that_the_package_is_named_after_is_taken(tmp_path: Pa
     (tmp_path / "tractor.urdf").write_text(robot("tractor", "pull_left", "pull_right"))
     assert taken(tmp_path)["description"] == "tractor.urdf"
     # A launch file says more than a name.
-    (tmp_path / "up.launch.py").write_text("x = 'digger.urdf'\n")
+    (tmp_path / "up.launch.py").write_text(loads("digger.urdf"))
     assert taken(tmp_path, "--force")["description"] == "digger.urdf"
 
 
@@ -125,7 +125,7 @@ def test_an_rviz_config_of_the_robots_packages_goes_first(tmp_path: Path) -> Non
         if name != "car_description":
             (tmp_path / name / "car.rviz").write_text(shown)
     (tmp_path / "car_description/car.urdf").write_text(robot("car", "wheel"))
-    (tmp_path / "car_bringup/up.launch.py").write_text("x = 'car.urdf'\n")
+    (tmp_path / "car_bringup/up.launch.py").write_text(loads("../car_description/car.urdf"))
     assert taken(tmp_path)["companions"]["rviz"] == "car_bringup/car.rviz"
 
 

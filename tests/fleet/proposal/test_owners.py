@@ -8,9 +8,9 @@ from types import SimpleNamespace
 import pytest
 from given_parameters import run_given
 
-from multibot_rewrite.fleet.proposal import fitting, owners
-from multibot_rewrite.fleet.proposal.fitting import Fitting
+from multibot_rewrite.fleet.proposal import owners
 from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.owners import Fitting
 from multibot_rewrite.knowledge.records import Param
 from multibot_rewrite.system.records import NOWHERE
 
@@ -47,7 +47,7 @@ def test_a_plain_word_is_no_name_of_one_robot(name: str, specific: bool) -> None
 def test_a_sensors_topic_of_several_words_stands_somewhere(
     topic: str, said: str, strange: bool
 ) -> None:
-    assert fitting._is_strange(topic, said) is strange
+    assert owners._is_strange(topic, said) is strange
 
 
 def fit(names: str) -> Fitting:
@@ -55,13 +55,13 @@ def fit(names: str) -> Fitting:
 
 
 def test_a_file_with_clearly_more_strange_names_is_no_rival() -> None:
-    assert fitting._is_rival(fit("abcd"), fit("ab"))
-    assert not fitting._is_rival(fit("abcde"), fit("ab"))
+    assert owners._is_rival(fit("abcd"), fit("ab"))
+    assert not owners._is_rival(fit("abcde"), fit("ab"))
 
 
 @pytest.mark.parametrize(("names", "shown"), [("ba", "a, b"), ("cab", "a, b ..."), ("a", "a")])
 def test_of_many_strange_names_two_are_shown(names: str, shown: str) -> None:
-    assert fitting._shown(names) == shown
+    assert owners._shown(names) == shown
 
 
 KNOWN = (
@@ -81,7 +81,7 @@ def test_the_names_of_a_robot_in_known_parameters() -> None:
     given = {name: SimpleNamespace(value=it) for name, it in VALUES.items()}
     known = SimpleNamespace(nodes={"amcl": SimpleNamespace(params={it.path: it for it in KNOWN})})
     nodes = [run_given("", it, "", given, NOWHERE) for it in ("amcl", "nobody")]  # type: ignore[arg-type]
-    found = list(fitting._named(nodes, known))  # type: ignore[arg-type]
+    found = list(owners._named(nodes, known))  # type: ignore[arg-type]
     assert found == [
         ("topic", "/a/scan"), ("topic", "/b/scan"), ("frame", "base_link"), ("joint", "j1"),
         ("joint", "j2"),

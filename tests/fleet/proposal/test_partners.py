@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
+from small_robots import loads
 
 from multibot_rewrite.cli.multibot import main
 
@@ -28,7 +29,7 @@ SDF = f"""<sdf version="1.9"><model name="rover_sim">
 <axis><xyz>0 1 0</xyz></axis></joint>
 <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
 <left_joint>left</left_joint><right_joint>right</right_joint></plugin></model></sdf>"""
-SPAWNS = "description = 'rover.urdf'\nmodel = 'rover_sim.sdf'\n"
+SPAWNS = loads("rover.urdf", "rover_sim.sdf")
 # Another thing of the same package.
 DOCK = '<sdf version="1.9"><model name="dock"><link name="plate"/><link name="post"/></model></sdf>'
 GIVES = """import os
@@ -42,14 +43,16 @@ def generate_launch_description():
 AMCL = "amcl:\n  ros__parameters: {{base_frame_id: {}, scan_topic: {}}}\n"
 
 
-def init(folder: Path, *words: str) -> int:
+def init(folder: Path, *words: str, launched: bool = False) -> int:
+    """Without a launch file, but for which description is which."""
     out = str(folder / "fleet.yaml")
     given = ["-n", "2", "--yes", "--force", "--distro", "jazzy", "-o", out]
-    return main(["init", *(str(folder / it) for it in words), *given])
+    launch = [] if launched else ["--launch", "none"]
+    return main(["init", *(str(folder / it) for it in words), *launch, *given])
 
 
-def made(folder: Path, *words: str) -> Any:
-    assert init(folder, *words) == 0
+def made(folder: Path, *words: str, launched: bool = False) -> Any:
+    assert init(folder, *words, launched=launched) == 0
     return yaml.safe_load((folder / "fleet.yaml").read_text())
 
 
@@ -89,7 +92,8 @@ def test_without_a_winner_one_is_named(package: Path, capsys: Any) -> None:
     assert len(said.splitlines()) == 1
     assert "husky.yaml (husky_base), " in said and "tb3.yaml (tb3/front/scan)" in said
     assert said.endswith("husky.yaml\n")
+    (package / "sim.launch.py").unlink()
     (package / "nav.launch.py").write_text(GIVES)
-    launched = made(package, "rover.urdf")
+    launched = made(package, "rover.urdf", launched=True)
     assert launched["launch"] == "nav.launch.py" and "companions" not in launched
     assert made(package, "rover.urdf", "husky.yaml")["companions"]["params"] == ["husky.yaml"]

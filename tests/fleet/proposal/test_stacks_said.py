@@ -35,24 +35,21 @@ def test_the_stacks_that_a_description_says(
 
 
 def test_the_nearest_file_is_the_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the description loads, what is of its package, what a launch file names,
-    what is called like it and less otherwise; then by name."""
+    """What the description loads, what is of its package, what is called like it and less otherwise;
+    then by name."""
     monkeypatch.chdir(tmp_path)
     for package in ("own", "zzz"):
         (tmp_path / package).mkdir()
         (tmp_path / package / "package.xml").write_text(
             f"<package><name>{package}</name></package>"
         )
-    (tmp_path / "a.launch.py").write_text("'named.yaml'")
     inside = "<parameters> zzz/loaded.yaml </parameters><parameters/>"
     root = etree.fromstring(f"<robot>{inside}</robot>")
     wanted = [
-        "zzz/loaded.yaml", "own/named.yaml", "own/rover.yaml", "own/a_b_c.yaml",
-        "zzz/named.yaml", "zzz/rover.yaml", "zzz/a.yaml", "zzz/b.yaml", "zzz/a_more_words.yaml",
+        "zzz/loaded.yaml", "own/rover.yaml", "own/named.yaml", "own/a_b_c.yaml",
+        "zzz/rover.yaml", "zzz/a.yaml", "zzz/b.yaml", "zzz/named.yaml", "zzz/a_more_words.yaml",
     ]  # fmt: skip
-    own = ["own/named.yaml", "own/rover.yaml", "own/a_b_c.yaml"]
     robot = Looked("own/rover.urdf", root=root)
-    found = companions._nearest(robot, sorted(wanted, reverse=True), ["a.launch.py"])
-    assert found == wanted and found[1:4] == own
+    assert companions._nearest(robot, sorted(wanted, reverse=True)) == wanted
     bare = companions._nearest(Looked("own/rover.urdf"), sorted(wanted))
     assert bare[:3] == ["own/rover.yaml", "own/named.yaml", "own/a_b_c.yaml"]

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lxml import etree
-from paths import ROBOTS, ROOT
+from paths import ROBOTS, ROOT, fixture_text
 
 from multibot_rewrite.pages.view import models
 from multibot_rewrite.pages.view.models import (
@@ -23,21 +23,7 @@ from multibot_rewrite.pages.view.models import (
 
 IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 CORNERS = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
-PLY = """\
-ply
-format ascii 1.0
-element vertex 3
-property float x
-property float y
-property float z
-{colours}element face 1
-property list uchar int vertex_indices
-end_header
-0 0 0{0}
-1 0 0{1}
-0 1 0{2}
-3 0 1 2
-"""
+PLY = fixture_text("models_ply.txt")
 COLOURS = "".join(f"property uchar {it}\n" for it in ("red", "green", "blue"))
 
 

@@ -8,32 +8,13 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from paths import fixture_text
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.pages.view.models import Joint, Model
 from multibot_rewrite.pages.view.sdf_model import load_sdf
 
-SDF = """\
-<sdf version="1.9"><model name="m">
-  <link name="base"><pose>1 0 0 0 0 0</pose>
-    <visual name="v"><pose>0 0 0.5 0 0 0</pose><geometry><box><size>1 2 3</size></box></geometry>
-      <material><diffuse>1 0 0</diffuse></material></visual></link>
-  <link name="wheel"><pose relative_to="base">0 1 0 0 0 1.5707963267948966</pose>
-    <visual name="v"><pose>0.1 0 0 0 0 0</pose>
-      <geometry><cylinder><radius>0.1</radius><length>0.4</length></cylinder></geometry></visual></link>
-  <joint name="turn" type="revolute"><parent>mount</parent><child>wheel</child>
-    <pose>0.1 0 0 0 0 0</pose>
-    <axis><xyz expressed_in="base">1 0 0</xyz><limit><lower>-1</lower><upper>0.5</upper></limit></axis>
-  </joint>
-  <frame name="mount" attached_to="base"><pose>0 0 2 0 0 0</pose></frame>
-  <model name="head"><pose relative_to="mount">0 0 1 0 0 0</pose>
-    <link name="base"><pose>0 0 0.25 0 0 0</pose></link></model>
-  <joint name="neck" type="prismatic"><parent>mount</parent><child>head::base</child>
-    <axis><xyz>0 0 1</xyz></axis></joint>
-  <joint name="loop" type="revolute"><parent>head</parent><child>wheel</child></joint>
-  <joint name="to_world" type="fixed"><parent>world</parent><child>base</child></joint>
-</model></sdf>
-"""
+SDF = fixture_text("sdf_model_sdf.sdf")
 
 
 def load(text: str) -> Model:

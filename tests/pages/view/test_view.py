@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES, ROBOTS
+from paths import FIXTURES, ROBOTS, fixture_text
 from view_pages import page
 
 from multibot_rewrite.cli.multibot import main
@@ -23,24 +23,7 @@ pytestmark = pytest.mark.more
 # A mesh of one triangle, with the corners below.
 CORNERS = ((0, 0, 0), (1, 0, 0), (0, 1, 0))
 STL = b"\0" * 80 + struct.pack("<I", 1) + struct.pack("<12f", 0, 0, 1, *sum(CORNERS, ())) + b"\0\0"
-ROBOT = """\
-<robot name="r">
-  <material name="red"><color rgba="1 0 0 0.5"/></material>
-  <link name="base">
-    <visual><geometry><mesh filename="part.stl" scale="2 2 2"/></geometry>
-      <material name="red"/></visual>
-    <visual><origin xyz="1 2 3"/><geometry><cylinder radius="0.1" length="0.4"/></geometry></visual>
-    <visual><geometry><mesh filename="package://nowhere/a.dae"/></geometry></visual>
-  </link>
-  <link name="arm"/><link name="slide"/>
-  <joint name="turn" type="revolute"><origin xyz="0 0 1"/><axis xyz="0 0 1"/>
-    <limit lower="-1" upper="0.5" effort="1" velocity="1"/>
-    <parent link="base"/><child link="arm"/></joint>
-  <joint name="push" type="prismatic"><mimic joint="turn" multiplier="2" offset="0.1"/>
-    <limit lower="0" upper="1" effort="1" velocity="1"/>
-    <parent link="arm"/><child link="slide"/></joint>
-</robot>
-"""
+ROBOT = fixture_text("view_robot.urdf")
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ import open_findings
 import pytest
 from closed_robot import FILES
 from given_parameters import run_given
+from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -121,17 +122,7 @@ def test_a_filter_that_sends_is_not_off() -> None:
     assert off(on) == []
 
 
-DRIVE = """\
-<robot name="r"><link name="base_link"/><link name="wheel"/>
-  <joint name="wheel_joint" type="continuous">
-    <parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
-  </joint>
-  <gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
-    <left_joint>wheel_joint</left_joint><right_joint>wheel_joint</right_joint>
-    <frame_id>odom</frame_id><child_frame_id>base_link</child_frame_id><tf_topic>tf</tf_topic>
-  </plugin></gazebo>
-</robot>
-"""
+DRIVE = fixture_text("frames_drive.urdf")
 AMCL = (
     "amcl: {ros__parameters: {base_frame_id: base_link, odom_frame_id: ODOM, scan_topic: scan}}\n"
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from given_parameters import run_given
 from lxml import etree
+from paths import fixture_text
 
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.records import Claim
@@ -14,17 +15,7 @@ from multibot_rewrite.rules.system.states import Missing, missing
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import Place
 
-SYSTEM = """<robot name="r">
-  <ros2_control name="a" type="system">
-    <joint name="wheel">
-      <command_interface name="velocity"/>
-      <state_interface name="position"/>
-    </joint>
-    <sensor name="imu"><state_interface name="orientation.x"/></sensor>
-    <gpio name="io"><command_interface name="led"/></gpio>
-    <other name="no"><command_interface name="led"/></other>
-  </ros2_control>
-</robot>"""
+SYSTEM = fixture_text("gaps_system.urdf")
 
 
 FILE = Place("c.yaml", 3)

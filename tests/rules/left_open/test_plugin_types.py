@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from open_findings import found
+from paths import fixture_text
 
 FLEET = """\
 description: scout.urdf
@@ -20,32 +21,7 @@ robots:
   - {name: robot1}
   - {name: robot2, pose: {x: 3}}
 """
-SCOUT = """\
-<robot name="scout">
-  <link name="base_footprint">
-    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-  </link>
-  <link name="lidar_link"/>
-  <joint name="lidar_mount" type="fixed">
-    <parent link="base_footprint"/><child link="lidar_link"/>
-  </joint>
-  <gazebo>
-    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
-      <publish_odom_tf>true</publish_odom_tf>
-      <odometry_frame>odom</odometry_frame>
-      <robot_base_frame>base_footprint</robot_base_frame>
-    </plugin>
-  </gazebo>
-  <gazebo reference="lidar_link">
-    <sensor name="lidar" type="ray">
-      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
-        <ros><remapping>~/out:=scan</remapping></ros>
-        <output_type>sensor_msgs/LaserScan</output_type>
-      </plugin>
-    </sensor>
-  </gazebo>
-</robot>
-"""
+SCOUT = fixture_text("plugin_types_scout.urdf")
 
 
 @pytest.mark.slow

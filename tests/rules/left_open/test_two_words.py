@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from open_findings import found
+from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.companions.yaml_text import read_yaml
@@ -86,20 +87,7 @@ def test_controllers_of_another_robot() -> None:
     assert not claims("state", "a/position")
 
 
-UR = """\
-<robot name="ur">
-  <link name="base_link"/><link name="tool0"/>
-  <joint name="elbow" type="revolute"><parent link="base_link"/><child link="tool0"/>
-    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
-  <ros2_control name="ur" type="system">
-    <hardware>
-      <plugin>ur_robot_driver/URPositionHardwareInterface</plugin>
-      <param name="tf_prefix"></param>
-    </hardware>
-    <sensor name="tcp_fts_sensor"><state_interface name="force.x"/></sensor>
-  </ros2_control>
-</robot>
-"""
+UR = fixture_text("two_words_ur.urdf")
 BROADCASTER = """\
 controller_manager:
   ros__parameters:

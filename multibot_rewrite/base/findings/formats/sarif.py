@@ -58,7 +58,8 @@ def as_sarif(findings: Sequence[Finding], report: Report) -> str:
 
 
 def _rule(rule: Rule) -> Json:
-    examples = [(title, it) for title, it in (("Bad", rule.bad), ("Good", rule.good)) if it]
+    both = (("Bad", rule.page.bad), ("Good", rule.page.good))
+    examples = [(title, it) for title, it in both if it]
     prose = [rule.what, f"Why: {rule.why}", f"Fix: {rule.fix}"]
     text = [*prose, *(f"{title}:\n{example}" for title, example in examples)]
     marked = [rule.what, f"**Why.** {rule.why}", f"**Fix.** {rule.fix}"]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One section of a vocabulary file: its rows read, checked and made a ``VocabularySection``.
 
-The grammar is in the docstring of the package.
+``README.md`` has the grammar.
 """
 
 from __future__ import annotations

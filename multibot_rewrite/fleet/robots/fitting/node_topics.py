@@ -10,6 +10,7 @@ from typing import NamedTuple
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
+from multibot_rewrite.spelling.of_runs import asked_alone, with_names
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.system.records import NOWHERE, PUBLISHES, SUBSCRIBES
@@ -36,7 +37,7 @@ class CommandEnd(NamedTuple):
 
 def topic_of(node: NodeFacts, end: Endpoint) -> str:
     """Return the topic of an end as the robot alone has it, without a slash in front."""
-    return (end.remapped or end.name).replace("~", node.name, 1).strip("/")
+    return (end.remapped or asked_alone(node, end)).replace("~", node.name, 1).strip("/")
 
 
 def topics_of(nodes: Iterable[NodeFacts], role: str, types: Collection[str] = ()) -> list[str]:
@@ -47,12 +48,12 @@ def topics_of(nodes: Iterable[NodeFacts], role: str, types: Collection[str] = ()
 
 
 def plugins(member: Member) -> Iterator[NodeFacts]:
-    """Yield the nodes that plugins of the description are, with the names that their own rules give."""
+    """Yield the nodes that plugins of the description are, with the names that they have alone."""
     reading = read(member.source.source, member.source.file, member.vocabulary)
-    for run in plugin_nodes(reading, ""):
-        names = dict(run.rules)
-        ends = (it._replace(remapped=names.get(it.name, "")) for it in run.fact.endpoints)
-        yield run.fact._replace(endpoints=tuple(ends))
+    for run in map(with_names, plugin_nodes(reading, "")):
+        yield run.fact._replace(
+            endpoints=tuple(it._replace(remapped=name) for it, name in run.names)
+        )
 
 
 def controllers(nodes: Iterable[NodeFacts]) -> Iterator[NodeFacts]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.steps.collect import collect
@@ -16,24 +16,30 @@ from multibot_rewrite.fleet.robots.fitting.node_topics import (
     usual_values,
 )
 from multibot_rewrite.fleet.robots.member import Member
-from multibot_rewrite.knowledge.conditions import holds, verdict
-from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.conditions import HEARD, holds, parse_condition, verdict
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import lookup
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.system.words import ODOMETRY
 
+IMAGE, INFO = "sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo"
+CLOUD = "sensor_msgs/msg/PointCloud2"
 # What a robot has one of, mostly: a reader of it has no other one in mind.
 SENSED = (
     *("sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "sensor_msgs/msg/NavSatFix"),
-    *("sensor_msgs/msg/PointCloud2", ODOMETRY),
+    *(IMAGE, INFO, CLOUD, ODOMETRY),
 )
+# Who reads colours can do nothing with depths, which have the same type.
+DEPTHS = f"{IMAGE} of depths"
+OF_CAMERAS = (IMAGE, DEPTHS, INFO)
+_DEPTH, _OF_COLOURS = "depth", ("rgb", "intensity")
 # The layout in which a description keeps its topics.
 _NAMING = make_naming("tf-per-robot")
 
 
 def offered_topics(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
-    """Return the topics of the sensors in the description, by their types, as the robot alone has
+    """Return the topics of the sensors in the description, by what they are, as the robot alone has
     them."""
     found: dict[str, list[str]] = {}
     if spec.simulator != REAL:
@@ -46,7 +52,34 @@ def offered_topics(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str
             for end in node.endpoints:
                 if end.role == PUBLISHES and end.type in SENSED and not end.when:
                     found.setdefault(end.type, []).append(topic_of(node, end))
-    return found
+    return {**found, **_images(found)}
+
+
+def _images(found: Mapping[str, Sequence[str]]) -> Mapping[str, Sequence[str]]:
+    """Return the images of colours and those of depths: beside these is a cloud of points in Gazebo."""
+    given, clouds = found.get(IMAGE, ()), found.get(CLOUD, ())
+    depths = [it for it in given if _DEPTH in it or f"{it}/points" in clouds]
+    return {IMAGE: [it for it in given if it not in depths], DEPTHS: depths}
+
+
+def wanted(node: NodeFacts, end: Endpoint) -> str:
+    """Return what an end hears; empty for none that a sensor sends, whatever else comes."""
+    terms = (it for all_ in parse_condition(end.when) for it in all_)
+    is_asked = end.role == SUBSCRIBES and all(it.parameter == HEARD for it in terms)
+    return _kind(node, end) if is_asked else ""
+
+
+def _kind(node: NodeFacts, end: Endpoint) -> str:
+    deep = _DEPTH in f"{node.package}/{end.name}"
+    of_depths = end.type == IMAGE and deep and end.name.partition("/")[0] not in _OF_COLOURS
+    return DEPTHS if of_depths else end.type
+
+
+def sent_as(nodes: Iterable[NodeFacts], kind: str) -> Collection[str]:
+    """Return the topics that nodes surely send, without images of another kind."""
+    every = ((node, it) for node in nodes for it in node.endpoints if it.role == PUBLISHES)
+    given = (it for it in every if not it[1].when and {kind, _kind(*it)} != {IMAGE, DEPTHS})
+    return {topic_of(*it) for it in given}
 
 
 def by_sensor(node: NodeFacts, offered: Mapping[str, Sequence[str]]) -> NodeFacts:
@@ -66,17 +99,18 @@ def by_sensor(node: NodeFacts, offered: Mapping[str, Sequence[str]]) -> NodeFact
 
 
 def hearing_sensors(
-    node: NodeFacts, nodes: Iterable[NodeFacts], offered: Mapping[str, Sequence[str]]
+    node: NodeFacts, nodes: Sequence[NodeFacts], offered: Mapping[str, Sequence[str]]
 ) -> NodeFacts:
     """Return the node with the robot's only topic of a sensor where it would hear one that nobody
     sends."""
-    sent = topics_of(nodes, PUBLISHES)
+    kinds = [wanted(node, it) for it in node.endpoints]
     ends = []
-    for end in node.endpoints:
-        topics = offered.get(end.type, ()) if end.role == SUBSCRIBES and not end.when else ()
-        lost = (
-            len(topics) == 1 and "<" not in end.name and topic_of(node, end) not in {*topics, *sent}
-        )
+    for end, kind in zip(node.endpoints, kinds, strict=True):
+        topics = offered.get(kind, ())
+        # Of two cameras that it reads one alone is there.
+        one = len(topics) == 1 and (kind not in OF_CAMERAS or kinds.count(kind) == 1)
+        there = {*topics, *sent_as(nodes, kind)} if one else ()
+        lost = one and "<" not in end.name and topic_of(node, end) not in there
         # No file says the name that its stack has.
         named = end.named_from or end.name
         ends.append(end._replace(name=named, remapped=topics[0]) if lost else end)

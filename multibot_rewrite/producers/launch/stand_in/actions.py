@@ -15,6 +15,7 @@ from typing import Any
 
 from multibot_rewrite.producers.launch.stand_in.frontend import description_in
 from multibot_rewrite.producers.launch.stand_in.values import Kept, LaunchContext, Text, text_of
+from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
 # Launch files within each other; one that includes itself would have no end.
 _DEEPEST = 25
@@ -203,7 +204,8 @@ class IncludeLaunchDescription(Action):
         if not hasattr(self.launch_description_source, "get_launch_description"):
             found = AnyLaunchDescriptionSource(self.launch_description_source)
             self.launch_description_source = found
-        self.launch_arguments = tuple(self.launch_arguments or ())
+        if not is_unknown(self.launch_arguments):
+            self.launch_arguments = tuple(self.launch_arguments or ())
 
     def execute(self, context: LaunchContext) -> list[Any]:
         if context.depth > _DEEPEST:

@@ -23,27 +23,12 @@ _LITERAL = lazy_compile(r"'[^']*'|\"[^\"]*\"")
 _WORD = lazy_compile(r"[A-Za-z_]\w*")
 # Tag -> the attribute that refers to a link or joint; empty for the text.
 _REFERENCES = {
-    "parent": "link",
-    "child": "link",
-    "mimic": "joint",
-    "gazebo": "reference",
-    "left_joint": "",
-    "right_joint": "",
-    "leftJoint": "",
-    "rightJoint": "",
-    "joint_name": "",
-    "jointName": "",
-    "link_name": "",
-    "linkName": "",
-    "frame_name": "",
-    "frameName": "",
-    "body_name": "",
-    "bodyName": "",
-    "robot_base_frame": "",
-    "robotBaseFrame": "",
-    "child_frame_id": "",
-    "gz_frame_id": "",
-    "ignition_frame_id": "",
+    **{"parent": "link", "child": "link", "mimic": "joint", "gazebo": "reference"},
+    **dict.fromkeys(("left_joint", "right_joint", "leftJoint", "rightJoint"), ""),
+    **dict.fromkeys(("joint_name", "jointName", "link_name", "linkName"), ""),
+    **dict.fromkeys(("frame_name", "frameName", "body_name", "bodyName"), ""),
+    **dict.fromkeys(("robot_base_frame", "robotBaseFrame", "child_frame_id"), ""),
+    **dict.fromkeys(("gz_frame_id", "ignition_frame_id"), ""),
 }
 
 

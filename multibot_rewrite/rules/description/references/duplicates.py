@@ -174,36 +174,20 @@ def _repeated(found: Iterable[tuple[object, _Element]]) -> Iterator[_Element]:
 
 _OF_JOINTS = ("force_torque", "wrench")
 # The values of a <gazebo> block of which a link has one each (libsdformat parser_urdf.cc); some have
-# two tags.
-SINGLE = {
-    "material": "material",
-    "mu1": "mu1",
-    "mu2": "mu2",
-    "kp": "kp",
-    "kd": "kd",
-    "maxVel": "max_vel",
-    "max_vel": "max_vel",
-    "minDepth": "min_depth",
-    "min_depth": "min_depth",
-    "maxContacts": "max_contacts",
-    "max_contacts": "max_contacts",
-    "laserRetro": "laser_retro",
-    "laser_retro": "laser_retro",
-    "selfCollide": "self_collide",
-    "self_collide": "self_collide",
-    "gravity": "gravity",
-    "dampingFactor": "dampingFactor",
-    "stopCfm": "stop_cfm",
-    "stop_cfm": "stop_cfm",
-    "stopErp": "stop_erp",
-    "stop_erp": "stop_erp",
-    "fudgeFactor": "fudge_factor",
-    "fudge_factor": "fudge_factor",
-    "implicitSpringDamper": "implicit_spring_damper",
-    "implicit_spring_damper": "implicit_spring_damper",
-    "provideFeedback": "provide_feedback",
-    "provide_feedback": "provide_feedback",
-}
+# two tags, as max_vel and maxVel.
+_SINGLE = (
+    *("material", "mu1", "mu2", "kp", "kd", "gravity", "dampingFactor", "max_vel", "min_depth"),
+    *("max_contacts", "laser_retro", "self_collide", "stop_cfm", "stop_erp", "fudge_factor"),
+    *("implicit_spring_damper", "provide_feedback"),
+)
+
+
+def _camel(tag: str) -> str:
+    first, *others = tag.split("_")
+    return first + "".join(map(str.capitalize, others))
+
+
+SINGLE = {form: it for it in _SINGLE for form in (it, _camel(it))}
 
 
 @rule("MB203", "link-and-joint", WARNING)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of vendors' robots, docs/robots.md.
 
-    python tests/support/vendor_pages.py [ROBOT ...]      print the sections of some robots
-    python tests/support/vendor_pages.py --write          write the page
+    python benchmarks/vendor_pages.py [ROBOT ...]      print the sections of some robots
+    python benchmarks/vendor_pages.py --write          write the page
 
 MULTIBOT_SOURCES as in ``vendor_systems.py``. Needs launch, launch_ros and rclpy.
 """
@@ -15,6 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 from vendor_arm_pages import ARMS, told_of_arms
 from vendor_compare import Built, Difference
 from vendor_live import Told, said, told
@@ -22,14 +23,14 @@ from vendor_recipes import ROBOTS, Outcome, Recipe, false_findings, is_true, out
 from vendor_sources import WITHOUT, sources_folder
 from vendor_systems import read_vendors
 
-PAGE = Path(__file__).parent.parent.parent / "docs" / "robots.md"
+PAGE = Path(__file__).parent.parent / "docs" / "robots.md"
 _WIDE = 60
 # Where packages are for a comparison.
 _INSTALLED = re.compile(r"/tmp/\w+/prefix")
 HEAD = """\
 # Vendors' robots as they ship
 
-Made by `MULTIBOT_SOURCES=FOLDER python tests/support/vendor_pages.py --write`.
+Made by `MULTIBOT_SOURCES=FOLDER python benchmarks/vendor_pages.py --write`.
 Each robot is built from its vendor's own files, in the vendor's
 layout and one other, with two robots and with three. Its first two are compared with what the vendor's
 own launch files and generators make of two robots: descriptions, parameters, names of nodes, where

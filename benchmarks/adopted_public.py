@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The packages of fixtures/adopted_packages.tsv under ``multibot adopt``, judged by xacro itself.
 
-``python tests/support/adopted_public.py MIRRORS [FIRST [LAST]]`` prints a row for each: xacro expands
+``python benchmarks/adopted_public.py MIRRORS [FIRST [LAST]]`` prints a row for each: xacro expands
 every configuration before and after, without a prefix and with one. MIRRORS has clones,
 ``OWNER+NAME/repo``. docs/measurements.md has the table.
 """
@@ -22,7 +22,6 @@ from typing import NamedTuple
 import xacro
 from adopted_packages import checkout
 from lxml import etree
-from vendor_sources import install, packages_below
 
 from multibot_rewrite import adopt
 from multibot_rewrite.base.model import MultibotError
@@ -34,7 +33,10 @@ from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.refactor.adopt import Adopted
 from multibot_rewrite.refactor.namespaces import spacing
 
-LIST = Path(__file__).parents[2] / "fixtures/adopted_packages.tsv"
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
+from vendor_sources import install, packages_below  # as the tests have it
+
+LIST = Path(__file__).parents[1] / "fixtures/adopted_packages.tsv"
 PREFIX, SPACE, WANTED = "robot1_", "team1", 20
 # What is left, by words of its reason.
 KINDS = {
