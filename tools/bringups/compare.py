@@ -18,7 +18,9 @@ SHARED = {
     *("gzserver.launch.py", "gzclient.launch.py", "gz", "ign", "gzserver", "gzclient", "gazebo"),
     *("rviz2", "rqt", "rqt_graph", "foxglove_bridge", "rosbridge_websocket", "map_server"),
 }
-BRIDGES = {"parameter_bridge", "bridge_node", "ros_gz_bridge::RosGzBridge"}
+# The bridge of a robot carries images, too.
+IMAGES = "image_bridge"
+BRIDGES = {"parameter_bridge", "bridge_node", "ros_gz_bridge::RosGzBridge", IMAGES}
 STATIC = {"static_transform_publisher", "tf2_ros::StaticTransformBroadcasterNode"}
 
 
@@ -198,7 +200,8 @@ def topics(process: Process) -> Iterator[str]:
     renamed = dict(process.rules)
     for word in process.words:
         name = word.partition("@")[0]
-        if "@" in word and name:
+        is_image = process.program == IMAGES and word[:1] != "-"
+        if name and ("@" in word or is_image):
             yield _whole(process, renamed.get(name, name))
     for name in process.parameters.get(BRIDGED, ()):
         yield _whole(process, renamed.get(name, name))
