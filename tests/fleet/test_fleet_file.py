@@ -24,7 +24,7 @@ from multibot_rewrite.fleet.file.checked_yaml import TYPES, _in_words
 from multibot_rewrite.fleet.file.fleet_data import SCHEMA, check_files, schema, with_paths
 from multibot_rewrite.fleet.file.fleet_file import KINDS, FleetFile, read_fleet
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
-from multibot_rewrite.spelling.plan_file import is_fleet
+from multibot_rewrite.spelling.plan import is_fleet
 from tools.pages import fleet_keys
 
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"

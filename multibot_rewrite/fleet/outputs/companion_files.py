@@ -47,7 +47,7 @@ from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.launch.handed_on import HandedOn
-from multibot_rewrite.producers.launch.static_transforms import STATIC
+from multibot_rewrite.producers.launch.known_node import STATIC
 from multibot_rewrite.spelling.records import Run
 
 # The key of a fleet file -> the kind of the files that it names.

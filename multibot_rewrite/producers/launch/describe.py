@@ -30,8 +30,8 @@ from multibot_rewrite.producers.launch.kept_paths import (
     lasting,
     lasting_folders,
     read_text,
+    source_of,
 )
-from multibot_rewrite.producers.launch.made_files import source_of
 from multibot_rewrite.producers.launch.places import place_of
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import (

@@ -19,35 +19,36 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.producers.evidence.nodes import MANAGER
+from multibot_rewrite.producers.evidence.nodes import MANAGER, remapped
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.remapped import remapped
 from multibot_rewrite.producers.launch.bridges import bridge_rows
 from multibot_rewrite.producers.launch.describe import SIMULATOR, SIMULATORS
-from multibot_rewrite.producers.launch.findings import launch_findings, started_twice
+from multibot_rewrite.producers.launch.findings import (
+    launch_findings,
+    started_twice,
+    under_managers,
+)
 from multibot_rewrite.producers.launch.handed_on import (
+    OWN,
     HandedOn,
     Passing,
+    document_of,
     handed_on,
+    has_sections,
     process_name,
 )
 from multibot_rewrite.producers.launch.known_node import (
+    STATIC,
     check_names,
+    frames_in,
     guessed_name,
     known_node,
     own_name,
-)
-from multibot_rewrite.producers.launch.once import once_for_all
-from multibot_rewrite.producers.launch.parameter_texts import OWN, document_of, has_sections
-from multibot_rewrite.producers.launch.programs import programs
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
-from multibot_rewrite.producers.launch.spawner_managers import under_managers
-from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
-from multibot_rewrite.producers.launch.static_transforms import (
-    STATIC,
-    frames_in,
     with_static_transform,
 )
+from multibot_rewrite.producers.launch.programs import once_for_all, programs
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
+from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
 

@@ -22,8 +22,7 @@ from multibot_rewrite.producers.launch.failures import (
     not_installed,
 )
 from multibot_rewrite.producers.launch.includes import unread_of
-from multibot_rewrite.producers.launch.kept_paths import lasting
-from multibot_rewrite.producers.launch.made_files import keep_sources
+from multibot_rewrite.producers.launch.kept_paths import keep_sources, lasting
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.read_files import descriptions_in, files_read, keep_reads
 from multibot_rewrite.producers.launch.records import (

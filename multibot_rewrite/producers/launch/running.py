@@ -31,9 +31,15 @@ from multibot_rewrite.knowledge.records import MANAGER, UNKNOWN, Endpoint, NodeF
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE, given_nodes, values_for
-from multibot_rewrite.producers.launch.deciding import as_named
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
-from multibot_rewrite.producers.launch.known_node import guessed_name, known_node, own_name
+from multibot_rewrite.producers.launch.handed_on import document_of, has_sections
+from multibot_rewrite.producers.launch.known_node import (
+    as_named,
+    guessed_name,
+    known_node,
+    own_name,
+    with_static_transform,
+)
 from multibot_rewrite.producers.launch.models import (
     Model,
     Models,
@@ -43,7 +49,6 @@ from multibot_rewrite.producers.launch.models import (
     rules_of,
 )
 from multibot_rewrite.producers.launch.of_robot import passes
-from multibot_rewrite.producers.launch.parameter_texts import document_of, has_sections
 from multibot_rewrite.producers.launch.records import (
     AT_AN_END,
     LaunchedNode,
@@ -52,7 +57,6 @@ from multibot_rewrite.producers.launch.records import (
     ParameterText,
 )
 from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
-from multibot_rewrite.producers.launch.static_transforms import with_static_transform
 from multibot_rewrite.spelling.records import Rules, Run
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.ways import COSTMAP_HAS_RULES_OF_ITS_PARENT

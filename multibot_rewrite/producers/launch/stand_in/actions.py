@@ -62,9 +62,6 @@ class OpaqueFunction(Action):
     """A function that makes actions."""
 
     names = ("function", "args", "kwargs")
-    function: Any
-    args: Any
-    kwargs: Any
 
     def execute(self, context: LaunchContext) -> Any:
         return self.function(context, *(self.args or ()), **(self.kwargs or {}))
@@ -74,10 +71,6 @@ class DeclareLaunchArgument(Action):
     """A launch argument."""
 
     names = ("name", "default_value", "description", "choices")
-    name: str
-    default_value: Text
-    description: str | None
-    choices: Any
 
     @property
     def told(self) -> str:
@@ -104,8 +97,6 @@ class SetLaunchConfiguration(Action):
     """Sets a launch configuration."""
 
     names = ("name", "value")
-    name: Text
-    value: Text
 
     def execute(self, context: LaunchContext) -> None:
         name = text_of(context, self.name)
@@ -116,7 +107,6 @@ class UnsetLaunchConfiguration(Action):
     """A launch configuration is no longer set."""
 
     names = ("name",)
-    name: Text
 
     def execute(self, context: LaunchContext) -> None:
         context.launch_configurations.pop(text_of(context, self.name), None)
@@ -126,7 +116,6 @@ class ResetLaunchConfigurations(Action):
     """No launch configuration is set but these."""
 
     names = ("launch_configurations",)
-    launch_configurations: Any
 
     def execute(self, context: LaunchContext) -> None:
         given = self.launch_configurations or {}
@@ -151,10 +140,6 @@ class GroupAction(Action):
     """Actions with launch configurations and variables of their own."""
 
     names = ("actions", "scoped", "forwarding", "launch_configurations")
-    actions: Iterable[Any]
-    scoped: Any
-    forwarding: Any
-    launch_configurations: Any
 
     def get_sub_entities(self) -> list[Any]:
         given = self.launch_configurations or {}
