@@ -28,12 +28,12 @@ from multibot_rewrite.fleet.launch.launched_files import (
 from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
 from multibot_rewrite.fleet.robots.joined_robots import with_joined
-from multibot_rewrite.fleet.robots.own_ports import with_own_ports
 from multibot_rewrite.fleet.robots.rewritten_robots import (
     Jobs,
     RewrittenRobot,
     read_jobs,
     rewrite_robots,
+    with_own_ports,
 )
 from multibot_rewrite.fleet.robots.robot_nodes import (
     NodeSources,

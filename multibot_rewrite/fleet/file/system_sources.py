@@ -96,7 +96,7 @@ def launched_by(
     they are for; ``nodes`` and ``nodl`` are files of the user's own nodes. Raises InputError for a
     file that cannot be read."""
     from multibot_rewrite.producers.launch.child import launch_graph
-    from multibot_rewrite.producers.launch.from_source import with_sources
+    from multibot_rewrite.producers.launch.known_node import with_sources
     from multibot_rewrite.producers.launch.records import joined
     from multibot_rewrite.producers.launch.running import Knowledge
     from multibot_rewrite.producers.launch.snapshot import launched

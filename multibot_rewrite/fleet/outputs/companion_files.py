@@ -39,8 +39,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
     text_of,
 )
-from multibot_rewrite.fleet.robots.own_ports import OWN_PORTS
-from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.rewritten_robots import OWN_PORTS, RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.knowledge.parameter_entries import PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A launched node -> what is known of it, as this program has it with these arguments.
+"""A launched node -> what is known of it, as this program has it with these arguments, or by its
+source.
 
 A launch says of the conditions of its endpoints: its program, its command line, the files that its
 parameters name, and who listens. What it does not say stays open. A static_transform_publisher is told
@@ -10,11 +11,12 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from itertools import pairwise
 
 from multibot_rewrite.base.lazy import COMMENT
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.rosnames import (
     BoundNode,
     check_namespace,
@@ -26,8 +28,10 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.conditions import ALSO, HEARD, PROGRAM, Condition, settled, words_in
 from multibot_rewrite.knowledge.programs import runs
 from multibot_rewrite.knowledge.records import FrameParameter, NodeFacts, SentTransform
-from multibot_rewrite.producers.launch.programs import programs
-from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.producers.launch.programs import passes, programs
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
+from multibot_rewrite.producers.launch.source_packages import packages_for
+from multibot_rewrite.producers.sources.facts import node_of_program
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import TOPIC
 
@@ -207,3 +211,35 @@ def _framed(frame: FrameParameter, named: Mapping[str, str]) -> FrameParameter:
     name = named.get(frame.parameter) or frame.default
     given = frame.given or bool(named.get(frame.parameter))
     return frame._replace(default=name.lstrip("/") if given else name, given=given)
+
+
+def with_sources(
+    known: Mapping[str, NodeFacts],
+    nodes: Iterable[LaunchedNode],
+    orders: Iterable[LaunchOrder],
+    release: str,
+) -> dict[str, NodeFacts]:
+    """The known nodes and, by ``package program``, those of launched ``nodes`` that are not among them
+    and whose source is found: below the roots of the ``orders``, or beside their launch files. Raises
+    nothing."""
+    wanted = {(it.package, it.executable): it for it in nodes if not passes(it)}
+    unknown = [it for it in wanted.values() if known_node(it, (), known) is None]
+    if not unknown:
+        return dict(known)
+    folders: dict[str, str] = {}
+    for order in orders:
+        folders = {**packages_for(order.file, order.roots), **folders}
+    found = {f"{it.package} {it.executable}": _read(it, folders, release) for it in unknown}
+    return {**known, **{name: it for name, it in found.items() if it is not None}}
+
+
+def _read(it: LaunchedNode, folders: Mapping[str, str], release: str) -> NodeFacts | None:
+    found = None
+    if it.package in folders:
+        with suppress(
+            UsageError
+        ):  # C++ without its reader: who says that a node is not known, says so
+            found = node_of_program(
+                folders[it.package], it.package, it.executable, folders, release
+            )
+    return found.facts._replace(known=f"{it.package} {it.executable}") if found else None

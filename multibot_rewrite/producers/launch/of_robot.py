@@ -46,7 +46,7 @@ from multibot_rewrite.producers.launch.known_node import (
     own_name,
     with_static_transform,
 )
-from multibot_rewrite.producers.launch.programs import once_for_all, programs
+from multibot_rewrite.producers.launch.programs import once_for_all, passes, program_of, programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.spelling.records import Run
@@ -141,7 +141,9 @@ def with_launched(
         handed,
         passing,
         graph.environment,
-        next((at for at, it in enumerate(graph.nodes) if _program(it) in programs().spawners), -1),
+        next(
+            (at for at, it in enumerate(graph.nodes) if program_of(it) in programs().spawners), -1
+        ),
     )
 
 
@@ -158,7 +160,7 @@ def _each_once(pairs: Iterable[_Pair]) -> tuple[list[_Pair], list[Finding]]:
         if other is None:
             found[name] = it
             continue
-        alike = _program(it.node) == _program(other.node) and bool(it.node.name)
+        alike = program_of(it.node) == program_of(other.node) and bool(it.node.name)
         same = alike or _given_to(it.node) == _given_to(other.node)
         if it.node.name or same:
             findings.append(started_twice(it.node, other.node, name))
@@ -192,7 +194,7 @@ def _handed(it: _Pair, of_all: Collection[tuple[str, str]], is_own: bool) -> Han
 def _is_built(it: LaunchedNode) -> bool:
     """Is it what a build makes of the robot's own files: a spawner, or of a simulator?"""
     is_simulator = it.package in SIMULATORS and it.executable == SIMULATOR
-    return is_simulator or is_spawner(it) or _program(it) in programs().spawners
+    return is_simulator or is_spawner(it) or program_of(it) in programs().spawners
 
 
 def _stands(include: LaunchedNode, stack: Iterable[NodeFacts]) -> bool:
@@ -247,17 +249,6 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
             )
         elif it.name in origins or it.host or it.name == MANAGER or not launched.whole:
             yield it
-
-
-def passes(it: LaunchedNode) -> bool:
-    """Is it no node of a robot: a program that does its work and ends, a simulator, a command, or a
-    launch file?"""
-    is_none = not it.package or it.process.is_include
-    return is_none or is_spawner(it) or _program(it) in programs().passing
-
-
-def _program(it: LaunchedNode) -> str:
-    return f"{it.package}/{it.executable}"
 
 
 def _pair(

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.conventions import only_looks
 from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.producers.launch.spawners import is_spawner
 
 
 class Programs(NamedTuple):
@@ -51,3 +52,15 @@ def once_for_all(node: LaunchedNode) -> str:
     # A program that is called so belongs to a package that is: rviz_check.py of a robot is no window.
     looks = only_looks(program) and (not node.package or only_looks(node.package))
     return next(found, _LOOKS if looks else "")
+
+
+def passes(it: LaunchedNode) -> bool:
+    """Is it no node of a robot: a program that does its work and ends, a simulator, a command, or a
+    launch file?"""
+    is_none = not it.package or it.process.is_include
+    return is_none or is_spawner(it) or program_of(it) in programs().passing
+
+
+def program_of(it: LaunchedNode) -> str:
+    """Its package and executable, as the tables have them."""
+    return f"{it.package}/{it.executable}"
