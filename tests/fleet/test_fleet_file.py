@@ -468,7 +468,7 @@ def test_an_old_jsonschema_is_one_line(
     assert main(["build", str(fleet), "-o", str(tmp_path / "out")]) == 2
     out, err = capsys.readouterr()
     assert err.startswith(
-        "multibot: the fleet file has a mistake, and jsonschema 3.2 or newer is needed to say which;"
+        "multibot: a fleet file is checked with jsonschema 3.2 or newer; install it"
     )
     assert (out, err.count("\n")) == ("", 1)
     assert not (tmp_path / "out").exists()
