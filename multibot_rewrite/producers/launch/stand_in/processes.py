@@ -12,7 +12,7 @@ from copy import deepcopy
 from typing import Any
 
 from multibot_rewrite.base.bounded import A_VALUE, load_yaml
-from multibot_rewrite.producers.launch.stand_in.actions import Action, OpaqueFunction
+from multibot_rewrite.producers.launch.stand_in.actions import Action, OpaqueFunction, doing
 from multibot_rewrite.producers.launch.stand_in.values import (
     ITERATED,
     Kept,
@@ -107,13 +107,13 @@ EmitEvent = kept(Action, "EmitEvent", "event")
 Shutdown = kept(Action, "Shutdown", "reason", "event")
 
 
-class SetEnvironmentVariable(Action):
-    """A variable of the environment."""
-
-    names = ("name", "value")
-
-    def execute(self, context: LaunchContext) -> None:
-        context.environment[text_of(context, self.name)] = text_of(context, self.value)
+SetEnvironmentVariable = doing(
+    *("SetEnvironmentVariable", "name value"),
+    lambda context, name, value: context.environment.update({name: value}),
+)
+UnsetEnvironmentVariable = doing(
+    "UnsetEnvironmentVariable", "name", lambda context, name: context.environment.pop(name, None)
+)
 
 
 class AppendEnvironmentVariable(Action):
@@ -127,15 +127,6 @@ class AppendEnvironmentVariable(Action):
         known = [context.environment[name]] if name in context.environment else []
         first = typed_truth(text_of(context, str_of(self.prepend or False)))
         context.environment[name] = between.join([value, *known] if first else [*known, value])
-
-
-class UnsetEnvironmentVariable(Action):
-    """A variable is no longer set."""
-
-    names = ("name",)
-
-    def execute(self, context: LaunchContext) -> None:
-        context.environment.pop(text_of(context, self.name), None)
 
 
 UnregisterEventHandler = kept(Action, "UnregisterEventHandler", "event_handler")

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from types import NoneType
 from typing import Any
 
-from multibot_rewrite.producers.launch.stand_in.actions import Action
+from multibot_rewrite.producers.launch.stand_in.actions import Action, doing
 from multibot_rewrite.producers.launch.stand_in.parameters import flat, value_of
 from multibot_rewrite.producers.launch.stand_in.processes import (
     EventHandler,
@@ -140,28 +140,16 @@ class SetParameter(Action):
         _add(context, "global_params", [(name, value_of(context, self.value, name))])
 
 
-class SetParametersFromFile(Action):
-    """A parameter file for all nodes that come next."""
-
-    names = ("filename",)
-
-    def execute(self, context: LaunchContext) -> None:
-        _add(context, "global_params", [text_of(context, self.filename)])
-
-
-class SetRemap(Action):
-    """A remap rule for all nodes that come next."""
-
-    names = ("src", "dst")
-
-    def execute(self, context: LaunchContext) -> None:
-        rule = (text_of(context, self.src), text_of(context, self.dst))
-        _add(context, "ros_remaps", [rule])
-
-
 def _add(context: LaunchContext, key: str, more: Iterable[Any]) -> None:
     """To the list itself, as launch_ros does: a scope around this one has it, too."""
     context.launch_configurations.setdefault(key, []).extend(more)
+
+
+SetParametersFromFile = doing(
+    *("SetParametersFromFile", "filename"),
+    lambda context, file: _add(context, "global_params", [file]),
+)
+SetRemap = doing("SetRemap", "src dst", lambda context, *rule: _add(context, "ros_remaps", [rule]))
 
 
 SetUseSimTime = kept(Action, "SetUseSimTime", "value")
