@@ -34,12 +34,13 @@ from multibot_rewrite.fleet.outputs.commands_file import COMMANDS
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.knowledge.nodl.lookup import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.producers.launch.findings import NO_MANAGER, NOT_WHOLE
+from multibot_rewrite.producers.launch.findings import NOT_WHOLE
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.read import UnreadableError, read_own
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
+from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 from multibot_rewrite.rules.system.unsent import nothing_known_sends

@@ -1,26 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is said of launch files: what they hide, what they start and what not; spawners
-that ask for a controller manager which no launch file starts."""
+"""What is said of launch files: what they hide, what they start, and what they do not start."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import (
-    ERROR,
-    INCONCLUSIVE,
-    NOTE,
-    WARNING,
-    Finding,
-    declare,
-)
+from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
-from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.producers.sources.expressions import or_read
 from multibot_rewrite.system.records import NOT_KNOWN_PROCESS, NOT_READ, Place
 
@@ -100,34 +90,3 @@ def not_read(graph: LaunchGraph) -> Iterator[Finding]:
 
 def _place(place: Place) -> dict[str, object]:
     return {"file": place.file, "line": place.line, "column": 1}
-
-
-NO_MANAGER = declare("MG723", "no-controller-manager", ERROR, formats=("fleet",))
-
-
-class UnderManagers(NamedTuple):
-    """Controllers under a manager that runs, and findings of spawners that ask for another one."""
-
-    spawned: tuple[Spawned, ...]
-    findings: tuple[Finding, ...]
-
-
-def under_managers(spawned: Iterable[Spawned], started: Collection[str]) -> UnderManagers:
-    """The controllers, those of a manager that is not among the ``started`` ones under the one that
-    is meant; as they are where there is none, or more than one."""
-    meant = next(iter(started)) if len(started) == 1 else ""
-    every = tuple(spawned)
-    lost = [it for it in every if meant and it.manager not in started]
-    found = tuple(it._replace(manager=meant) if it in lost else it for it in every)
-    return UnderManagers(found, tuple(_findings(lost, meant)))
-
-
-def _findings(lost: Iterable[Spawned], meant: str) -> Iterator[Finding]:
-    """One a spawner."""
-    spawners: dict[tuple[str, int, str], list[str]] = {}
-    for it in lost:
-        spawners.setdefault((it.place.file, it.place.line, it.manager), []).append(it.name)
-    for (file, line, manager), names in spawners.items():
-        message = f"the spawner of {', '.join(names)} asks for {manager}, which nothing starts"
-        hint = f"{meant} is started; give the namespace once; the plan has them there"
-        yield NO_MANAGER.finding(message, hint, level=WARNING, file=file, line=line, column=1)

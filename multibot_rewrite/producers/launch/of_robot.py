@@ -26,7 +26,6 @@ from multibot_rewrite.producers.launch.describe import SIMULATOR, SIMULATORS
 from multibot_rewrite.producers.launch.findings import (
     launch_findings,
     started_twice,
-    under_managers,
 )
 from multibot_rewrite.producers.launch.handed_on import (
     OWN,
@@ -48,6 +47,7 @@ from multibot_rewrite.producers.launch.known_node import (
 )
 from multibot_rewrite.producers.launch.programs import once_for_all, passes, program_of, programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
+from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place

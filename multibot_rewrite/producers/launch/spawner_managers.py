@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Spawners and the controller managers that launch files start: each asks for one that runs.
+
+Source: ros2_control humble 2.37 and jazzy, ``controller_manager/spawner.py``: a relative name of a
+manager is below the namespace that the spawner gets, by ``--namespace`` or as a node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from typing import NamedTuple
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
+from multibot_rewrite.producers.launch.spawners import Spawned
+
+NO_MANAGER = declare("MG723", "no-controller-manager", ERROR, formats=("fleet",))
+
+
+class UnderManagers(NamedTuple):
+    """Controllers under a manager that runs, and findings of spawners that ask for another one."""
+
+    spawned: tuple[Spawned, ...]
+    findings: tuple[Finding, ...]
+
+
+def under_managers(spawned: Iterable[Spawned], started: Collection[str]) -> UnderManagers:
+    """The controllers, those of a manager that is not among the ``started`` ones under the one that
+    is meant; as they are where there is none, or more than one."""
+    meant = next(iter(started)) if len(started) == 1 else ""
+    every = tuple(spawned)
+    lost = [it for it in every if meant and it.manager not in started]
+    found = tuple(it._replace(manager=meant) if it in lost else it for it in every)
+    return UnderManagers(found, tuple(_findings(lost, meant)))
+
+
+def _findings(lost: Iterable[Spawned], meant: str) -> Iterator[Finding]:
+    """One a spawner."""
+    spawners: dict[tuple[str, int, str], list[str]] = {}
+    for it in lost:
+        spawners.setdefault((it.place.file, it.place.line, it.manager), []).append(it.name)
+    for (file, line, manager), names in spawners.items():
+        message = f"the spawner of {', '.join(names)} asks for {manager}, which nothing starts"
+        hint = f"{meant} is started; give the namespace once; the plan has them there"
+        yield NO_MANAGER.finding(message, hint, level=WARNING, file=file, line=line, column=1)
