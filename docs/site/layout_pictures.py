@@ -15,7 +15,7 @@ from lxml import etree
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system import records
 
 ROOT = Path(__file__).parents[2]

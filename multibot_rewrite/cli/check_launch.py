@@ -23,7 +23,7 @@ from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.findings import not_read
-from multibot_rewrite.producers.launch.include_arguments import arguments_declared
+from multibot_rewrite.producers.launch.includes import arguments_declared
 from multibot_rewrite.producers.launch.kept_paths import read_text
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words

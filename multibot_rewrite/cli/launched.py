@@ -16,7 +16,7 @@ from multibot_rewrite.fleet.file.fleet_file import FleetFile, read_fleet
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.proposal.launches import said_of
-from multibot_rewrite.producers.launch.once import once_for_all
+from multibot_rewrite.producers.launch.programs import once_for_all
 from multibot_rewrite.producers.launch.records import LaunchedNode
 
 _COLUMNS = ("for", "process", "place", "files", "why")

@@ -22,7 +22,7 @@ from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
 from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.spelling.enclaves import to_policy
-from multibot_rewrite.spelling.plan_file import to_yaml
+from multibot_rewrite.spelling.plan import to_yaml
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
 from multibot_rewrite.system.coverage import Coverage, coverage, in_words

@@ -30,7 +30,7 @@ from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot, moved, sc
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
 from multibot_rewrite.producers.snapshot_file import read_snapshots
-from multibot_rewrite.spelling.plan_file import is_fleet
+from multibot_rewrite.spelling.plan import is_fleet
 from multibot_rewrite.system.records import System
 
 

@@ -16,7 +16,7 @@ from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import NO_WORDS, Stems
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.spelling.targets import placed
+from multibot_rewrite.spelling.of_runs import placed
 
 # Stand for the robot's namespace, and for the tag (prefix or postfix) in its frames and joints:
 # ordinary letters, so that quoting and checks of names treat them as they will treat the names.

@@ -52,9 +52,9 @@ from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robo
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.spelling.domain_bridge import bridge_files
 from multibot_rewrite.spelling.enclaves import to_policy
-from multibot_rewrite.spelling.foxglove import to_layout
-from multibot_rewrite.spelling.plan_file import to_yaml
+from multibot_rewrite.spelling.plan import to_yaml
 from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.spelling.shown import to_layout
 from multibot_rewrite.spelling.table_formats import standing_by_robot
 from multibot_rewrite.system.records import PUBLISHES, Place, System
 

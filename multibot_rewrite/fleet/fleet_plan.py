@@ -12,8 +12,7 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import robots_meet
-from multibot_rewrite.fleet.checks.named_twice import declared_twice
-from multibot_rewrite.fleet.checks.other_manager import other_manager
+from multibot_rewrite.fleet.checks.named_twice import declared_twice, other_manager
 from multibot_rewrite.fleet.file.filled_arguments import with_own_arguments
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import (
@@ -30,12 +29,12 @@ from multibot_rewrite.fleet.launch.launched_simulator import with_launched_world
 from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
 from multibot_rewrite.fleet.robots.joined_robots import with_joined
-from multibot_rewrite.fleet.robots.own_ports import with_own_ports
 from multibot_rewrite.fleet.robots.rewritten_robots import (
     Jobs,
     RewrittenRobot,
     read_jobs,
     rewrite_robots,
+    with_own_ports,
 )
 from multibot_rewrite.fleet.robots.robot_nodes import (
     NodeSources,
@@ -44,8 +43,13 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
     node_sources,
     robot_nodes,
 )
-from multibot_rewrite.fleet.robots.simulators import is_said, is_simulated, may_be_real, note
-from multibot_rewrite.fleet.robots.world_systems import without_world_systems
+from multibot_rewrite.fleet.robots.simulators import (
+    is_said,
+    is_simulated,
+    may_be_real,
+    note,
+    without_world_systems,
+)
 from multibot_rewrite.spelling.table_checks import UNREACHABLE_NAME
 
 

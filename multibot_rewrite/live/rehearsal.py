@@ -23,8 +23,8 @@ from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
 from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import Request, to_text
 from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
+from multibot_rewrite.spelling.of_runs import ACTION_PARTS
 from multibot_rewrite.spelling.records import Rules, Run, Table
-from multibot_rewrite.spelling.targets import ACTION_PARTS
 from multibot_rewrite.spelling.transforms import Edges
 from multibot_rewrite.spelling.way_checks import (
     bound_to,

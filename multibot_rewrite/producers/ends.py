@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ends that a robot's sources name: its stacks with their parameters, plugins, bridges."""
+"""The ends that a robot's sources name: its stacks with their parameters, plugins, bridges; the
+transforms that they name, and those that they tell nodes not to send."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from typing import NamedTuple
 
 from multibot_rewrite.companions.bridge_entry import (
@@ -17,21 +19,32 @@ from multibot_rewrite.companions.bridge_entry import (
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.of_runs import asked_alone, with_names
+from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
+from multibot_rewrite.knowledge.records import MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.producers.evidence.filling import filled, lookup
+from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics
+from multibot_rewrite.spelling.of_runs import expanded, with_names
 from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.spelling.targets import expanded
 from multibot_rewrite.system.records import (
     CALLS,
     MAY,
+    NOWHERE,
+    OFF,
     PUBLISHES,
+    RUNS,
     SERVES,
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    Edge,
     End,
+    Lookup,
     Place,
+    Sure,
+    edge_of,
 )
 
-NEEDS = (SUBSCRIBES, CALLS)
+NEEDS, TF = (SUBSCRIBES, CALLS), "/tf"
 BRIDGE_FILE, BRIDGE_NODE = "bridge.yaml", "ros_gz_bridge"
 _ROLES = {"GZ_TO_ROS": PUBLISHES, "ROS_TO_GZ": SUBSCRIBES}
 
@@ -91,3 +104,40 @@ def bridge_rows(document: YamlText, above: str = "") -> Iterator[BridgeRow]:
         kind, place = SERVICE if service else TOPIC, Place(document.file, line_of(name))
         inside = words.get(GZ) or words.get(BOTH) or str(name.value)
         yield BridgeRow(End(kind, *own, full, place=place), inside, words.get(FRAME, ""))
+
+
+def edge(pair: Edge, node: str, place: Place = NOWHERE, topic: str = TF, sure: Sure = RUNS) -> Edge:
+    """A transform on the tf topic of its robot, or on the static one beside it."""
+    on = "/".join("tf_static" if it == "tf" and pair.static else it for it in topic.split("/"))
+    return pair._replace(topic=on, publishers=(node,), sure=sure, place=place)
+
+
+def virtual_lookups(semantics: Semantics) -> Iterator[Lookup]:
+    """The transforms that are the state of virtual joints: current_state_monitor.cpp of moveit2."""
+    for it in semantics.virtual:
+        if it.type != FIXED:
+            yield Lookup(f"/{MOVE_GROUP}", it.child, it.parent, it.place)
+
+
+def edges_off(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> Iterator[Edge]:
+    """What nodes would send, with the parameter that alone switches it off."""
+    for it in given:
+        node = known.get(it.fact.known)
+        runs = filled(node, it) if node and node.sends else None
+        if node is None or runs is None or runs.sends:
+            continue
+        frames = {frame.parameter: frame.default for frame in runs.frames}
+        for send in node.sends:
+            place = _switch(send.condition, runs, it)
+            if place:
+                pair = edge_of(frames[send.parent], frames[send.child])
+                yield edge(pair, f"/{it.node}", place, sure=OFF)
+
+
+def _switch(condition: str, runs: NodeFacts, given: Run) -> Place | None:
+    """Where the parameter is that alone switches it off."""
+    value_of = lookup(runs, given.values)
+    off = [it for it in condition.split(AND) if not holds(it, value_of)]
+    parts = chain(*parse_condition(off[0])) if len(off) == 1 else ()
+    found = (given.values[it.parameter] for it in parts if it.parameter in given.values)
+    return next((it.place for it in found), None)

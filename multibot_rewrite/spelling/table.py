@@ -23,6 +23,7 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.spelling.of_runs import asked_alone, asked_beside, parsed, with_names
+from multibot_rewrite.spelling.of_runs import expanded, placed, target_of, with_names
 from multibot_rewrite.spelling.records import Rule, Run, Table
 from multibot_rewrite.spelling.table_checks import (
     PROBE,
@@ -30,7 +31,6 @@ from multibot_rewrite.spelling.table_checks import (
     unreachable,
     useless_rules,
 )
-from multibot_rewrite.spelling.targets import expanded, placed, target_of
 from multibot_rewrite.spelling.way_checks import NOT_TAKEN, is_stand_in, not_taken
 
 NOTHING: Mapping[str, Sequence[Run]] = {}

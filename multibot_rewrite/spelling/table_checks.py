@@ -14,8 +14,8 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.spelling.of_runs import asked_beside, parsed
+from multibot_rewrite.spelling.of_runs import expanded, target_of
 from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.spelling.targets import expanded, target_of
 from multibot_rewrite.system.records import SERVICE, TOPIC
 
 # A stand-in for a second robot: names of a single robot cannot collide.

@@ -13,9 +13,10 @@ from functools import cache, partial
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
-from multibot_rewrite.base.rosnames import BoundNode, bind, parse_remap, resolve_bound
+from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import ControllerWay, controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint
+from multibot_rewrite.spelling.of_runs import parsed
 from multibot_rewrite.spelling.records import Names, Rule, Rules, Run, Table
 from multibot_rewrite.spelling.ways import (
     COMPONENT,
@@ -112,8 +113,7 @@ def is_stand_in(node: Run, endpoint: Endpoint) -> bool:
 
 def bound_to(node: Run, rules: Iterable[Rule]) -> BoundNode:
     """The node under these rules."""
-    found = (parse_remap(f"{source}:={target}") for source, target in rules)
-    return bind(node.name, node.namespace, filter(None, found))
+    return bind(node.name, node.namespace, parsed(rules))
 
 
 # A second robot shows what rules for all of a process do.

@@ -17,8 +17,8 @@ from typing import Any, NamedTuple, TypeAlias
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER
+from multibot_rewrite.spelling.of_runs import expanded
 from multibot_rewrite.spelling.records import Rule, Rules, Run, Table
-from multibot_rewrite.spelling.targets import expanded
 
 PROCESS, HOST, COMPONENT = "process", "host", "component"
 SPAWNER, PLUGIN = "spawner", "plugin"

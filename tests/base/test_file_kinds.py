@@ -17,7 +17,7 @@ from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.rules.settings import Settings
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.json import from_json
 
 TEXTS = {

@@ -13,7 +13,7 @@ from healthy_systems import single
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.spelling.table_formats import FORMS
 from multibot_rewrite.system.json import to_json
 

@@ -18,7 +18,7 @@ from multibot_rewrite.base.wording import for_terminal, one_line
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.output import print_bytes
-from multibot_rewrite.spelling.plan_file import to_yaml
+from multibot_rewrite.spelling.plan import to_yaml
 from multibot_rewrite.system.json import to_json
 
 FAKED = "FAKE: all is well"

@@ -13,7 +13,7 @@ from paths import FIXTURES
 from plans import robot_named
 
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 
 pytestmark = pytest.mark.slow
 

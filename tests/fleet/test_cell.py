@@ -19,7 +19,7 @@ from plans import ends_of, own
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 
 URDF = """\
 <robot name="arm">

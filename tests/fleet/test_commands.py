@@ -11,7 +11,7 @@ import yaml
 from paths import ROBOTS
 
 from multibot_rewrite import load_fleet
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 
 FLEET = """\
 distro: {release}

@@ -12,7 +12,7 @@ from drawn_fleets import KINDS, NAV_PARAMS, RVIZ, SRDF, Data, DrawnFleet
 from fleet_folder import planned_fleet
 from paths import ROBOTS
 
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 
 GZ, CART, XACRO, ARM = "gz rover", "plain cart", "xacro rover", "arm"
 

@@ -12,7 +12,7 @@ from paths import ROOT
 from plans import ends_of
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 
 ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
 RVIZ = ROOT / "examples" / "launch_tutorial" / "rover.rviz"

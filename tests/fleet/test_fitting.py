@@ -12,7 +12,7 @@ from plans import ends_of, own
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.robots.fitting.node_topics import CommandEnd, entry_of
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 
 ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
 PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"

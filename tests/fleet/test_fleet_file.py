@@ -24,7 +24,7 @@ from multibot_rewrite.fleet.file.checked_yaml import TYPES, _in_words
 from multibot_rewrite.fleet.file.fleet_data import SCHEMA, check_files, schema, with_paths
 from multibot_rewrite.fleet.file.fleet_file import KINDS, FleetFile, read_fleet
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
-from multibot_rewrite.spelling.plan_file import is_fleet
+from multibot_rewrite.spelling.plan import is_fleet
 from tools.pages import fleet_keys
 
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
@@ -468,7 +468,7 @@ def test_an_old_jsonschema_is_one_line(
     assert main(["build", str(fleet), "-o", str(tmp_path / "out")]) == 2
     out, err = capsys.readouterr()
     assert err.startswith(
-        "multibot: the fleet file has a mistake, and jsonschema 3.2 or newer is needed to say which;"
+        "multibot: a fleet file is checked with jsonschema 3.2 or newer; install it"
     )
     assert (out, err.count("\n")) == ("", 1)
     assert not (tmp_path / "out").exists()

@@ -10,7 +10,7 @@ from paths import FIXTURES
 from plans import ends_of
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.records import surely
 
 QOS = "qos: {history: KEEP_ALL, reliability: RELIABLE}"

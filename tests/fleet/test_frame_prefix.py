@@ -19,7 +19,7 @@ from plans import robot_named
 from multibot_rewrite import load_fleet, rewrite, strip
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.records import Parameter
 
 ROVER = """\

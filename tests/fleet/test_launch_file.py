@@ -21,7 +21,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.live.rehearsal import stage, staged, with_substitutes
 from multibot_rewrite.producers.launch.performed import Launching, performed
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.records import doubts
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")

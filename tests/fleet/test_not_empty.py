@@ -19,7 +19,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, expected, facts_of, make_fleet
-from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
+from multibot_rewrite.spelling.plan import read_plan, to_yaml
 from multibot_rewrite.system.json import from_json, from_yaml, to_json
 
 COLLISION = FIXTURES / "graphs" / "MG402.json"

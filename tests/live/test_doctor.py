@@ -37,7 +37,7 @@ from node_answers import told
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.producers.bags.read import RECORDER
-from multibot_rewrite.producers.ros.pace import Voices
+from multibot_rewrite.producers.ros.tf_subscriptions import Voices
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVES,

@@ -14,8 +14,7 @@ from multibot_rewrite.base.naming import Naming, affix, make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import expect
-from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
+from multibot_rewrite.spelling.plan import expect, read_plan, to_yaml
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import (

@@ -32,10 +32,9 @@ from multibot_rewrite.live.learning.choosing import (
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
-from multibot_rewrite.spelling.of_runs import parsed
+from multibot_rewrite.spelling.of_runs import expanded, parsed
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.spelling.targets import expanded
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
     ACTION,

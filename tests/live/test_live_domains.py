@@ -14,7 +14,7 @@ from paths import ROBOTS
 from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan_file import to_yaml
+from multibot_rewrite.spelling.plan import to_yaml
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Domain
 
 pytestmark = pytest.mark.live

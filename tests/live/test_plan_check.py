@@ -14,7 +14,7 @@ from plans import optional, places
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
+from multibot_rewrite.spelling.plan import read_plan, to_yaml
 from multibot_rewrite.system.json import from_yaml, to_json
 from multibot_rewrite.system.records import Caveat, System
 

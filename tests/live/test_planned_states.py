@@ -21,7 +21,7 @@ from multibot_rewrite.producers.ros import ask
 from multibot_rewrite.producers.ros.observe import AGAIN_SECONDS, Answers
 from multibot_rewrite.producers.ros.request import Request, from_text, to_text
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import read_plan, to_yaml
+from multibot_rewrite.spelling.plan import read_plan, to_yaml
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.parameters import Answer, Question, questions, with_answers
 from multibot_rewrite.system.records import (

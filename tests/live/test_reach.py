@@ -13,7 +13,7 @@ from looks import ONE, end, look, node
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import Caveat, End, System
 

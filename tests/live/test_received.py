@@ -19,8 +19,7 @@ from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
 from multibot_rewrite.producers.ros.headers import HeaderSamples
-from multibot_rewrite.producers.ros.pace import Pace
-from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
+from multibot_rewrite.producers.ros.tf_subscriptions import Pace, TfSubscriptions
 from multibot_rewrite.producers.zenoh.cdr import read_joint_names, read_tf
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.system.index import Index

@@ -12,7 +12,7 @@ from healthy_systems import TWIST, with_node
 from paths import ROBOTS, ROOT
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import PUBLISHES, System
 

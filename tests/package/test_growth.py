@@ -31,7 +31,7 @@ from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.producers.bags.read import _recording
 from multibot_rewrite.producers.evidence import parameter_files
-from multibot_rewrite.producers.launch import bridges, parameter_texts
+from multibot_rewrite.producers.launch import bridges, handed_on
 from multibot_rewrite.producers.snapshot_file import read_snapshot
 from multibot_rewrite.rules.check import RULES, check, judge
 from multibot_rewrite.rules.settings import Settings
@@ -42,8 +42,8 @@ REMEMBERED = (
     nearest._nearest,
     causes._letters,
     parameter_files._sections,
-    parameter_texts.document_of,
-    parameter_texts.has_sections,
+    handed_on.document_of,
+    handed_on.has_sections,
     bridges._of_text,
     fnmatch._compile_pattern,  # type: ignore[attr-defined]
 )

@@ -24,7 +24,6 @@ from multibot_rewrite.knowledge.parameters import built_in_nodes
 
 # Made of what only a run knows, each with a reason; the patterns that stand for it are in ``declared``.
 AT_RUN_TIME = {
-    "multibot_rewrite.fleet.file.checked_yaml": "patterns of our schemas, all of which are tried here",
     "multibot_rewrite.knowledge.parameters": "all guesses of our definitions, which are tried here",
 }
 # Not linear, and its text is bounded before.

@@ -10,7 +10,7 @@ from paths import FIXTURES, ROOT
 from plans import optional, own
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 
 EXAMPLES = sorted((ROOT / "examples").rglob("fleet*.yaml"))
 

@@ -11,7 +11,7 @@ import pytest
 
 from multibot_rewrite.producers.launch import commands
 from multibot_rewrite.producers.launch.failures import failure
-from multibot_rewrite.producers.launch.include_arguments import not_among, unread
+from multibot_rewrite.producers.launch.includes import not_among, unread
 from multibot_rewrite.producers.launch.install_rules import link_share
 from multibot_rewrite.producers.launch.kept_paths import GONE, lasting, real_paths
 

@@ -18,7 +18,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
-from multibot_rewrite.producers.sources import files, syntax
+from multibot_rewrite.producers.sources import expressions, files
 from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
 from multibot_rewrite.spelling.of_runs import ends_of, with_names
 from multibot_rewrite.spelling.records import Given, Run
@@ -481,8 +481,8 @@ def test_nothing_is_imported_or_run(acme: Path, tmp_path: Path) -> None:
 def without_reader(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("tree_sitter", "tree_sitter_cpp"):
         monkeypatch.setitem(sys.modules, name, None)
-    monkeypatch.setattr(syntax, "find_spec", lambda name: None)
-    syntax._tools.cache_clear()
+    monkeypatch.setattr(expressions, "find_spec", lambda name: None)
+    expressions._tools.cache_clear()
     files._parsed.cache_clear()
 
 

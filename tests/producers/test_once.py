@@ -10,8 +10,8 @@ from rule_examples import DESCRIPTION
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.producers.launch.once import once_for_all
 from multibot_rewrite.producers.launch.performed import Launching, performed
+from multibot_rewrite.producers.launch.programs import once_for_all
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.system.records import NOWHERE
 

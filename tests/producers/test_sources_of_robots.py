@@ -21,12 +21,17 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
-from multibot_rewrite.producers.ends import bridge_ends, run_alone
+from multibot_rewrite.producers.ends import (
+    bridge_ends,
+    edge,
+    edges_off,
+    run_alone,
+)
 from multibot_rewrite.producers.evidence.hardware import Exported, control_system
+from multibot_rewrite.producers.launch.beside_ends import prefix_of
 from multibot_rewrite.producers.launch.known_node import guessed_name, known_node, own_name
 from multibot_rewrite.producers.launch.launched import file_of
 from multibot_rewrite.producers.launch.models import Model, Models
-from multibot_rewrite.producers.launch.node_transforms import prefix_of
 from multibot_rewrite.producers.launch.records import (
     LaunchGraph,
     LaunchNote,
@@ -45,10 +50,6 @@ from multibot_rewrite.producers.launch.snapshot import (
     _without_own_time,
 )
 from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
-from multibot_rewrite.producers.transforms import (
-    edge,
-    edges_off,
-)
 from multibot_rewrite.spelling.of_runs import ends_of, lookups_of
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import (

@@ -18,11 +18,10 @@ from multibot_rewrite.producers.launch.read_files import descriptions_in
 from multibot_rewrite.producers.launch.records import ParameterText
 from multibot_rewrite.producers.launch.stand_in import (
     frontend,
-    loops,
     packages,
     parameters,
     parse,
-    paths,
+    processes,
     ros,
     standing_in,
     values,
@@ -53,22 +52,22 @@ N, YES, WORD = LaunchConfiguration("n"), LaunchConfiguration("yes"), LaunchConfi
         (LaunchConfiguration("no", default=["a", N]), "a5"),
         (values.EnvironmentVariable("HERE"), "home"),
         (values.EnvironmentVariable("NOT_HERE", default_value=""), ""),
-        (paths.PathJoinSubstitution(["/a", N, "b"]), "/a/5/b"),
-        (paths.PathJoinSubstitution(["/a", ["b", N, ".yaml"]]), "/a/b5.yaml"),
-        (paths.PathJoinSubstitution([Path("/a")]) / "b" / ["c", N], "/a/b/c5"),
-        (paths.PathSubstitution("/a") / paths.PathJoinSubstitution(["b", "c"]), "/a/b/c"),
+        (packages.PathJoinSubstitution(["/a", N, "b"]), "/a/5/b"),
+        (packages.PathJoinSubstitution(["/a", ["b", N, ".yaml"]]), "/a/b5.yaml"),
+        (packages.PathJoinSubstitution([Path("/a")]) / "b" / ["c", N], "/a/b/c5"),
+        (packages.PathSubstitution("/a") / packages.PathJoinSubstitution(["b", "c"]), "/a/b/c"),
         # Those of a list are parts (path_join_substitution.py).
-        (paths.PathSubstitution(["/a", N]) / Path("b"), "/a/5/b"),
-        (paths.ThisLaunchFileDir() / ".." / "config", "/launch/../config"),
-        (paths.StringJoinSubstitution([["a", N], "b"]), "a5b"),
-        (paths.StringJoinSubstitution([["a", N], "b"], "."), "a5.b"),
-        (paths.StringJoinSubstitution(["a", "b", "c"], delimiter=WORD), "awbwc"),
+        (packages.PathSubstitution(["/a", N]) / Path("b"), "/a/5/b"),
+        (packages.ThisLaunchFileDir() / ".." / "config", "/launch/../config"),
+        (packages.StringJoinSubstitution([["a", N], "b"]), "a5b"),
+        (packages.StringJoinSubstitution([["a", N], "b"], "."), "a5.b"),
+        (packages.StringJoinSubstitution(["a", "b", "c"], delimiter=WORD), "awbwc"),
         (values.ForEachVar("x", default_value=["d", N]), "d5"),
         (values.PythonExpression([N, " + 1"]), "6"),
         (values.PythonExpression("pi > 3 and math.pi > 3"), "True"),
         (values.PythonExpression("os.sep", ["os"]), "/"),
-        (paths.ThisLaunchFile(), "/launch/bringup.launch.py"),
-        (paths.ThisLaunchFileDir(), "/launch"),
+        (packages.ThisLaunchFile(), "/launch/bringup.launch.py"),
+        (packages.ThisLaunchFileDir(), "/launch"),
         (values.EqualsSubstitution(N, "5.0"), "true"),
         (values.EqualsSubstitution(N, 6), "false"),
         (values.EqualsSubstitution(YES, "1"), "true"),
@@ -105,7 +104,7 @@ def test_what_a_substitution_is(made: Any, text: str, context: LaunchContext) ->
         (LaunchConfiguration("no"), "launch configuration 'no' does not exist"),
         (values.EnvironmentVariable("NOT_HERE"), "environment variable 'NOT_HERE' does not exist"),
         (values.NotSubstitution(N), "Cannot convert value '5'"),
-        (paths.FileContent("/no/such"), "File not found: /no/such"),
+        (packages.FileContent("/no/such"), "File not found: /no/such"),
     ],
 )
 def test_a_substitution_without_a_value(made: Any, message: str, context: LaunchContext) -> None:
@@ -115,7 +114,7 @@ def test_a_substitution_without_a_value(made: Any, message: str, context: Launch
 
 def test_the_content_of_a_file(context: LaunchContext, tmp_path: Path) -> None:
     (tmp_path / "a").write_text("text\n")
-    assert paths.FileContent(str(tmp_path / "a")).perform(context) == "text\n"
+    assert packages.FileContent(str(tmp_path / "a")).perform(context) == "text\n"
 
 
 @pytest.mark.parametrize(
@@ -438,14 +437,16 @@ def meant(words: str) -> set[str]:
 
 
 def test_every_element_of_launch_files_in_xml_and_its_attributes() -> None:
-    assert frontend._FORMS.keys() == ELEMENTS.keys()
+    assert frontend.forms().keys() == {*ELEMENTS, "composable_node"}
     for tag, text in ELEMENTS.items():
         name, _, words = text.partition(":")
-        form, (own, _, class_) = frontend._FORMS[tag], name.rpartition(" ")
-        module = {"ros": "launch_ros.actions", "loops": loops.__name__}.get(own, "launch.actions")
+        form, (own, _, class_) = frontend.forms()[tag], name.rpartition(" ")
+        module = {"ros": "launch_ros.actions", "loops": processes.__name__}.get(
+            own, "launch.actions"
+        )
         assert form.module == module, tag
         assert (form.name, read_of(form)) == (class_, meant(words)), tag
-    component = frontend._COMPONENT
+    component = frontend.forms()["composable_node"]
     assert (component.module, component.name) == ("launch_ros.descriptions", "ComposableNode")
     assert read_of(component) == meant(COMPONENT)
 
@@ -453,7 +454,7 @@ def test_every_element_of_launch_files_in_xml_and_its_attributes() -> None:
 def test_attributes_that_are_true_or_a_command_line() -> None:
     readers = {
         (word, read)
-        for form in (*frontend._FORMS.values(), frontend._COMPONENT)
+        for form in frontend.forms().values()
         for word, (_, read) in form.values.items()
     }
     truths = {word for word, read in readers if read is frontend._truth}
@@ -490,10 +491,10 @@ def test_every_substitution_of_launch_files_in_xml() -> None:
         "for-var": "ForEachVar", "index": "ForLoopIndex",
     }  # fmt: skip
     of_several = {"command", "eval", "path-join", "string-join"}
-    known = {**vars(packages), **vars(paths), **vars(values)}
+    known = {**vars(packages), **vars(values)}
     classes = {it: known.get(f"{name}Substitution") or known[name] for it, name in words.items()}
-    made = {it: kind for it, kind in parse._KNOWN.items() if it not in of_several}
-    assert (made, parse._KNOWN.keys() - made.keys()) == (classes, of_several)
+    made = {it: kind for it, kind in parse.known().items() if it not in of_several}
+    assert (made, parse.known().keys() - made.keys()) == (classes, of_several)
     for word in ("arg", "find", "optenv"):
         with pytest.raises(ValueError, match=word):
             parse_substitution(f"$({word} a)")
@@ -504,7 +505,7 @@ def test_every_action_of_launch_is_visited() -> None:
     here is visited as the class that it is one of."""
     there = json.loads((FIXTURES / "launch_signatures.json").read_text())["names"]
     names = {*there["launch.actions"], *there["launch_ros.actions"]}
-    named = {*visit._HANDLERS}
+    named = {*visit._handlers()}
     assert names - named == {"LifecycleNode", "OpaqueCoroutine", "ROSTimer", "RosTimer"}
     others = {"LaunchDescription", "ForEach", "ForLoop", "ReplaceEnvironmentVariables"}
     others |= {"Log", "LogInterface"}
@@ -518,8 +519,8 @@ def test_every_action_of_launch_is_visited() -> None:
         "LifecycleTransition",
         "UnregisterEventHandler",
     }  # fmt: skip
-    assert {it for it, how in visit._HANDLERS.items() if how is visit._pass} == passed
-    executed = {it for it, how in visit._HANDLERS.items() if how is visit._execute}
+    assert {it for it, how in visit._handlers().items() if how is visit._pass} == passed
+    executed = {it for it, how in visit._handlers().items() if how is visit._execute}
     assert executed == named - starts - passed
 
 
@@ -592,14 +593,14 @@ def test_what_is_repeated(context: LaunchContext) -> None:
     def each(name: str, number: int = 7) -> list[Any]:
         return [ros.Node(executable="x", name=f"n{number + 1}", namespace=name)]
 
-    made = [loops.ForEach(ROBOTS, function=each), loops.ForEach("", function=each)]
-    made += [loops.ForEach("{}", function=lambda: None)]
-    made += [loops.ForLoop(["1", "0"], function=lambda i: each("c", i) if i < 2 else None)]
+    made = [processes.ForEach(ROBOTS, function=each), processes.ForEach("", function=each)]
+    made += [processes.ForEach("{}", function=lambda: None)]
+    made += [processes.ForLoop(["1", "0"], function=lambda i: each("c", i) if i < 2 else None)]
     assert visited(made, context) == ["a/n2", "b/n8", "c/n1", "c/n2"]
     with pytest.raises(ValueError, match="many"):
-        loops.ForLoop("many", function=each).visit(context)
+        processes.ForLoop("many", function=each).visit(context)
     with pytest.raises(TypeError, match="other"):
-        loops.ForEach("{other: 1}", function=each).visit(context)
+        processes.ForEach("{other: 1}", function=each).visit(context)
 
 
 XML = """\

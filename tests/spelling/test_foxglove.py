@@ -11,8 +11,7 @@ import pytest
 from paths import ROBOTS
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.foxglove import to_layout
-from multibot_rewrite.spelling.shown import world_of_plan
+from multibot_rewrite.spelling.shown import to_layout, world_of_plan
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SERVICE,

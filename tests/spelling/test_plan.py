@@ -18,10 +18,10 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.rules.check import check
+from multibot_rewrite.spelling.of_runs import expanded, placed, target_of
 from multibot_rewrite.spelling.plan import expect, named_frames, tf_topic
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.spelling.targets import expanded, placed, target_of
 from multibot_rewrite.spelling.transforms import (
     edges_in,
     edges_of,

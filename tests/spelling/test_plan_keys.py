@@ -22,8 +22,7 @@ from multibot_rewrite.base import editors
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan import robot_words, vacuous
-from multibot_rewrite.spelling.plan_file import HEAD, is_fleet, read_plan, to_yaml
+from multibot_rewrite.spelling.plan import HEAD, is_fleet, read_plan, robot_words, to_yaml, vacuous
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (

@@ -11,12 +11,11 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.rosnames import bind, resolve_bound
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.sources.records import Fact
 from multibot_rewrite.spelling.of_runs import parsed
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End
 from tools.interfaces.compare import is_same
-from tools.interfaces.table import from_table
+from tools.interfaces.table import Fact, from_table
 
 # What rclcpp gives every node, and rclcpp_lifecycle those that have it (their node.cpp).
 SERVICES = ("get_parameters", "set_parameters", "list_parameters", "describe_parameters",

@@ -16,7 +16,7 @@ from importlib import import_module
 from typing import Any
 
 from multibot_rewrite.producers.launch.stand_in import contents
-from multibot_rewrite.producers.launch.stand_in.names import READ
+from multibot_rewrite.producers.launch.stand_in.names import names as known
 from multibot_rewrite.producers.launch.stand_in.values import Kept
 
 CLASSES = {
@@ -68,7 +68,7 @@ def stand_in() -> dict[str, list[str]]:
 
 
 def _classes() -> Iterator[tuple[str, Any]]:
-    for module, names in READ.items():
+    for module, names in known().read.items():
         for name in names.split() if module.startswith("launch") else ():
             it = contents()[module][name]
             if inspect.isclass(it) and not issubclass(it, Exception) and name not in _NONE:
@@ -78,7 +78,7 @@ def _classes() -> Iterator[tuple[str, Any]]:
 def public_names() -> dict[str, list[str]]:
     """What each package of the real ones offers, by the modules that a launch file imports from."""
     found = {}
-    for module in (it for it in READ if it.partition(".")[0] in ("launch", "launch_ros")):
+    for module in (it for it in known().read if it.partition(".")[0] in ("launch", "launch_ros")):
         real = import_module(module)
         # launch_ros.utilities promises two that it has not.
         own = {it: vars(real).get(it) for it in getattr(real, "__all__", ())}

@@ -15,7 +15,6 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.producers.sources.records import Fact
 from tools.interfaces.compare import (
     OURS,
     THEIRS,
@@ -25,7 +24,7 @@ from tools.interfaces.compare import (
     excepted,
     exceptions_of,
 )
-from tools.interfaces.table import from_table
+from tools.interfaces.table import Fact, from_table
 
 EXCEPTIONS = exceptions_of((FIXTURES / "interfaces_exceptions.tsv").read_text())
 LEAST_FACTS = 400

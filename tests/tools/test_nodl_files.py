@@ -11,10 +11,9 @@ from nodl_schema_file import nodl_validator
 from paths import FIXTURES
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.producers.sources.records import Fact
 from tools.interfaces.__main__ import main
 from tools.interfaces.nodl_files import nodl_of
-from tools.interfaces.table import from_table
+from tools.interfaces.table import Fact, from_table
 
 
 def facts() -> tuple[Fact, ...]:

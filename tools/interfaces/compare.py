@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.producers.sources.records import Class, Fact
+from multibot_rewrite.producers.sources.records import Class
+from tools.interfaces.table import Fact
 
 # Parts of ours that come from rclcpp and rclcpp_lifecycle, which are not read.
 NOT_READ = ("every_node", "lifecycle")

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from multibot_rewrite.producers.sources.expressions import last, text_of
-from multibot_rewrite.producers.sources.syntax import nodes_of
+from multibot_rewrite.producers.sources.expressions import last, nodes_of, text_of
 from tools.interfaces.plugin_demands import is_conditional
 from tools.interfaces.plugin_parameters import ANY, Parameter
 
 if TYPE_CHECKING:
-    from multibot_rewrite.producers.sources.syntax import Node
+    from multibot_rewrite.producers.sources.expressions import Node
 
 _BASES = ("SystemInterface", "ActuatorInterface", "SensorInterface")
 _KEY = re.compile(

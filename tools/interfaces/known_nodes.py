@@ -9,9 +9,10 @@ from functools import cache
 from importlib.resources import files
 from typing import NamedTuple
 
-from multibot_rewrite.producers.sources.records import Class, Fact, Place
+from multibot_rewrite.producers.sources.records import Class, Place
 from tools.interfaces.nodes import facts_of
 from tools.interfaces.scope import Index
+from tools.interfaces.table import Fact
 
 # What a name that is made at run time depends on.
 _MODE = re.compile(r"(?:plugin|tree has) \w+")

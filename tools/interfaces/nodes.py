@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.producers.sources.apis import ARGUMENT, HELPER, OWN, Api, apis
 from multibot_rewrite.producers.sources.expressions import is_node, last, template_arguments
-from multibot_rewrite.producers.sources.records import Call, Class, Fact
+from multibot_rewrite.producers.sources.records import Call, Class
 from tools.interfaces.scope import (
     Index,
     Resolved,
@@ -21,6 +21,7 @@ from tools.interfaces.scope import (
     text_in,
     type_of,
 )
+from tools.interfaces.table import Fact
 
 DEEPEST = 12
 # The function in which a package of tree nodes names its classes.

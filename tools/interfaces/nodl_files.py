@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.nodl.writing import UNKNOWN_QOS, NodlFile, document_of
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.producers.sources.records import Fact
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -22,6 +21,7 @@ from multibot_rewrite.system.records import (
     SUBSCRIBES,
     TOPIC,
 )
+from tools.interfaces.table import Fact
 
 # What has no "/action/" in its type is a topic or a service.
 KIND = {PUBLISHES: TOPIC, SUBSCRIBES: TOPIC, SERVES: SERVICE, CALLS: SERVICE}

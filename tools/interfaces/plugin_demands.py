@@ -7,11 +7,10 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from multibot_rewrite.producers.sources.expressions import text_of
-from multibot_rewrite.producers.sources.syntax import nodes_of
+from multibot_rewrite.producers.sources.expressions import nodes_of, text_of
 
 if TYPE_CHECKING:
-    from multibot_rewrite.producers.sources.syntax import Node
+    from multibot_rewrite.producers.sources.expressions import Node
 
 # What is inside of these may be left out.
 CONDITIONAL = (

@@ -14,12 +14,11 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from multibot_rewrite.producers.sources.expressions import text_of
-from multibot_rewrite.producers.sources.syntax import nodes_of
+from multibot_rewrite.producers.sources.expressions import nodes_of, text_of
 from tools.interfaces.plugin_demands import required_in, words_in
 
 if TYPE_CHECKING:
-    from multibot_rewrite.producers.sources.syntax import Node
+    from multibot_rewrite.producers.sources.expressions import Node
 
 READS = (
     *("Get", "HasElement", "GetElement", "FindElement", "GetElementImpl", "GetNextElement"),

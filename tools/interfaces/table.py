@@ -4,8 +4,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
-from multibot_rewrite.producers.sources.records import Fact, Place
+from multibot_rewrite.producers.sources.records import Place
+
+
+class Fact(NamedTuple):
+    """An endpoint that a node declares.
+
+    ``way`` is ``helper`` for the listener's own node of tf2, ``private`` for a node that the class
+    makes for itself; else it is empty. ``parameter`` sets the name. ``condition`` is empty for always.
+    """
+
+    node: str
+    role: str
+    name: str
+    type: str
+    way: str
+    parameter: str
+    condition: str
+    place: Place
+
 
 COLUMNS = (*Place._fields[:-1], *Fact._fields[:-1])
 

@@ -19,9 +19,8 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, is_apart
-from multibot_rewrite.spelling.of_runs import parsed
+from multibot_rewrite.spelling.of_runs import parsed, placed, target_of
 from multibot_rewrite.spelling.table import run_of
-from multibot_rewrite.spelling.targets import placed, target_of
 
 Facts = Mapping[str, NodeFacts]
 

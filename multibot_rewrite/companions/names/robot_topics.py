@@ -10,8 +10,8 @@ from multibot_rewrite.base.rosnames import check_name_in_code, expand
 from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.spelling.of_runs import asked_alone
+from multibot_rewrite.spelling.of_runs import target_of
 from multibot_rewrite.spelling.records import Table
-from multibot_rewrite.spelling.targets import target_of
 from multibot_rewrite.system.records import ACTION, TOPIC
 
 NOTHING: Mapping[str, str] = {}

@@ -59,7 +59,7 @@ from multibot_rewrite.companions.yaml_text import (
     replaced,
     spliced,
 )
-from multibot_rewrite.spelling.targets import target_of
+from multibot_rewrite.spelling.of_runs import target_of
 from multibot_rewrite.system.records import TOPIC
 
 __all__ = ["RvizRobot", "RvizText", "rewrite_rviz", "start_command", "world_frame"]

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.knowledge.records import MANAGER
-from multibot_rewrite.producers.launch.model_caveats import NOT_WHOLE
+from multibot_rewrite.producers.launch.launched import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check_view
 from multibot_rewrite.rules.launch.judge import CLAIMS
 from multibot_rewrite.rules.system import (

@@ -11,7 +11,7 @@ from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.fleet.checks.across_domains import not_across
 from multibot_rewrite.fleet.checks.judged import contradicted, left_open
-from multibot_rewrite.fleet.checks.nothing_moves import unmoved
+from multibot_rewrite.fleet.checks.lacking import unmoved
 from multibot_rewrite.fleet.checks.robot_system import (
     as_written,
     beside,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodes of a stack that end at once, because what they read is in no file of the robot, or wait for
-ever, because no camera of its description sends it.
+ever, because no camera of its description sends it; a robot of which all is known and that does not
+drive: nothing reads its commands, or nothing sends what it senses.
 
 Sources: moveit2 jazzy moveit_ros/planning/rdf_loader/src/rdf_loader.cpp (no robot_description_semantic,
 no model), ros2_control jazzy hardware_interface/src/component_parser.cpp ("no ros2_control tag"),
@@ -9,12 +10,13 @@ cartographer_ros ros2 src/node_main.cpp (CHECK of both flags).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.fleet.file.robot_spec import REAL
+from multibot_rewrite.description.readback.active import active_parts
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.fitting.node_topics import topic_of
 from multibot_rewrite.fleet.robots.fitting.sensors import (
@@ -25,6 +27,10 @@ from multibot_rewrite.fleet.robots.fitting.sensors import (
 )
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, NodeFacts
+from multibot_rewrite.rules.system.instead import is_needed
+from multibot_rewrite.system.records import PUBLISHES, RUNS, SUBSCRIBES, End, System
+from multibot_rewrite.system.words import moves
 
 CARTOGRAPHER = "cartographer_node"
 LACKING = declare("MF857", "node-without-its-file", ERROR, formats=("fleet",))
@@ -104,3 +110,49 @@ def _of_cameras(node: NodeFacts) -> Iterator[tuple[Endpoint, str]]:
     """Yield what a node hears of a camera, with its kind."""
     kinds = ((it, wanted(node, it)) for it in node.endpoints if "<" not in it.name)
     yield from (it for it in kinds if it[1] in OF_CAMERAS)
+
+
+NOTHING_MOVES = declare("MF865", "commands-without-reader", WARNING, formats=("fleet",))
+_SENSED = ("sensor_msgs/msg/", "nav_msgs/msg/Odometry")
+# A robot without moving joints has nobody who sends them.
+_JOINTS = "sensor_msgs/msg/JointState"
+_HINT = "start what does in its launch file, or write which name is meant as a remap rule there"
+
+
+def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -> Iterator[Finding]:
+    """Yield what is open in a robot of which all is known, by its own ``system``. Of another robot a
+    driver may be missing that nobody has named."""
+    if not _is_told(robot, facts):
+        return
+    read = {it.name for it in system.ends if it.role == SUBSCRIBES}
+    sent = {it.name for it in system.ends if it.role == PUBLISHES}
+    orders = [it for it in system.ends if _is_order(it) and it.name not in read]
+    asked = [it for it in system.ends if _is_asked(it) and it.name not in sent]
+    said = [f"nothing reads {_words(orders)}"] if orders else []
+    said += [f"nothing sends {_words(asked)}"] if asked else []
+    if said:
+        who = f"robot {robot.spec.name!r}: all that it runs is known, and"
+        yield at_robot(NOTHING_MOVES, robot, f"{who} {' and '.join(said)}", _HINT)
+
+
+def _is_told(robot: RewrittenRobot, facts: Sequence[NodeFacts]) -> bool:
+    """Is all known that it runs, some of it by its source?"""
+    known = all(it.is_known and not it.untold for it in facts)
+    by_source = any(" " in it.kind for it in facts)
+    parts = active_parts(robot.member.source.root, robot.member.vocabulary)
+    return known and by_source and all(it.is_known for it in parts)
+
+
+def _is_order(it: End) -> bool:
+    return it.role == PUBLISHES and it.sure == RUNS and moves(it.code_name or it.name, it.type)
+
+
+def _is_asked(it: End) -> bool:
+    is_sensed = it.type.startswith(_SENSED) and it.type != _JOINTS
+    return it.role == SUBSCRIBES and is_needed(it) and is_sensed
+
+
+def _words(ends: Iterable[End]) -> str:
+    """The names in the code, each with its node."""
+    each = (f"{it.code_name or it.name} of {it.node.rpartition('/')[2]}" for it in ends)
+    return shorten(dict.fromkeys(each))

@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names that two robots of a fleet declare, each in its own description; and topics that have a robot's
-name from an argument of its xacro, and once more from its namespace."""
+name from an argument of its xacro, and once more from its namespace; controller managers
+that a plugin makes under another name than that of the robot's stack."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description.readback.meeting import FRAMES
 from multibot_rewrite.description.sources.own_names import name_robot
 from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot, at_robot
+from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.rules.description.multirobot.named_robots import robots_share_a_name
 from multibot_rewrite.rules.system.transforms import robots_name_twice
+from multibot_rewrite.spelling.records import Table
 
 # The kinds of declared names that differ from robot to robot.
 _DECLARED = ("link", "joint", "frame", "sensor", "hardware")
@@ -63,3 +66,23 @@ def _twice(robot: RewrittenRobot) -> Iterator[str]:
     for it in robot.member.reading.names:
         if it.kind in _KINDS and it.name.startswith(starts):
             yield it.name
+
+
+OTHER_MANAGER = declare("MF850", "other-manager", ERROR, formats=("fleet",))
+
+
+def other_manager(robots: Iterable[RewrittenRobot], table: Table) -> Iterator[Finding]:
+    """The robots whose stack has a manager that no plugin makes, though one makes another."""
+    robots = [*robots]
+    tables = table.by_robot(it.member.robot for it in robots)
+    first: dict[str, RewrittenRobot] = {}
+    for robot in robots:
+        own = tables[robot.member.robot].runs
+        made = [it.manager for it in robot.member.reading.nodes if it.manager]
+        asked = {it.full_name for it in own if it.node == MANAGER and not it.written}
+        if made and asked and asked.isdisjoint(made):
+            message = f"the plugin makes {made[0]}, but spawners ask {min(asked)}"
+            hint = "remove <namespace> and <controller_manager_name> of the plugin"
+            # What is the same for all robots of a description is said in one line.
+            at = first.setdefault(robot.spec.description, robot)
+            yield at_robot(OTHER_MANAGER, at, message, hint)

@@ -35,10 +35,14 @@ from multibot_rewrite.producers.ends import (
     BRIDGE_FILE,
     BRIDGE_NODE,
     NEEDS,
+    TF,
     bridge_ends,
     bridge_rows,
+    edge,
+    edges_off,
     either_way,
     run_alone,
+    virtual_lookups,
 )
 from multibot_rewrite.producers.evidence.hardware import Exported, control_system, exported
 from multibot_rewrite.producers.evidence.nodes import children_of
@@ -51,12 +55,6 @@ from multibot_rewrite.producers.evidence.semantics import (
 )
 from multibot_rewrite.producers.launch.spawners import active
 from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
-from multibot_rewrite.producers.transforms import (
-    TOPIC,
-    edge,
-    edges_off,
-    virtual_lookups,
-)
 from multibot_rewrite.spelling.of_runs import ends_of, lookups_of, with_names
 from multibot_rewrite.spelling.plan import tf_topic
 from multibot_rewrite.spelling.records import Run
@@ -242,7 +240,7 @@ def _edges(
     sent: Mapping[str, Iterable[Edge]],
     runs: Iterable[Run],
     home: str = "",
-    topic: str = TOPIC,
+    topic: str = TF,
     inside: Iterable[Edge] = (),
 ) -> Iterator[Edge]:
     """The transforms of a description, those of a bridge from ``inside`` the simulator, and those that

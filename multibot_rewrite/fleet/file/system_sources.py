@@ -26,7 +26,7 @@ from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.snapshot_file import read_snapshots
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan_file import read_plan
+from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.environment import settings
 from multibot_rewrite.system.parameters import ANSWER_SECONDS, questions, with_answers
 from multibot_rewrite.system.records import Caveat, System
@@ -96,7 +96,7 @@ def launched_by(
     they are for; ``nodes`` and ``nodl`` are files of the user's own nodes. Raises InputError for a
     file that cannot be read."""
     from multibot_rewrite.producers.launch.child import launch_graph
-    from multibot_rewrite.producers.launch.from_source import with_sources
+    from multibot_rewrite.producers.launch.known_node import with_sources
     from multibot_rewrite.producers.launch.records import joined
     from multibot_rewrite.producers.launch.running import Knowledge
     from multibot_rewrite.producers.launch.snapshot import launched

@@ -55,9 +55,10 @@ from multibot_rewrite.producers.launch.handed_on import (
     for_robot,
     handed_on,
 )
+from multibot_rewrite.producers.launch.known_node import STATIC, with_frames
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.producers.launch.static_transforms import STATIC, with_frames
 from multibot_rewrite.spelling.domain_bridge import bridge_name, bridge_path
+from multibot_rewrite.spelling.of_runs import placed, target_of
 from multibot_rewrite.spelling.start import (
     File,
     Parameters,
@@ -67,7 +68,6 @@ from multibot_rewrite.spelling.start import (
     spawner_of,
     start_of,
 )
-from multibot_rewrite.spelling.targets import placed, target_of
 from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER, Started
 from multibot_rewrite.system.records import PUBLISHES, TOPIC
 

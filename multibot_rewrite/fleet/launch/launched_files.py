@@ -26,7 +26,7 @@ from multibot_rewrite.fleet.outputs.output_file import yaml_of
 from multibot_rewrite.producers.launch.bridges import rows_in_words
 from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.of_robot import is_of_robot
-from multibot_rewrite.producers.launch.once import once_for_all
+from multibot_rewrite.producers.launch.programs import once_for_all
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
 from multibot_rewrite.system.records import Place
 

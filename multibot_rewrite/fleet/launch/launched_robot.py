@@ -14,10 +14,9 @@ from multibot_rewrite.base.rosnames import RemapRule
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
-from multibot_rewrite.producers.evidence.nodes import RobotNodes, nodes_of
-from multibot_rewrite.producers.evidence.remapped import under_plugin
+from multibot_rewrite.producers.evidence.nodes import RobotNodes, nodes_of, under_plugin
 from multibot_rewrite.producers.launch.child import launch_graph
-from multibot_rewrite.producers.launch.from_source import with_sources
+from multibot_rewrite.producers.launch.known_node import with_sources
 from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, joined
 from multibot_rewrite.spelling.records import Run

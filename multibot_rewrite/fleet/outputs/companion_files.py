@@ -39,15 +39,14 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
     text_of,
 )
-from multibot_rewrite.fleet.robots.own_ports import OWN_PORTS
-from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleet.robots.rewritten_robots import OWN_PORTS, RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.knowledge.parameter_entries import PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.launch.handed_on import HandedOn
-from multibot_rewrite.producers.launch.static_transforms import STATIC
+from multibot_rewrite.producers.launch.known_node import STATIC
 from multibot_rewrite.spelling.records import Run
 
 # The key of a fleet file -> the kind of the files that it names.

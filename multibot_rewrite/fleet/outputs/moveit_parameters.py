@@ -14,7 +14,7 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_own_yaml, load_yaml
 from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.companions.moveit.file_kind import (
@@ -46,32 +46,6 @@ SEMANTIC = "robot_description_semantic"
 # Files that are none of move_group's.
 _OF_OTHERS = (OF_SERVO, "initial_positions", EMPTY)
 _OMPL = "ompl"
-_REQUEST, _RESPONSE = "default_planning_request_adapters", "default_planning_response_adapters"
-_PLANNING = {
-    "planning_plugins": ["ompl_interface/OMPLPlanner"],
-    "request_adapters": [
-        f"{_REQUEST}/{it}"
-        for it in (
-            *("ResolveConstraintFrames", "ValidateWorkspaceBounds", "CheckStartStateBounds"),
-            "CheckStartStateCollision",
-        )
-    ],
-    "response_adapters": [
-        f"{_RESPONSE}/{it}"
-        for it in ("AddTimeOptimalParameterization", "ValidateSolution", "DisplayMotionPath")
-    ],
-}
-_OF_HUMBLE = "default_planner_request_adapters"
-_PLANNING_HUMBLE = {
-    "planning_plugin": "ompl_interface/OMPLPlanner",
-    "request_adapters": " ".join(
-        f"{_OF_HUMBLE}/{it}"
-        for it in (
-            *("AddTimeOptimalParameterization", "ResolveConstraintFrames", "FixWorkspaceBounds"),
-            *("FixStartStateBounds", "FixStartStateCollision", "FixStartStatePathConstraints"),
-        )
-    ),
-}
 
 
 def has_moveit(robot: RewrittenRobot) -> bool:
@@ -167,8 +141,8 @@ def _with_plugins(name: str, data: Mapping[str, Any], release: str) -> Mapping[s
     """A pipeline with the plugins that its file leaves to the launch file."""
     if name != _OMPL or "planning_plugins" in data or "planning_plugin" in data:
         return data
-    own = _PLANNING_HUMBLE if has_release("<=humble", release) else _PLANNING
-    return {**own, **data}
+    of_release = "humble" if has_release("<=humble", release) else "usual"
+    return {**load_own_yaml(__file__, "moveit_planning.yaml")[of_release], **data}
 
 
 def _plain(value: Any) -> Any:

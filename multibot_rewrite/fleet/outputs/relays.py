@@ -22,9 +22,9 @@ from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
+from multibot_rewrite.spelling.of_runs import placed, target_of
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.start import Start
-from multibot_rewrite.spelling.targets import placed, target_of
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Origin, Place
 
 BRIDGE, _WORLD = "tf_namespace_bridge", "bridged_world"

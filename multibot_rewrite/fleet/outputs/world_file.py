@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
@@ -18,8 +19,7 @@ from multibot_rewrite.fleet.outputs.given_world import own_world
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile
 from multibot_rewrite.fleet.outputs.spawn import is_classic
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.simulators import is_simulated
-from multibot_rewrite.fleet.robots.world_systems import systems_of
+from multibot_rewrite.fleet.robots.simulators import is_simulated, systems_of
 from multibot_rewrite.knowledge.worlds import SYSTEMS
 from multibot_rewrite.rules.facts.simulators import needed_systems
 
@@ -32,44 +32,6 @@ _ALWAYS = {
     "scene-broadcaster": "SceneBroadcaster",
     "contact": "Contact",
 }
-_PLACE = """\
-    <!-- Where the world is on the earth, for GPS: change it. -->
-    <spherical_coordinates>
-      <surface_model>EARTH_WGS84</surface_model>
-      <world_frame_orientation>ENU</world_frame_orientation>
-      <latitude_deg>0</latitude_deg>
-      <longitude_deg>0</longitude_deg>
-      <elevation>0</elevation>
-      <heading_deg>0</heading_deg>
-    </spherical_coordinates>
-"""
-_WORLD = """\
-<?xml version="1.0"?>
-<!-- An empty world that runs the sensors of the robots; it is yours to edit. -->
-<sdf version="1.8">
-  <world name="empty">
-{systems}{place}    <light type="directional" name="sun">
-      <cast_shadows>true</cast_shadows>
-      <pose>0 0 10 0 0 0</pose>
-      <diffuse>0.8 0.8 0.8 1</diffuse>
-      <specular>0.2 0.2 0.2 1</specular>
-      <direction>-0.5 0.1 -0.9</direction>
-    </light>
-    <model name="ground_plane">
-      <static>true</static>
-      <link name="link">
-        <collision name="collision">
-          <geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
-        </collision>
-        <visual name="visual">
-          <geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
-          <material><ambient>0.8 0.8 0.8 1</ambient><diffuse>0.8 0.8 0.8 1</diffuse></material>
-        </visual>
-      </link>
-    </model>
-  </world>
-</sdf>
-"""
 
 
 def world_file(plan: FleetPlan) -> FilesAndFindings:
@@ -90,8 +52,9 @@ def world_file(plan: FleetPlan) -> FilesAndFindings:
         yield from findings
     elif ours:
         systems = "".join({**usual, **ours}.values())
-        place = _PLACE if "navsat" in ours else ""
-        yield OutputFile(FILE, _WORLD.format(systems=systems, place=place).encode())
+        place = own_text(__file__, "place_on_earth.sdf") if "navsat" in ours else ""
+        world = own_text(__file__, "empty_world.sdf").format(systems=systems, place=place)
+        yield OutputFile(FILE, world.encode())
 
 
 def _needed(robots: Sequence[RewrittenRobot], kind: str) -> dict[str, str]:

@@ -16,6 +16,7 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
+from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.file.fleet_data import FleetData, listed
 from multibot_rewrite.fleet.outputs.zenoh_access import (
@@ -107,29 +108,11 @@ def _text(config: Config, about: str) -> bytes:
 
 def _common(enclave: str, setup: Setup) -> Config:
     """What rmw_zenoh sets for ROS, and the certificates."""
-    transport: Config = {
-        "unicast": {
-            "open_timeout": 60000,
-            "accept_timeout": 60000,
-            "accept_pending": 10000,
-            "max_sessions": 10000,
-        },
-        "link": {
-            "tx": {
-                "lease": 60000,
-                "keep_alive": 2,
-                "queue": {"congestion_control": {"block": {"wait_before_close": 60000000}}},
-            }
-        },
-    }
+    config: Config = json.loads(own_text(__file__, "zenoh_session.json"))
     if setup.keystore:
-        transport["link"] |= {"protocols": ["tls"], "tls": _certificates(enclave, setup)}
-    return {
-        "scouting": {"multicast": {"enabled": False}},
-        "timestamping": {"enabled": {"router": True, "peer": True, "client": True}},
-        "queries_default_timeout": 60000,
-        "transport": transport,
-    }
+        own = {"protocols": ["tls"], "tls": _certificates(enclave, setup)}
+        config["transport"]["link"] |= own
+    return config
 
 
 def _certificates(enclave: str, setup: Setup) -> Config:

@@ -35,7 +35,7 @@ from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
 from multibot_rewrite.knowledge.programs import Program, started_as
 from multibot_rewrite.knowledge.stacks import is_apart
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
-from multibot_rewrite.spelling.targets import placed, target_of
+from multibot_rewrite.spelling.of_runs import placed, target_of
 from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import TOPIC
 

@@ -8,7 +8,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import Finding, Rule
+from multibot_rewrite.base.findings.finding import NOTE, Finding, Rule, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names, with_srdf
@@ -16,7 +16,8 @@ from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.arguments import UNREAD
 from multibot_rewrite.description.checks.twice import CARRYING
 from multibot_rewrite.description.library import Rewrite, rewrite_job
-from multibot_rewrite.description.readback.meeting import SHARED_CODES
+from multibot_rewrite.description.own_ports import numbered, ports_of
+from multibot_rewrite.description.readback.meeting import NUMBERED, SHARED_CODES
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.sources.job import (
@@ -33,7 +34,7 @@ from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
-from multibot_rewrite.fleet.robots.member import Member, member
+from multibot_rewrite.fleet.robots.member import Member, member, with_text
 from multibot_rewrite.fleet.robots.own_values import Written
 from multibot_rewrite.rules.files.names import of_another_robot
 from multibot_rewrite.spelling.transforms import links_of, tree_of
@@ -304,3 +305,34 @@ def _half(source: bytes, file: str, robot: str, naming: Naming, template: Templa
     # The second rewrite finds names that the first one has rewritten for the other word.
     prepared = pipeline.prepare(source, file, naming, template.tree, template.urdf_declarations)
     return next(pipeline.render(prepared, [robot], again=True))
+
+
+OWN_PORTS = declare(NUMBERED, "own-ports", NOTE, formats=("fleet",))
+
+
+def with_own_ports(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
+    """The robots with the ports that no earlier one has; the first that has to change says it."""
+    sources = [it.member.inventory.document.source for it in robots]
+    made = numbered(
+        {
+            it.spec.name: (
+                text,
+                () if it.spec.simulator == REAL else [*ports_of(it.member.inventory)],
+            )
+            for it, text in zip(robots, sources, strict=True)
+        }
+    )
+    every = [
+        it if new == old else _with_text(it, new)
+        for it, old, new in zip(robots, sources, made.texts, strict=True)
+    ]
+    first = next((n for n, old in enumerate(sources) if old != made.texts[n]), 0)
+    if made.notes:
+        said = (at_robot(OWN_PORTS, every[first], *it) for it in made.notes)
+        every[first] = every[first]._replace(findings=(*every[first].findings, *said))
+    return every
+
+
+def _with_text(robot: RewrittenRobot, data: bytes) -> RewrittenRobot:
+    robot = robot._replace(member=with_text(robot.member, data))
+    return robot._replace(simulated=data) if robot.simulated else robot._replace(description=data)

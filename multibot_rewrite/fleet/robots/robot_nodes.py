@@ -29,11 +29,13 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 )
 from multibot_rewrite.fleet.outputs.output_file import params_of
 from multibot_rewrite.fleet.robots.fitting.fitted import described, fitted, free_nodes
-from multibot_rewrite.fleet.robots.fitting.frames import changed_frames, fitting_frames, with_frames
 from multibot_rewrite.fleet.robots.fitting.transforms import (
+    changed_frames,
+    fitting_frames,
     is_led_elsewhere,
     sends_too,
     sent_by_controllers,
+    with_frames,
 )
 from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member

@@ -11,14 +11,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from lxml import etree
+from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, declare
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
+from multibot_rewrite.base.model import Edit
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.description.checks.hazards import LEFT, world_systems
 from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
 from multibot_rewrite.description.checks.unknown import SAY_IT
 from multibot_rewrite.description.readback.active import HARDWARE, PLUGIN, ActivePart, active_parts
 from multibot_rewrite.description.readback.nodes import PUBLISHES
+from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.spans import Spans
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import (
@@ -30,7 +37,11 @@ from multibot_rewrite.fleet.file.simulator_switch import (
     suits_simulator,
     switch_for,
 )
-from multibot_rewrite.fleet.robots.member import has_parts_for_simulator, is_for_simulator
+from multibot_rewrite.fleet.robots.member import (
+    has_parts_for_simulator,
+    is_for_simulator,
+    with_text,
+)
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, stack_nodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
@@ -179,3 +190,60 @@ def _has_drive(robot: RewrittenRobot, parts: Iterable[ActivePart]) -> bool:
 def _is_state(part: ActivePart) -> bool:
     """Does it tell where joints are, and move none?"""
     return "state" in part.name
+
+
+# The rule about a description alone; a fleet takes its advice.
+_IN_ROBOT = "MB416"
+_GZ = "gz-sim-"
+MOVED = declare(LEFT, "system-of-the-world", NOTE, formats=("fleet",))
+
+
+def without_world_systems(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
+    """The robots without such systems, each with those that it had; the first that had one says it."""
+    made = [it if it.spec.simulator == REAL else _without(it) for it in robots]
+    first = next((it for it in made if it.world_systems), None)
+    if first is None:
+        return made
+    said = tuple(_said(first, made))
+    return [it._replace(findings=(*it.findings, *said)) if it is first else it for it in made]
+
+
+def systems_of(robots: Sequence[RewrittenRobot]) -> dict[str, str]:
+    """The plugins that these robots had, by library; of two of one library that of the first robot."""
+    found: dict[str, str] = {}
+    for it in robots:
+        found = {**it.world_systems, **found}
+    return found
+
+
+def _without(robot: RewrittenRobot) -> RewrittenRobot:
+    document = robot.member.inventory.document
+    own = [it.element for it in world_systems(robot.member.inventory)]
+    # A description for Gazebo Classic keeps them: its worlds are not made here.
+    if not own or not all(_library(it).startswith(_GZ) for it in own):
+        return robot
+    spans = Spans(document)
+    edits = [Edit(spans.start_of(it), spans.end_of(it), b"", None) for it in own]
+    data = b"".join(cut(document.source, sorted(edits)))
+    texts = {_library(it): spans.text_of(it).decode() for it in own}
+    robot = robot._replace(
+        member=with_text(robot.member, data),
+        world_systems=texts,
+        findings=tuple(it for it in robot.findings if it.code != _IN_ROBOT),
+    )
+    return robot._replace(simulated=data) if robot.simulated else robot._replace(description=data)
+
+
+def _library(plugin: _Element) -> str:
+    return library_key((plugin.get("filename") or "").rpartition("/")[2])
+
+
+def _said(first: RewrittenRobot, robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
+    every = systems_of(robots)
+    hint = "another world than the fleet's has to load them"
+    yield at_robot(MOVED, first, f"the world loads {shorten(sorted(every))}, not each robot", hint)
+    for it in robots:
+        for library, text in it.world_systems.items():
+            if text.split() != every[library].split():
+                message = f"{it.spec.name} has other settings of {library}: they are not used"
+                yield at_robot(MOVED, first, message, "write one text for all robots", WARNING)

@@ -25,9 +25,9 @@ from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robo
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridge_rows import PLUGINS, rows_of
 from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
+from multibot_rewrite.spelling.of_runs import placed, target_of
 from multibot_rewrite.spelling.start import Start
 from multibot_rewrite.spelling.table import joined, run_of
-from multibot_rewrite.spelling.targets import placed, target_of
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, edge_of
 
 NODE = "start_pose"

@@ -24,7 +24,7 @@ from multibot_rewrite.base.workers import limit_files, worker_pool
 from multibot_rewrite.producers.bags.recording import RECORDER, RecordedTopic, Recording
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, numbers_of
 from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, JOINTED, pose_in
-from multibot_rewrite.producers.ros.pace import Pace
+from multibot_rewrite.producers.ros.tf_subscriptions import Pace
 from multibot_rewrite.producers.zenoh.cdr import (
     read_header_frame,
     read_joint_names,

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of a stack and what a robot's own files say of them -> the nodes that the robot runs.
+"""The nodes of a stack and what a robot's own files say of them -> the nodes that the robot runs,
+under the remap rules of a launch file or a plugin that loads them.
 
 A file and a stack that disagree: the file wins, and the disagreement is a note.
 
@@ -16,7 +17,9 @@ from itertools import groupby
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
+from multibot_rewrite.base.rosnames import RemapRule, expand
 from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.declared import NODE, plugin_bases
 from multibot_rewrite.knowledge.records import UNKNOWN, Claim, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
@@ -261,3 +264,42 @@ def _commanded(controller: Run, known: Mapping[str, NodeFacts]) -> Iterator[str]
     for it in claims_of(node.claims if node else GUESSED, controller):
         if it.kind == COMMAND:
             yield it.name.rpartition("/")[0]
+
+
+_TF = ("/tf", "/tf_static")
+
+
+def remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:
+    """The node with the remap rules of its launch file, started in a namespace; those of tf belong to
+    the layout."""
+    above = namespace.rstrip("/")
+    below, _, name = node.name.rpartition("/")
+    home = above.removesuffix(f"/{below}") if below else above
+    targets = {
+        expand(old, above, name): _target(new, above, home)
+        for old, new in reversed([it for it in rules if it[0] not in _TF])
+    }
+    ends = []
+    for it in node.endpoints:
+        target = targets.get(expand(it.name, above, name), it.name)
+        ends.append(it._replace(remapped=target) if target != it.name else it)
+    return node._replace(endpoints=tuple(ends))
+
+
+def under_plugin(node: NodeFacts, rules: Iterable[RemapRule], release: str) -> NodeFacts:
+    """A controller under the rules of the plugin that loads it, where these reach it."""
+    if not (node.is_controller and controller_way(release).of_manager):
+        return node
+    own = node.name.rpartition("/")[2]
+    mine = ((it.source, it.target) for it in rules if it.node in ("", own))
+    return remapped(node, mine, "")
+
+
+def _target(new: str, above: str, home: str) -> str:
+    """The target of a rule as its robot has it, of a node in the namespace ``above`` whose robot is in
+    ``home``."""
+    inner = above != home and not new.startswith(("/", "~"))
+    full = f"{above}/{new}" if inner else new
+    mine = full.removeprefix(f"{home}/") if home else full
+    # From a namespace in that of the robot, only this leads to the robot's.
+    return f"/{mine}" if above != home and mine[0] not in "/~" else mine

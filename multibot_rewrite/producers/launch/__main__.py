@@ -32,10 +32,17 @@ from multibot_rewrite.description.sources.child.frames import (
 )
 from multibot_rewrite.description.sources.child.system import die_with_parent
 from multibot_rewrite.producers.launch.confined import NOT_FENCED, NotFencedError, confine
+from multibot_rewrite.description.sources.packages import package_of, sources_around
+from multibot_rewrite.producers.launch.confined import (
+    NOT_FENCED,
+    NotFencedError,
+    Relay,
+    confine,
+    relayed,
+)
 from multibot_rewrite.producers.launch.door import is_there
 from multibot_rewrite.producers.launch.read import UnreadableError, read_graph
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, graph_of, orders_of
-from multibot_rewrite.producers.launch.relay import Relay, relayed
 from multibot_rewrite.producers.launch.source_packages import SOURCES, link_sources, packages_for
 from multibot_rewrite.producers.launch.stand_in import is_stood_in, standing_in
 

@@ -33,8 +33,8 @@ from multibot_rewrite.producers.launch.kept_paths import (
     lasting,
     read_text,
     real_paths,
+    source_of,
 )
-from multibot_rewrite.producers.launch.made_files import source_of
 from multibot_rewrite.producers.launch.places import place_of
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import (

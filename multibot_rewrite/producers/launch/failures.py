@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.producers.launch.package_files import ROOTS
-from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED, ROOTS
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing
 from multibot_rewrite.producers.launch.kept_paths import NOT_KNOWN as LEFT_OUT
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
-from multibot_rewrite.producers.sources.syntax import or_read
+from multibot_rewrite.producers.sources.expressions import or_read
 from multibot_rewrite.system.records import NOT_KNOWN_PROCESS, NOT_READ, Place
 
 NOT_LAUNCHED = declare("MF821", "node-not-launched", NOTE, formats=("fleet",))

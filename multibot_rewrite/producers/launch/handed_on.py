@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a launch file itself gives a process: what is built gives it the same, for each robot."""
+"""What a launch file itself gives a process, in texts as parameter files have them: what is built
+gives it the same, for each robot."""
 
 from __future__ import annotations
 
@@ -7,15 +8,37 @@ import os
 import re
 import shlex
 from collections.abc import Callable, Collection, Mapping
+from functools import lru_cache
 from typing import Any, NamedTuple
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.companions.names.placeholders import filled
+from multibot_rewrite.companions.params.sections import raw_sections
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.producers.evidence.parameter_files import values_for
-from multibot_rewrite.producers.launch.parameter_texts import document_of, has_sections
-from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
 from multibot_rewrite.spelling.start import AS_USUAL, Process
 from multibot_rewrite.system.records import NOWHERE, Place
+
+# The name of a file for what a launch file gives itself.
+OWN = "parameters of a launch file"
+
+
+@lru_cache(maxsize=64)
+def has_sections(it: ParameterText) -> bool:
+    """Is it a parameter file with sections of nodes?"""
+    try:
+        return any(True for _ in raw_sections(document_of(it.file, it.text)))
+    except InputError:
+        return False
+
+
+@lru_cache(maxsize=64)
+def document_of(file: str, text: str) -> YamlText:
+    """A parameter file, or with no ``file`` what a launch file sets itself; raises InputError."""
+    return read_yaml(text.encode(), file or OWN)
+
 
 # Whoever starts the node decides it.
 _CLOCK = "use_sim_time"

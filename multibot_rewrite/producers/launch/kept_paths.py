@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Paths that a launch file names, as they are when the launch has been read: what it makes is gone."""
+"""Paths that a launch file names, as they are when it has been read; what the files are made of that it
+makes itself, such as RewrittenYaml.
+
+Source: nav2_common jazzy, launch/rewritten_yaml.py and replace_string.py (``name`` is the file that
+they read); launch_ros jazzy, parameter_descriptions.py (``allow_substs``).
+"""
 
 from __future__ import annotations
 
 import os
 import re
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import wraps
 from typing import Any
 
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED, SOURCES
 
 LIMIT = 1 << 24
@@ -112,3 +119,53 @@ def _behind(folder: str) -> str:
     names = [manifest] if os.path.exists(manifest) else []
     names += [it.path for it in os.scandir(folder)] if os.path.isdir(folder) else []
     return next((os.path.dirname(it) for it in map(_behind, names) if it), "")
+
+
+_MAKERS = ("RewrittenYaml", "ReplaceString")
+_MADE_OF = "multibot_made_of"
+
+
+def keep_sources() -> None:
+    """From now on it is known of what file a substitution or a parameter file makes another one."""
+    substitution = of_launch("substitution").Substitution
+    substitution.__init__ = _wrapping(substitution.__init__)
+    files = of_launch_ros("parameter_descriptions").ParameterFile
+    files.evaluate = _keeping(files.evaluate, lambda it: it._ParameterFile__param_file)
+
+
+def source_of(path: str, context: Any) -> str:
+    """The file that this one is made of; itself where a launch has not made it."""
+    known = getattr(context, _MADE_OF, {})
+    while known.get(path, path) != path:
+        path = known[path]
+    return path
+
+
+def _wrapping(made: Callable[..., None]) -> Callable[..., None]:
+    @wraps(made)
+    def wrapping(self: Any, *words: Any, **options: Any) -> None:
+        kind = type(self)
+        if kind.__name__ in _MAKERS and not hasattr(kind.perform, "__wrapped__"):
+            kind.perform = _keeping(kind.perform, lambda it: it.name)
+        made(self, *words, **options)
+
+    return wrapping
+
+
+def _keeping(made: Callable[[Any, Any], Any], read: Callable[[Any], Any]) -> Callable[..., Any]:
+    @wraps(made)
+    def keeping(self: Any, context: Any) -> Any:
+        path = made(self, context)
+        if str(path) not in getattr(context, _MADE_OF, {}):
+            # What is read may be made as well, and kept meanwhile.
+            source = _text(read(self), context)
+            setattr(context, _MADE_OF, getattr(context, _MADE_OF, {}) | {str(path): source})
+        return path
+
+    return keeping
+
+
+def _text(path: Any, context: Any) -> str:
+    if isinstance(path, str | os.PathLike):
+        return str(path)
+    return str(of_launch("utilities").perform_substitutions(context, path))

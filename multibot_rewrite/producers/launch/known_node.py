@@ -1,18 +1,117 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A launched node -> what is known of it, as this program has it with these arguments."""
+"""A launched node -> what is known of it, as this program has it with these arguments, or by its
+source.
+
+A launch says of the conditions of its endpoints: its program, its command line, the files that its
+parameters name, and who listens. What it does not say stays open. A static_transform_publisher is told
+its frames.
+"""
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
+from itertools import pairwise
 
-from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.rosnames import check_namespace, check_node_name, propose_token
+from multibot_rewrite.base.lazy import COMMENT
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.rosnames import (
+    BoundNode,
+    check_namespace,
+    check_node_name,
+    propose_token,
+    resolve_bound,
+)
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.knowledge.conditions import ALSO, HEARD, PROGRAM, Condition, settled, words_in
 from multibot_rewrite.knowledge.programs import runs
-from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.launch.deciding import as_started
-from multibot_rewrite.producers.launch.programs import programs
-from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.knowledge.records import FrameParameter, NodeFacts, SentTransform
+from multibot_rewrite.producers.launch.programs import passes, programs
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
+from multibot_rewrite.producers.launch.source_packages import packages_for
+from multibot_rewrite.producers.sources.facts import node_of_program
+from multibot_rewrite.spelling.records import Given
+from multibot_rewrite.system.records import TOPIC
+
+Decide = Callable[[Condition], bool | None]
+_COMMENTS = {
+    ".xml": re.compile(COMMENT.decode()),
+    ".lua": re.compile(r"--[^\n]*"),
+    ".yaml": re.compile(r"(?m)(?:^|\s)#.*$"),
+}
+
+
+def as_started(node: NodeFacts, executable: str, words: Collection[str]) -> NodeFacts:
+    """The node as this program has it with these arguments. A component runs in any program."""
+
+    def decide(it: Condition) -> bool | None:
+        if it.how == ":" and it.parameter == PROGRAM and "::" not in executable:
+            return executable in it.values
+        if it.parameter.startswith("-") and it.how in ("set", "unset"):
+            return _is_given(it.parameter, words) == (it.how == "set")
+        return None
+
+    return _as_decided(node, decide)
+
+
+def as_named(node: NodeFacts, words: Sequence[str], values: Mapping[str, Given]) -> NodeFacts:
+    """The node as the files have it whose paths are in its arguments and parameters. A word that is
+    not there may be in a file that is included."""
+    options = dict(pairwise(words))
+
+    def decide(it: Condition) -> bool | None:
+        if it.how != "names":
+            return None
+        given = {**{name: one.value for name, one in values.items()}, **options}
+        paths = [_path(name, given) for name in it.parameter.split(ALSO)]
+        return any(_has(path, it.values) for path in paths) or None
+
+    return _as_decided(node, decide)
+
+
+def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeFacts:
+    """The node where these topics have a subscriber."""
+
+    def decide(it: Condition) -> bool | None:
+        own = it.values if it.how == ":" and it.parameter == HEARD else ()
+        return any(resolve_bound(name, TOPIC, bound) in heard for name in own) or None
+
+    return _as_decided(node, decide)
+
+
+def asks_who_listens(node: NodeFacts) -> bool:
+    """Has the node an endpoint only while somebody listens?"""
+    return any(True for end in node.endpoints for _ in words_in(end.when, HEARD))
+
+
+def _as_decided(node: NodeFacts, decide: Decide) -> NodeFacts:
+    made = [(it, settled(it.when, decide)) for it in node.endpoints]
+    ends = tuple(it._replace(when=when) for it, when in made if when is not None)
+    return node._replace(endpoints=ends)
+
+
+def _is_given(option: str, words: Collection[str]) -> bool:
+    """Is the option one of the words? ``-`` alone is any word that is no option."""
+    return any(it == option if option != "-" else not it.startswith("-") for it in words)
+
+
+def _path(name: str, given: Mapping[str, object]) -> str:
+    """The path that a parameter or option has: ``FOLDER/FILE`` asks two of them."""
+    words = [str(given.get(it) or "") for it in name.split("/")]
+    return os.path.join(*words) if all(words) else ""
+
+
+def _has(path: str, words: Sequence[str]) -> bool:
+    """Is one of the words in a file, but for its comments and how it is spaced?"""
+    if not path or not os.path.isfile(path):
+        return False
+    text = read_file(path).decode("utf-8", "replace")
+    comments = _COMMENTS.get(os.path.splitext(path)[1])
+    plain = re.sub(r"(?<!\s)\s*=\s*", " = ", comments.sub(" ", text) if comments else text)
+    return any(re.search(rf"(?<![\w/]){re.escape(it)}(?!\w)", plain) for it in words)
+
 
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
@@ -62,3 +161,85 @@ def known_node(
     chosen = (node for node in known.values() if runs(node, program))
     found = next(of_stack, None) or next(chosen, None) or next(by_word, None)
     return as_started(found, it.executable, it.arguments) if found else None
+
+
+STATIC = "static_transform_publisher"
+_PARENT, _CHILD = "frame_id", "child_frame_id"
+_FLAGS = {"--frame-id": _PARENT, "--child-frame-id": _CHILD}
+
+
+def with_static_transform(node: NodeFacts, words: Sequence[str]) -> NodeFacts:
+    """The node with the frames of its arguments, and of its parameters where these name none.
+
+    Another node stays as it is, and so does one of which a frame is not known.
+    """
+    if node.known != STATIC:
+        return node
+    named = frames_in(words)
+    frames = tuple(_framed(it, named) for it in node.frames)
+    known = {it.parameter for it in frames if it.given and it.default}
+    sends = (SentTransform(_PARENT, _CHILD),) if {_PARENT, _CHILD} <= known else ()
+    return node._replace(frames=frames, sends=sends)
+
+
+def frames_in(words: Sequence[str]) -> Mapping[str, str]:
+    """Return the frames in the words of a static_transform_publisher, by their parameters: behind
+    flags, or the last two (tf2_ros jazzy, static_transform_broadcaster_program.cpp)."""
+    flags = {flag: word for flag, word in pairwise(words) if flag.startswith("--")}
+    if flags:
+        return {_FLAGS[flag]: word for flag, word in flags.items() if flag in _FLAGS}
+    return dict(zip((_PARENT, _CHILD), words[-2:], strict=True)) if len(words) in (8, 9) else {}
+
+
+def with_frames(words: Sequence[str], frames: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the words with other frames."""
+    named = frames_in(words)
+    if not any(word.startswith("--") for word in words):
+        return (
+            (*words[:-2], *(frames.get(it, named[it]) for it in (_PARENT, _CHILD)))
+            if named
+            else (*words,)
+        )
+    flags = ("", *words[:-1])
+    return tuple(
+        frames.get(_FLAGS.get(flag, ""), it) for flag, it in zip(flags, words, strict=True)
+    )
+
+
+def _framed(frame: FrameParameter, named: Mapping[str, str]) -> FrameParameter:
+    """tf2 leaves out a slash in front of a frame (buffer_core.cpp, stripSlash)."""
+    name = named.get(frame.parameter) or frame.default
+    given = frame.given or bool(named.get(frame.parameter))
+    return frame._replace(default=name.lstrip("/") if given else name, given=given)
+
+
+def with_sources(
+    known: Mapping[str, NodeFacts],
+    nodes: Iterable[LaunchedNode],
+    orders: Iterable[LaunchOrder],
+    release: str,
+) -> dict[str, NodeFacts]:
+    """The known nodes and, by ``package program``, those of launched ``nodes`` that are not among them
+    and whose source is found: below the roots of the ``orders``, or beside their launch files. Raises
+    nothing."""
+    wanted = {(it.package, it.executable): it for it in nodes if not passes(it)}
+    unknown = [it for it in wanted.values() if known_node(it, (), known) is None]
+    if not unknown:
+        return dict(known)
+    folders: dict[str, str] = {}
+    for order in orders:
+        folders = {**packages_for(order.file, order.roots), **folders}
+    found = {f"{it.package} {it.executable}": _read(it, folders, release) for it in unknown}
+    return {**known, **{name: it for name, it in found.items() if it is not None}}
+
+
+def _read(it: LaunchedNode, folders: Mapping[str, str], release: str) -> NodeFacts | None:
+    found = None
+    if it.package in folders:
+        with suppress(
+            UsageError
+        ):  # C++ without its reader: who says that a node is not known, says so
+            found = node_of_program(
+                folders[it.package], it.package, it.executable, folders, release
+            )
+    return found.facts._replace(known=f"{it.package} {it.executable}") if found else None

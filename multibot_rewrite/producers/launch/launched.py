@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a launch starts, with all that is known of it: what the rules for launch files ask."""
+"""What a launch starts, with all that is known of it, which the rules for launch files ask; and what of
+the models in a simulator is not known."""
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
@@ -13,20 +15,22 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.producers.launch.bridges import BridgedDomains
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
-from multibot_rewrite.producers.launch.domain_bridges import BridgedDomains
 from multibot_rewrite.producers.launch.models import Model, Models
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
+from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_frames
 from multibot_rewrite.spelling.bridged_topics import BridgedTopic, bridged_topics
 from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.system.records import Place, System
+from multibot_rewrite.system.records import Caveat, Place, System
 
 _WORLDS = (".sdf", ".world", ".model")
 # The topics of a fleet with a tf each: those of a model are its own then.
@@ -128,3 +132,44 @@ def _split(text: str) -> list[str]:
 def sensors_of(models: Iterable[InSimulator]) -> list[SensorFrame]:
     """The sensors of the models."""
     return [sensor for it in models for sensor in sensor_frames(it.root, it.name)]
+
+
+NOT_WHOLE, NOT_KNOWN = "launch-not-whole", "node-not-known"
+
+
+def of_simulator(graph: LaunchGraph, models: Models) -> tuple[Caveat, ...]:
+    """What makes the view of a simulator incomplete."""
+    return (*_of_models(models), *_of_worlds(graph, models))
+
+
+def _of_models(models: Models) -> Iterator[Caveat]:
+    """Plugins of a spawned model are nodes, which a robot brings with it."""
+    for it in models.lost[:1]:
+        text = "nodes that plugins of a spawned model make are not known: its description is not"
+        yield Caveat(NOT_WHOLE, True, f"{it.place}: {text}")
+    unknown = [name for it in models.found if it.spawned for _, name in it.reading.unknown]
+    if unknown:
+        listed = shorten(list(dict.fromkeys(unknown)), SEVERAL)
+        text = f"what these plugins of spawned models start is not known: {listed}"
+        yield Caveat(NOT_KNOWN, True, f"{text}; describe them (docs/add-a-plugin.md)")
+
+
+def _of_worlds(graph: LaunchGraph, models: Models) -> Iterator[Caveat]:
+    """A world may have robots in it, which nobody spawns."""
+    alone = not models.lost and not any(it.spawned for it in models.found)
+    for it in graph.nodes:
+        for file in world_files(it):
+            why = "" if NOT_INSTALLED in file else _unknown_in(file, alone)
+            if why:
+                yield Caveat(NOT_WHOLE, True, f"{it.place}: the world {file} {why}")
+
+
+def _unknown_in(file: str, alone: bool) -> str:
+    if not os.path.isfile(file):
+        return "is not here, so what its models send is not known" if os.path.isabs(file) else ""
+    with suppress(InputError):
+        root = read_xml(read_file(file), file)
+        moved = any(True for model in root.iter("model") for _ in model.iter("plugin"))
+        if moved or (alone and any(True for _ in root.iter("include"))):
+            return "has models of its own: what they send is not known"
+    return ""

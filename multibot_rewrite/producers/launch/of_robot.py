@@ -19,28 +19,34 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.producers.evidence.nodes import MANAGER
+from multibot_rewrite.producers.evidence.nodes import MANAGER, remapped
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.evidence.remapped import remapped
 from multibot_rewrite.producers.launch.bridges import bridge_rows
 from multibot_rewrite.producers.launch.describe import SIMULATOR, SIMULATORS
-from multibot_rewrite.producers.launch.findings import launch_findings, started_twice
+from multibot_rewrite.producers.launch.findings import (
+    launch_findings,
+    started_twice,
+)
 from multibot_rewrite.producers.launch.handed_on import (
+    OWN,
     HandedOn,
     Passing,
+    document_of,
     handed_on,
+    has_sections,
     process_name,
 )
 from multibot_rewrite.producers.launch.kept_paths import NOT_KNOWN, known_words
 from multibot_rewrite.producers.launch.known_node import (
+    STATIC,
     check_names,
+    frames_in,
     guessed_name,
     known_node,
     own_name,
+    with_static_transform,
 )
-from multibot_rewrite.producers.launch.once import once_for_all
-from multibot_rewrite.producers.launch.parameter_texts import OWN, document_of, has_sections
-from multibot_rewrite.producers.launch.programs import programs
+from multibot_rewrite.producers.launch.programs import once_for_all, passes, program_of, programs
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
@@ -49,11 +55,6 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
-from multibot_rewrite.producers.launch.static_transforms import (
-    STATIC,
-    frames_in,
-    with_static_transform,
-)
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
 
@@ -146,7 +147,7 @@ def with_launched(
         handed,
         passing,
         graph.environment,
-        next((it for it in numbered if _program(it) in programs().spawners), None),
+        next((it for it in numbered if program_of(it) in programs().spawners), None),
     )
 
 
@@ -175,7 +176,7 @@ def _each_once(pairs: Iterable[_Pair]) -> tuple[list[_Pair], list[Finding]]:
         if other is None:
             found[name] = it
             continue
-        alike = _program(it.node) == _program(other.node) and bool(it.node.name)
+        alike = program_of(it.node) == program_of(other.node) and bool(it.node.name)
         same = alike or _given_to(it.node) == _given_to(other.node)
         if it.node.name or same:
             findings.append(started_twice(it.node, other.node, name))
@@ -209,7 +210,7 @@ def _handed(it: _Pair, of_all: Collection[tuple[str, str]], is_own: bool) -> Han
 def _is_built(it: LaunchedNode) -> bool:
     """Is it what a build makes of the robot's own files: a spawner, or of a simulator?"""
     is_simulator = it.package in SIMULATORS and it.executable == SIMULATOR
-    return is_simulator or is_spawner(it) or _program(it) in programs().spawners
+    return is_simulator or is_spawner(it) or program_of(it) in programs().spawners
 
 
 def _stands(include: LaunchedNode, stack: Iterable[NodeFacts]) -> bool:
@@ -264,17 +265,6 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
             )
         elif it.name in origins or it.host or it.name == MANAGER or not launched.whole:
             yield it
-
-
-def passes(it: LaunchedNode) -> bool:
-    """Is it no node of a robot: a program that does its work and ends, a simulator, a command, or a
-    launch file?"""
-    is_none = not it.package or it.process.is_include
-    return is_none or is_spawner(it) or _program(it) in programs().passing
-
-
-def _program(it: LaunchedNode) -> str:
-    return f"{it.package}/{it.executable}"
 
 
 def _pair(

@@ -21,6 +21,7 @@ from multibot_rewrite.producers.launch.stand_in.actions import (
     DeclareLaunchArgument,
     IncludeLaunchDescription,
 )
+from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.stand_in.packages import (
     FindPackageShare,
     PackageNotFoundError,
@@ -35,7 +36,6 @@ from multibot_rewrite.producers.launch.stand_in.processes import (
 )
 from multibot_rewrite.producers.launch.stand_in.ros import ComposableNode, LifecycleNode
 from multibot_rewrite.producers.launch.stand_in.values import Kept, LaunchContext, text_of
-from multibot_rewrite.producers.launch.visit import EXECUTED
 from multibot_rewrite.system.records import Place
 
 # Where what starts later ends.
@@ -148,8 +148,8 @@ class _Seen(NamedTuple):
 
     def below(self, entity: Any) -> Iterator[Action]:
         """Yield what an entity does, and all below it, in the order of the launch."""
-        kind = type(entity).__name__
-        if isinstance(entity, DeclareLaunchArgument) or kind not in EXECUTED:
+        kind, executed = type(entity).__name__, names().executed.split()
+        if isinstance(entity, DeclareLaunchArgument) or kind not in executed:
             if not is_wanted(entity, self.context):
                 return
             name, inner = self.later(entity)
@@ -157,7 +157,7 @@ class _Seen(NamedTuple):
             for it in inner:
                 yield from self.below(it)
             yield from [Action(END, {})] * bool(inner)
-        if kind in EXECUTED:
+        if kind in executed:
             for it in entity.visit(self.context) or ():
                 yield from self.below(it)
 

@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of the programs that launch files start: ``programs.yaml``."""
+"""What is known of the programs that launch files start (``programs.yaml``), and which run once for all
+robots: simulators, map servers, windows, tools."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from fnmatch import fnmatchcase
 from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import load_own_yaml
+from multibot_rewrite.base.conventions import only_looks
+from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.producers.launch.spawners import is_spawner
 
 
 class Programs(NamedTuple):
@@ -29,3 +34,33 @@ def programs() -> Programs:
     data = load_own_yaml(__file__, "programs.yaml")
     sets = {it: frozenset(data[it]) for it in ("passing", "spawners", "simulators")}
     return Programs(**{**data, **sets})
+
+
+_LOOKS = "it only looks, or passes on what a person asks for"
+
+
+def once_for_all(node: LaunchedNode) -> str:
+    """Return why a process runs once for all robots; empty if each robot has its own, as its container
+    has of the components in it."""
+    if node.container:
+        return ""
+    program = node.executable.rpartition("/")[2]
+    command = f"{node.package}/{program}"
+    told = (command, f"{command} {node.arguments[0]}" if node.arguments else command)
+    rows = ((why, it) for why, every in programs().once.items() for it in every)
+    found = (why for why, it in rows if any(fnmatchcase(one, it) for one in told))
+    # A program that is called so belongs to a package that is: rviz_check.py of a robot is no window.
+    looks = only_looks(program) and (not node.package or only_looks(node.package))
+    return next(found, _LOOKS if looks else "")
+
+
+def passes(it: LaunchedNode) -> bool:
+    """Is it no node of a robot: a program that does its work and ends, a simulator, a command, or a
+    launch file?"""
+    is_none = not it.package or it.process.is_include
+    return is_none or is_spawner(it) or program_of(it) in programs().passing
+
+
+def program_of(it: LaunchedNode) -> str:
+    """Its package and executable, as the tables have them."""
+    return f"{it.package}/{it.executable}"

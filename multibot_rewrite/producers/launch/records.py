@@ -6,12 +6,13 @@ from __future__ import annotations
 import json
 import os
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from functools import cache
 from itertools import takewhile
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.producers.launch.package_files import file_of_package
+from multibot_rewrite.producers.launch.source_packages import file_of_package
 from multibot_rewrite.spelling.start import AS_USUAL, Process
 from multibot_rewrite.system.records import Place
 
@@ -234,46 +235,26 @@ def _joined_nodes(graphs: Sequence[LaunchGraph]) -> Iterator[LaunchedNode]:
 def orders_of(text: str) -> tuple[float, list[LaunchOrder]]:
     """The seconds for each of some orders, and these, from JSON."""
     seconds, orders = json.loads(text)
-    return seconds, [_order(*it) for it in orders]
-
-
-def _order(file: str, arguments: Any, roots: Any, *more: Any) -> LaunchOrder:
-    return LaunchOrder(file, _pairs(arguments), tuple(roots), *more)
+    return seconds, [_read(LaunchOrder, it) for it in orders]
 
 
 def graph_of(values: Any) -> LaunchGraph:
     """The graph that is this in JSON; raises what an unexpected value does."""
-    nodes, notes, files, stood_in, unread, includes, environment, declared, read = values
-    found = (LaunchNote(Place(*place), *rest) for place, *rest in notes)
-    return LaunchGraph(
-        tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes),
-        tuple(found),
-        tuple((path, ParameterText(*it)) for path, it in files),
-        stood_in,
-        tuple(UnreadArgument(Place(*place), *rest) for place, *rest in unread),
-        tuple(LaunchInclude(Place(*place), file, _pairs(given)) for place, file, given in includes),
-        _pairs(environment),
-        tuple(LaunchArgument(name, given, tuple(words)) for name, given, words in declared),
-        tuple(FileRead(file, _pairs(given)) for file, given in read),
-    )
+    graph: LaunchGraph = _read(LaunchGraph, values)
+    return graph
 
 
-def _pairs(rows: Any) -> tuple[tuple[str, str], ...]:
-    return tuple((name, value) for name, value in rows)
+def _read(kind: Any, value: Any) -> Any:
+    """A value of JSON as its type: records and pairs are lists there."""
+    if hasattr(kind, "_fields"):
+        return kind(*(_read(*it) for it in zip(_types(kind), value, strict=True)))
+    if get_origin(kind) is not tuple:
+        return value
+    inner = get_args(kind)
+    each = inner if ... not in inner else inner[:1] * len(value)
+    return tuple(_read(*it) for it in zip(each, value, strict=True))
 
 
-_FIELDS = LaunchedNode._fields
-
-
-def _node(values: Mapping[str, Any]) -> LaunchedNode:
-    return LaunchedNode(
-        **{
-            **values,
-            "remappings": _pairs(values["remappings"]),
-            "parameters": tuple(ParameterText(*it) for it in values["parameters"]),
-            "arguments": tuple(values["arguments"]),
-            "place": Place(*values["place"]),
-            "environment": _pairs(values["environment"]),
-            "process": Process(*values["process"]),
-        }
-    )
+@cache
+def _types(record: type) -> tuple[Any, ...]:
+    return tuple(get_type_hints(record).values())

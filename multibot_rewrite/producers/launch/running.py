@@ -31,9 +31,16 @@ from multibot_rewrite.knowledge.records import MANAGER, UNKNOWN, Endpoint, NodeF
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE, given_nodes, values_for
-from multibot_rewrite.producers.launch.deciding import as_named
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
-from multibot_rewrite.producers.launch.known_node import guessed_name, known_node, own_name
+from multibot_rewrite.producers.launch.handed_on import document_of, has_sections
+from multibot_rewrite.producers.launch.known_node import (
+    STATIC,
+    as_named,
+    guessed_name,
+    known_node,
+    own_name,
+    with_static_transform,
+)
 from multibot_rewrite.producers.launch.models import (
     Model,
     Models,
@@ -42,8 +49,7 @@ from multibot_rewrite.producers.launch.models import (
     models_of,
     rules_of,
 )
-from multibot_rewrite.producers.launch.of_robot import passes
-from multibot_rewrite.producers.launch.parameter_texts import document_of, has_sections
+from multibot_rewrite.producers.launch.programs import passes
 from multibot_rewrite.producers.launch.records import (
     AT_AN_END,
     LaunchedNode,
@@ -52,18 +58,16 @@ from multibot_rewrite.producers.launch.records import (
     ParameterText,
 )
 from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
-from multibot_rewrite.producers.launch.static_transforms import with_static_transform
 from multibot_rewrite.spelling.records import Rules, Run
 from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.ways import COSTMAP_HAS_RULES_OF_ITS_PARENT
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Place
 
 DESCRIPTION = "robot_description"
 # What a controller is whose type no file says.
 UNTYPED = "a controller"
 # The process of the managers that plugins make.
 SIMULATED = "simulator"
-_STATIC = "static_transform_publisher"
 _CLASSIC_SPAWNER, _INIT = "spawn_entity.py", "gazebo_ros_init"
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 
@@ -163,35 +167,26 @@ def _plugins(model: Model) -> Iterator[Run]:
     nodes = [it for it in model.reading.nodes if it.manager != it.full_name]
     facts = {it.node: it.fact for it in plugin_nodes(model.reading, model.name)}
     for it in nodes:
-        home, program = it.namespace or "/", it.section.names[0]
-        names = ("", it.name, home, it.name, tuple(rules_of(it)))
         # Of what only a remap rule names it is not known whether it is sent or read; what a plugin with
         # a manager publishes its controllers do.
         known = () if it.manager else tuple(end for end in facts[it.name].endpoints if end.role)
-        own = facts[it.name]._replace(endpoints=known)
-        yield Run(
-            *names,
-            own,
-            process=SIMULATED,
-            process_namespace=home,
-            program=program,
-            place=model.place,
-        )
+        own, home = facts[it.name]._replace(endpoints=known), it.namespace or "/"
+        at = it.section.names[0], model.place
+        yield _simulated(it.name, home, own, *at)._replace(rules=tuple(rules_of(it)))
 
 
 def _helpers(model: Model, known: Knowledge) -> Iterator[Run]:
     """The nodes that plugins make for themselves, without rules, beside the one that they load."""
     for it in (it for it in model.reading.nodes if it.helper):
         above, _, name = it.helper.rpartition("/")
-        home, fact = above or "/", known.nodes.get(name, UNKNOWN)
-        program = it.section.names[0]
-        yield Run(
-            *("", name, home, name, (), fact),
-            process=SIMULATED,
-            process_namespace=home,
-            program=program,
-            place=model.place,
-        )
+        fact = known.nodes.get(name, UNKNOWN)
+        yield _simulated(name, above or "/", fact, it.section.names[0], model.place)
+
+
+def _simulated(name: str, home: str, fact: NodeFacts, program: str, place: Place) -> Run:
+    """A node in the process of the simulator."""
+    own = Run("", name, home, name, (), fact, process=SIMULATED, process_namespace=home)
+    return own._replace(program=program, place=place)
 
 
 def _made_by_hardware(
@@ -238,13 +233,7 @@ def _clock(graph: LaunchGraph) -> Iterator[Run]:
     for it in [one for one in started if _has_clock(one.arguments)][:1]:
         clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
         fact = NodeFacts("gazebo", it.package, (clock,))
-        yield Run(
-            *("", fact.name, "/", fact.name, (), fact),
-            process=SIMULATED,
-            process_namespace="/",
-            program=SIMULATOR,
-            place=it.place,
-        )
+        yield _simulated(fact.name, "/", fact, SIMULATOR, it.place)
 
 
 def _has_clock(words: Sequence[str]) -> bool:
@@ -263,7 +252,7 @@ def _started(
     """A launched node, and the nodes that its code makes in its process."""
     facts = known_node(it, (), known.nodes)
     name = full_name(it, facts)
-    if not it.name and facts and facts.kind == _STATIC:
+    if not it.name and facts and facts.kind == STATIC:
         # A name of its own each time (tf2_ros static_transform_broadcaster_node.cpp).
         name = f"{name}_{process}"
     home = container.remappings if container else () if it.container else it.remappings

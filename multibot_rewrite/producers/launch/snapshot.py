@@ -19,27 +19,32 @@ from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.knowledge.declared import is_known
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
-from multibot_rewrite.producers.launch.bridges import bridged_by, is_bridge
-from multibot_rewrite.producers.launch.controls import interfaces_of
-from multibot_rewrite.producers.launch.deciding import as_heard, asks_who_listens
-from multibot_rewrite.producers.launch.domain_bridges import bridged_domains
+from multibot_rewrite.producers.launch.beside_ends import (
+    TF_TYPE,
+    Sent,
+    edges_of,
+    interfaces_of,
+    passed_on,
+    prefix_of,
+    publishes_a_tree,
+    tree_of,
+)
+from multibot_rewrite.producers.launch.bridges import bridged_by, bridged_domains, is_bridge
 from multibot_rewrite.producers.launch.findings import STOOD_IN
-from multibot_rewrite.producers.launch.launched import Launched, models_in_simulator, sensors_of
-from multibot_rewrite.producers.launch.model_caveats import NOT_KNOWN, NOT_WHOLE, of_simulator
+from multibot_rewrite.producers.launch.known_node import STATIC, as_heard, asks_who_listens
+from multibot_rewrite.producers.launch.launched import (
+    NOT_KNOWN,
+    NOT_WHOLE,
+    Launched,
+    models_in_simulator,
+    of_simulator,
+    sensors_of,
+)
 from multibot_rewrite.producers.launch.models import (
     Models,
     frames_of_plugins,
     sent_by_plugins,
     sent_in_simulator,
-)
-from multibot_rewrite.producers.launch.node_transforms import (
-    TF_TYPE,
-    Sent,
-    edges_of,
-    passed_on,
-    prefix_of,
-    publishes_a_tree,
-    tree_of,
 )
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchNote
 from multibot_rewrite.producers.launch.running import (
@@ -50,9 +55,8 @@ from multibot_rewrite.producers.launch.running import (
     bound_of,
     running_nodes,
 )
-from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_on
-from multibot_rewrite.producers.sources.syntax import or_read
+from multibot_rewrite.producers.sources.expressions import or_read
 from multibot_rewrite.spelling.of_runs import each_once, ends_of, lookups_of, with_names
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import parameter_text

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Packages that are not installed, for launch files that look for them: those that are there as
-sources, and an empty folder for others.
+"""Packages of launch files: a file in one that is named by both; those that are not installed but
+there as sources, as a build installs them, and an empty folder for others.
 
 Source: ament_index_python (a file ``share/ament_index/resource_index/packages/NAME`` below a prefix of
 AMENT_PREFIX_PATH stands for a package, its files are in ``share/NAME``).
@@ -16,8 +16,10 @@ from functools import cache
 from pathlib import Path
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.description.sources.packages import (
     MANIFEST,
+    package_folders,
     package_of,
     packages_below,
     sources_around,
@@ -117,3 +119,30 @@ def _packages(file: str, roots: Iterable[str]) -> Iterator[tuple[str, str]]:
         if os.path.isfile(os.path.join(path, MANIFEST)):
             yield name, path
     yield from [own] if own else []
+
+
+ROOTS = "source its workspace, or give the folder of its sources with --roots (launch_roots:)"
+
+
+def file_of_package(package: str, name: str, roots: tuple[str, ...]) -> str:
+    """The path of a file in a package that is installed or, as sources, below ``roots``.
+
+    Raises UsageError where there is no such package, and not one file of that name in it.
+    """
+    # What is installed counts first, as for the includes of a launch.
+    folders = package_folders(package, os.sep, ()) or package_folders(package, os.sep, roots)
+    if not folders:
+        raise UsageError(f"launch {package} {name}: package {package!r} is not found; {ROOTS}")
+    found = sorted(_called(name, folders[0]))
+    if len(found) == 1:
+        return found[0]
+    if found:
+        both = " and ".join(os.path.relpath(it, folders[0]) for it in found[:2])
+        raise UsageError(f"launch {package} {name}: it has {both}; give the path of one")
+    raise UsageError(f"launch {package} {name}: {folders[0]} has no such file; correct the name")
+
+
+def _called(name: str, folder: str) -> Iterator[str]:
+    for above, folders, files in os.walk(folder):
+        folders[:] = [it for it in folders if not it.startswith(".")]
+        yield from (os.path.join(above, it) for it in files if it == name)

@@ -7,9 +7,9 @@ by the names of its classes, so that this works in every release. Source: launch
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from types import MappingProxyType
+from functools import cache
 from typing import Any
 
 from multibot_rewrite.producers.launch.describe import (
@@ -30,39 +30,8 @@ from multibot_rewrite.producers.launch.includes import (
     unread_of,
 )
 from multibot_rewrite.producers.launch.places import place_of
+from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
-
-# They only change the context, or give further entities.
-EXECUTED = (
-    *("LaunchDescription", "GroupAction", "OpaqueFunction"),
-    *("ForEach", "ForLoop"),
-    *("DeclareLaunchArgument", "SetLaunchConfiguration", "UnsetLaunchConfiguration"),
-    *("PushLaunchConfigurations", "PopLaunchConfigurations", "ResetLaunchConfigurations"),
-    *("PushEnvironment", "PopEnvironment", "ResetEnvironment", "ReplaceEnvironmentVariables"),
-    *("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable"),
-    *(
-        "PushRosNamespace",
-        "PushROSNamespace",
-        "SetParameter",
-        "SetParametersFromFile",
-        "SetRemap",
-    ),
-)
-# They start no node; SetUseSimTime is for the node that launch itself would have.
-_PASSED = (
-    "SetUseSimTime",
-    *(
-        "Log",
-        "LogInfo",
-        "LogInterface",
-        "EmitEvent",
-        "Shutdown",
-        "SetROSLogDir",
-        "LifecycleTransition",
-    ),
-    "UnregisterEventHandler",
-)
-
 
 _ENDED = "groups and their launch configurations have ended by then"
 _INCLUDE = "IncludeLaunchDescription"
@@ -287,26 +256,22 @@ def _unknown(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 Handler = Callable[[Any, Visit], "Iterable[Any] | None"]
-_HANDLERS: Mapping[str, Handler] = MappingProxyType(
-    {
-        **dict.fromkeys(EXECUTED, _execute),
-        **dict.fromkeys(_PASSED, _pass),
+
+
+@cache
+def _handlers() -> Mapping[str, Handler]:
+    return {
+        **dict.fromkeys(names().executed.split(), _execute),
+        **dict.fromkeys(names().passed.split(), _pass),
         _INCLUDE: _include,
         "ComposableNodeContainer": _container,
         "LoadComposableNodes": _loaded,
         "Node": _node,
-        "ExecuteLocal": _process,
-        "ExecuteProcess": _process,
-        "RegisterEventHandler": _later,
-        "TimerAction": _later,
+        **dict.fromkeys(("ExecuteLocal", "ExecuteProcess"), _process),
+        **dict.fromkeys(("RegisterEventHandler", "TimerAction"), _later),
     }
-)
 
 
 def _handler(entity: Any) -> Handler:
-    return next(_known(entity), _unknown)
-
-
-def _known(entity: Any) -> Iterator[Handler]:
-    names = (it.__name__ for it in type(entity).__mro__)
-    yield from (_HANDLERS[it] for it in names if it in _HANDLERS)
+    known, kinds = _handlers(), (it.__name__ for it in type(entity).__mro__)
+    return next((known[it] for it in kinds if it in known), _unknown)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK, LISTENER
 from multibot_rewrite.producers.ros.assemble import numbers_of
-from multibot_rewrite.producers.ros.pace import Mark, Pace
+from multibot_rewrite.producers.ros.tf_subscriptions import Mark, Pace
 from multibot_rewrite.producers.zenoh.cdr import (
     read_child_frame,
     read_header_frame,

@@ -12,9 +12,8 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.producers.ros import assemble, queries, ros
 from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, HeaderSamples, Receive
-from multibot_rewrite.producers.ros.pace import Mark
 from multibot_rewrite.producers.ros.request import Request
-from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
+from multibot_rewrite.producers.ros.tf_subscriptions import Callback, Mark, TfSubscriptions
 from multibot_rewrite.producers.zenoh.cdr import read_tf, read_transform
 from multibot_rewrite.system.records import ACTION, CALLS, SERVES, UNKNOWN_NODE, End
 

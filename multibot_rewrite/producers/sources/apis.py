@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``calls.txt``: which calls declare an endpoint. One line, one way to declare one."""
+"""``calls.txt``: which calls declare an endpoint, one line, one way to declare one;
+``harmless.txt``: which calls are given a node and declare none."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
 from typing import NamedTuple
+
+from multibot_rewrite.base.bounded import own_text
 
 ARGUMENT = "ARGUMENT"
 HELPER, OWN = "helper", "own"
@@ -26,9 +28,14 @@ class Api(NamedTuple):
 def apis() -> Mapping[str, tuple[Api, ...]]:
     """By function."""
     found: dict[str, list[Api]] = {}
-    text = files(__package__).joinpath("calls.txt").read_text(encoding="utf-8")
-    for line in text.splitlines():
+    for line in own_text(__file__, "calls.txt").splitlines():
         if line and not line.startswith("#"):
             api = Api(*line.split())
             found.setdefault(api.function, []).append(api)
     return {name: tuple(rows) for name, rows in found.items()}
+
+
+@cache
+def harmless() -> frozenset[str]:
+    """The functions that use nothing of a node that others see."""
+    return frozenset(own_text(__file__, "harmless.txt").partition("\n")[2].split())

@@ -23,6 +23,7 @@ from multibot_rewrite.producers.sources.expressions import (
     evaluated,
     is_node,
     last,
+    nodes_of,
     template_arguments,
     text_of,
 )
@@ -38,10 +39,9 @@ from multibot_rewrite.producers.sources.records import (
     Source,
     Value,
 )
-from multibot_rewrite.producers.sources.syntax import nodes_of
 
 if TYPE_CHECKING:
-    from multibot_rewrite.producers.sources.syntax import Node
+    from multibot_rewrite.producers.sources.expressions import Node
 
 LONGEST_CONDITION = 60
 _EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*(?:,\s*)?\)")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A C++ expression -> a text, as far as the file says it; what is not known is in <>.
+"""C++ -> its nodes of syntax; an expression -> a text, as far as the file says it: what is not
+known is in <>. The only import of tree-sitter.
 
 Which functions hand a text on is data: ``SAME_TEXT``, ``LAST_TEXT``; each kind of syntax has a
 function in ``TEXTS``.
@@ -9,10 +10,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import cache
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
+from multibot_rewrite.base.model import UsageError
+
 if TYPE_CHECKING:
-    from multibot_rewrite.producers.sources.syntax import Node
+    from tree_sitter import Node, Parser, QueryCursor
+
+__all__ = ("Node",)
 
 MAKERS = ("make_shared", "make_unique", "allocate_shared")
 # Their first argument is the text that they give back.
@@ -160,3 +167,34 @@ TEXTS: dict[str, Callable[[Any], str]] = {
     "field_expression": _field_of,
     "call_expression": _called,
 }
+
+
+INSTALL = "pip install 'multibot_rewrite[sources]'"
+
+
+def or_read() -> str:
+    """What reads more nodes, as the rest of a hint; empty where nodes in C++ are read already."""
+    here = find_spec("tree_sitter") and find_spec("tree_sitter_cpp")
+    return "" if here else f", or read those in C++ from their source: {INSTALL}"
+
+
+def nodes_of(text: str, kinds: tuple[str, ...]) -> list[Node]:
+    """The nodes of these kinds, in the order of the text, an inner one before the one around it that
+    begins with it; raises UsageError without tree-sitter."""
+    parser, query = _tools(kinds)
+    tree = parser.parse(text.encode())
+    found = query.captures(tree.root_node).get("found", ())
+    return sorted(found, key=lambda it: (it.start_byte, it.end_byte))
+
+
+@cache
+def _tools(kinds: tuple[str, ...]) -> tuple[Parser, QueryCursor]:
+    """The parser, and the query for these kinds."""
+    try:
+        import tree_sitter
+        import tree_sitter_cpp
+    except ImportError:
+        raise UsageError(f"reading C++ needs tree-sitter; {INSTALL}") from None
+    language = tree_sitter.Language(tree_sitter_cpp.language())
+    query = tree_sitter.Query(language, "\n".join(f"({kind}) @found" for kind in kinds))
+    return tree_sitter.Parser(language), tree_sitter.QueryCursor(query)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is read from sources: classes, what they call, and the facts that follow.
+"""What is read from sources: classes, what they call.
 
 A text that is only known at run time has its unknown parts in <>: ``<layer>_raw``. A part that is the
 value of a parameter starts with @: ``<@odom_topic>``, ``<@{plugin}.topic>``; a node that is made has a
@@ -103,23 +103,6 @@ class Source(NamedTuple):
     plugins: tuple[Plugin, ...] = ()
     imports: tuple[str, ...] = ()
     faults: tuple[tuple[Place, str], ...] = ()
-
-
-class Fact(NamedTuple):
-    """An endpoint that a node declares.
-
-    ``way`` is ``helper`` for the listener's own node of tf2, ``private`` for a node that the class
-    makes for itself; else it is empty. ``parameter`` sets the name. ``condition`` is empty for always.
-    """
-
-    node: str
-    role: str
-    name: str
-    type: str
-    way: str
-    parameter: str
-    condition: str
-    place: Place
 
 
 def joined(sources: list[Source]) -> Source:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.producers.sources.apis import ARGUMENT, HELPER, OWN, Api, apis
+from multibot_rewrite.producers.sources.apis import ARGUMENT, HELPER, OWN, Api, apis, harmless
 from multibot_rewrite.producers.sources.expressions import is_node, last, template_arguments
 from multibot_rewrite.producers.sources.records import (
     ANY,
@@ -40,28 +40,7 @@ _LOOKS_UP = (
     *("lookup_transform", "lookupTransform", "can_transform", "canTransform"),
     *("lookup_transform_async", "wait_for_transform_async"),
 )
-# They are given a node and use nothing of it that others see.
-HARMLESS = {
-    *("spin", "spin_once", "spin_some", "spin_until_future_complete", "add_node", "remove_node"),
-    *("bind", "placeholders", "Rate", "create_wall_timer", "create_timer", "ImageTransport"),
-    *("add_on_set_parameters_callback", "partial", "super", "isinstance", "ref", "cref", "move"),
-    *("get_logger", "print", "str", "hasattr", "getattr", "setattr", "id", "type", "destroy_node"),
-    *("CvBridge", "Duration", "Time", "Synchronizer", "Executor", "SingleThreadedExecutor"),
-    *("MultiThreadedExecutor", "spin_node_once"),
-    *(
-        "RCLCPP_DEBUG",
-        "RCLCPP_FATAL",
-        "make_shared",
-        "make_unique",
-        "shared_from_this",
-        "push_back",
-    ),
-    *("CreateTimerROS", "mem_fn", "enable_shared_from_this", "CreateTimer", "append", "hash"),
-    *("get_node_base_interface", "get_node_timers_interface", "get_node_logging_interface"),
-    *("__init__", "next", "weak_from_this", "ParameterEventHandler", "dynamic_cast", "static_cast"),
-}
-
-
+# They use nothing of a node that others see.
 HARMLESS_BASES = {"object", "Thread", "ABC", "Enum", "Exception", "enable_shared_from_this"}
 
 
@@ -155,9 +134,7 @@ def events_of(names: Names, starts: Sequence[Spot | Class]) -> Iterator[Event]:
     walk = _Walk(names, set(), {}, [MOST_STEPS])
     for it in starts:
         if isinstance(it, Class):
-            yield from _object(
-                walk, NOBODY, it, (), (), Spot(NOBODY, "", "", {}, "", it.place.path)
-            )
+            yield from _object(walk, it, (), (), Spot(NOBODY, "", "", {}, "", it.place.path))
         else:
             yield from _function(walk, it)
     # What no name has called: callbacks, threads.
@@ -252,14 +229,14 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
     if _is_base(spot, call, name) or name in NODES or name == "create_node":
         yield from _base(walk, here, call, name)
     elif (found := _class(names, name, call.place)) and _is_made(call, name, on):
-        yield from _object(walk, spot.made, found, call.given, types, here, call.named)
+        yield from _object(walk, found, call.given, types, here, call.named)
     elif name in apis() and not _is_method_here(names, on, name):
         walk.seen.add(call.place)
-        yield from _declared(names, here, call, name, types, on)
+        yield from _declared(names, here, call, name, types)
     elif followed := _followed(walk, here, call, name, on):
         for it in followed:
             yield from _function(walk, it)
-    elif name not in HARMLESS:
+    elif name not in harmless():
         yield from _handed(names, spot, call, name)
 
 
@@ -332,7 +309,6 @@ def _class(names: Names, name: str, place: Place) -> Class | None:
 
 def _object(
     walk: _Walk,
-    above: Made,
     found: Class,
     given: tuple[str, ...],
     types: tuple[str, ...],
@@ -359,26 +335,20 @@ def _object(
 def _constructed(
     walk: _Walk, made: Made, found: Class, own: Mapping[str, str], spot: Spot
 ) -> Iterator[Event]:
-    path = found.place.path
     for function in ("__init__", found.name, ""):
-        where = _path_of(walk.names, found, function) or path
+        where = _path(walk.names, found.name, function, found.place.path)
         start = Spot(made, found.name, function, own, spot.asked, where, spot.trail)
         yield from _function(walk, start)
     for type_ in found.members.values():
         name, types = _inner(type_)
         inside = _class(walk.names, name, found.place)
         if inside and name == last(type_) and name not in walk.objects and name not in made.owners:
-            yield from _object(walk, made, inside, (), types, spot._replace(made=made))
+            yield from _object(walk, inside, (), types, spot._replace(made=made))
     # A constructor that calls none of its base has the one without arguments.
     for it in made.chain[1:]:
         if it.name not in made.given:
             made.given[it.name] = _taken(walk.names, it.name, it.name, (), ())  # type: ignore[index]
             yield from _constructed(walk, made, it, made.given[it.name], spot)
-
-
-def _path_of(names: Names, found: Class, function: str) -> str:
-    rows = names.calls.get((found.name, function), ())
-    return rows[0].place.path if rows else ""
 
 
 def _chain(names: Names, found: Class) -> tuple[tuple[Class, ...], tuple[str, ...]]:
@@ -475,7 +445,7 @@ def _parameters(names: Names, spot: Spot, call: Call) -> Iterator[Parameter]:
 
 
 def _declared(
-    names: Names, spot: Spot, call: Call, name: str, types: tuple[str, ...], on: str
+    names: Names, spot: Spot, call: Call, name: str, types: tuple[str, ...]
 ) -> Iterator[Declared]:
     given = [(it, text_in(names, spot, it)) for it in (*call.given, *(it for _, it in call.named))]
     nodes = [text for raw, text in given if is_node(raw) or is_node(text)]

@@ -17,10 +17,10 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.producers.launch.known_node import STATIC
 from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.producers.launch.static_transforms import STATIC
 from multibot_rewrite.rules.declaration import LAUNCH, at, launch_rule
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table_checks import RULE_WITHOUT_NAME

@@ -18,7 +18,7 @@ from multibot_rewrite.fleet.checks.robot_system import DRIVERS
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.stacks import load_nodes
-from multibot_rewrite.producers.transforms import edge, edges_off
+from multibot_rewrite.producers.ends import edge, edges_off
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.index import index

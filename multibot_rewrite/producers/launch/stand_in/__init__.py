@@ -16,20 +16,18 @@ from typing import Any
 
 from multibot_rewrite.producers.launch.stand_in import (
     actions,
-    loops,
     nav2,
     packages,
     parameters,
     parse,
-    paths,
     processes,
     ros,
     values,
 )
 from multibot_rewrite.producers.launch.stand_in.actions import not_read
-from multibot_rewrite.producers.launch.stand_in.names import INSIDE, NOT_READ, READ
+from multibot_rewrite.producers.launch.stand_in.names import names
 
-_ROOMS = (values, paths, packages, parse, actions, loops, processes, parameters, ros, nav2)
+_ROOMS = (values, packages, parse, actions, processes, parameters, ros, nav2)
 # A name that two modules have for two things.
 _OTHERWISE = {("launch_ros.substitutions", "Parameter"): packages.ParameterSubstitution}
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
@@ -46,11 +44,11 @@ def contents() -> dict[str, dict[str, Any]]:
     known = {key: it for room in _ROOMS for key, it in vars(room).items()}
     known["get_logger"] = _get_logger
     found = {
-        module: {it: _OTHERWISE.get((module, it)) or known[it] for it in names.split()}
-        for module, names in READ.items()
+        module: {it: _OTHERWISE.get((module, it)) or known[it] for it in words.split()}
+        for module, words in names().read.items()
     }
-    for module, names in NOT_READ.items():
-        found.setdefault(module, {}).update({it: not_read(it) for it in names.split()})
+    for module, words in names().not_read.items():
+        found.setdefault(module, {}).update({it: not_read(it) for it in words.split()})
     return found
 
 
@@ -59,7 +57,7 @@ def inside() -> dict[str, str]:
     """The modules inside of packages, as ``launch.actions.timer_action``, each with its package."""
     found = {}
     for package, content in contents().items():
-        own = INSIDE.get(package, "").split()
+        own = names().inside.get(package, "").split()
         for it in (*(_CAMEL.sub("_", name).lower() for name in content), *own):
             found[f"{package}.{it}"] = package
     return found

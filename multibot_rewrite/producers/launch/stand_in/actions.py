@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cache
 from typing import Any
 
@@ -59,13 +59,29 @@ def not_read(name: str) -> Any:
     return type(name, (Action,), {"__init__": take, "execute": refuse, "perform": refuse})
 
 
+def doing(name: str, names: str, do: Callable[..., object]) -> type[Action]:
+    """An action that does something in the context with the texts that it is given."""
+
+    def execute(it: Any, context: LaunchContext) -> None:
+        do(context, *(text_of(context, vars(it)[word]) for word in it.names))
+
+    return type(name, (Action,), {"names": tuple(names.split()), "execute": execute})
+
+
+SetLaunchConfiguration = doing(
+    *("SetLaunchConfiguration", "name value"),
+    lambda context, name, value: context.launch_configurations.update({name: value}),
+)
+UnsetLaunchConfiguration = doing(
+    *("UnsetLaunchConfiguration", "name"),
+    lambda context, name: context.launch_configurations.pop(name, None),
+)
+
+
 class OpaqueFunction(Action):
     """A function that makes actions."""
 
     names = ("function", "args", "kwargs")
-    function: Any
-    args: Any
-    kwargs: Any
 
     def execute(self, context: LaunchContext) -> Any:
         return self.function(context, *(self.args or ()), **(self.kwargs or {}))
@@ -75,10 +91,6 @@ class DeclareLaunchArgument(Action):
     """A launch argument."""
 
     names = ("name", "default_value", "description", "choices")
-    name: str
-    default_value: Text
-    description: str | None
-    choices: Any
 
     @property
     def told(self) -> str:
@@ -101,33 +113,10 @@ class DeclareLaunchArgument(Action):
             raise RuntimeError(f"{told}. Valid options are: {self.choices}")
 
 
-class SetLaunchConfiguration(Action):
-    """Sets a launch configuration."""
-
-    names = ("name", "value")
-    name: Text
-    value: Text
-
-    def execute(self, context: LaunchContext) -> None:
-        name = text_of(context, self.name)
-        context.launch_configurations[name] = text_of(context, self.value)
-
-
-class UnsetLaunchConfiguration(Action):
-    """A launch configuration is no longer set."""
-
-    names = ("name",)
-    name: Text
-
-    def execute(self, context: LaunchContext) -> None:
-        context.launch_configurations.pop(text_of(context, self.name), None)
-
-
 class ResetLaunchConfigurations(Action):
     """No launch configuration is set but these."""
 
     names = ("launch_configurations",)
-    launch_configurations: Any
 
     def execute(self, context: LaunchContext) -> None:
         given = self.launch_configurations or {}
@@ -135,27 +124,21 @@ class ResetLaunchConfigurations(Action):
         context.launch_configurations = kept
 
 
-def _calling(method: str) -> type[Action]:
-    """An action that is one call of the context."""
-    name = "".join(word.title() for word in method.split("_"))
-    return type(name, (Action,), {"execute": lambda _, context: getattr(context, method)()})
-
-
-PushLaunchConfigurations = _calling("_push_launch_configurations")
-PopLaunchConfigurations = _calling("_pop_launch_configurations")
-PushEnvironment = _calling("_push_environment")
-PopEnvironment = _calling("_pop_environment")
-ResetEnvironment = _calling("_reset_environment")
+PushLaunchConfigurations = doing(
+    "PushLaunchConfigurations", "", LaunchContext._push_launch_configurations
+)
+PopLaunchConfigurations = doing(
+    "PopLaunchConfigurations", "", LaunchContext._pop_launch_configurations
+)
+PushEnvironment = doing("PushEnvironment", "", LaunchContext._push_environment)
+PopEnvironment = doing("PopEnvironment", "", LaunchContext._pop_environment)
+ResetEnvironment = doing("ResetEnvironment", "", LaunchContext._reset_environment)
 
 
 class GroupAction(Action):
     """Actions with launch configurations and variables of their own."""
 
     names = ("actions", "scoped", "forwarding", "launch_configurations")
-    actions: Iterable[Any]
-    scoped: Any
-    forwarding: Any
-    launch_configurations: Any
 
     def get_sub_entities(self) -> list[Any]:
         given = self.launch_configurations or {}

@@ -7,14 +7,16 @@ descriptions/composable_node.py.
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Callable, Mapping
+from functools import cache
 from importlib import import_module
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.bounded import A_VALUE, load_yaml, read_bytes
 from multibot_rewrite.producers.launch.entities import Entity, root_of
+from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
 from multibot_rewrite.producers.launch.stand_in.values import TextSubstitution
 
@@ -31,10 +33,10 @@ class Form(NamedTuple):
 
     module: str
     name: str
-    values: Mapping[str, tuple[str, Reader]] = MappingProxyType({})
-    below: Mapping[str, tuple[str, Callable[[list[Entity]], Any]]] = MappingProxyType({})
-    needs: tuple[str, ...] = ()
-    actions: str = ""
+    values: Mapping[str, tuple[str, Reader]]
+    below: Mapping[str, tuple[str, Reader]]
+    needs: tuple[str, ...]
+    actions: str
 
 
 def description_in(path: str) -> Any:
@@ -45,7 +47,7 @@ def description_in(path: str) -> Any:
 
 def _made(entity: Entity) -> Any:
     """The action of an entity."""
-    form = _FORMS.get(entity.tag)
+    form = forms().get(entity.tag)
     if entity.tag in _OF_ROS_1:
         raise RuntimeError(f"Unrecognized entity of the type: {entity.tag}")
     if form is None:
@@ -172,146 +174,55 @@ def _components(entities: list[Entity]) -> list[Any]:
 
 def _component(entity: Entity) -> Any:
     condition = _condition(entity)
-    made = _built(entity, _COMPONENT)
+    made = _built(entity, forms()["composable_node"])
     made._condition = condition
     return made
-
-
-def _form(name: str, *needs: str, module: str = "launch.actions", **more: Any) -> Form:
-    """The form of an action whose attributes have the names of its arguments."""
-    named = {it: (it, _parts) for it in needs}
-    return Form(module, name, {**named, **more.pop("values", {})}, needs=needs, **more)
 
 
 def _shut_down(_: Any) -> list[Any]:
     return [import_module("launch.actions").Shutdown()]
 
 
-_ROS = "launch_ros.actions"
-_LOOPS = "multibot_rewrite.producers.launch.stand_in.loops"
-_OF_PROCESS: Mapping[str, tuple[str, Reader]] = {
-    **{it: (it, _parts) for it in ("cwd", "output", "respawn", "respawn_max_retries")},
-    **{it: (it, _parts) for it in ("respawn_delay", "sigkill_timeout", "sigterm_timeout")},
-    **{it: (it, _truth) for it in ("shell", "emulate_tty")},
-    "launch-prefix": ("prefix", _parts),
-    "on_exit": ("on_exit", _shut_down),
+_MODULES = {
+    "": "launch.actions",
+    "ros": "launch_ros.actions",
+    "made": "launch_ros.descriptions",
+    "loops": f"{__package__}.processes",
 }
-_ENVIRONMENT = {"env": ("additional_env", _pairs("name", "value"))}
-_OF_NODE = {"remap": ("remappings", _pairs("from", "to")), "param": ("parameters", _parameters)}
-_NODE = Form(
-    _ROS,
-    "Node",
-    {
-        **_OF_PROCESS,
-        **{it: (it, _parts) for it in ("name", "namespace", "exec_name")},
-        **{
-            "pkg": ("package", _parts),
-            "exec": ("executable", _parts),
-            "node-name": ("name", _parts),
-        },
-        **{"args": ("arguments", _words), "ros_args": ("ros_arguments", _words)},
-    },
-    {**_ENVIRONMENT, **_OF_NODE},
-    ("exec",),
-)
-_COMPONENT = Form(
-    "launch_ros.descriptions",
-    "ComposableNode",
-    {it: (key, _parts) for it, key in {"pkg": "package", "plugin": "plugin"}.items()}
-    | {it: (it, _parts) for it in ("name", "namespace")},
-    {**_OF_NODE, "extra_arg": ("extra_arguments", _pairs("name", "value"))},
-    ("pkg", "plugin", "name"),
-)
-_COMPONENTS = {"composable_node": ("composable_node_descriptions", _components)}
-_KEEP: Mapping[str, tuple[str, Callable[[list[Entity]], Any]]] = {
-    "keep": (
-        "launch_configurations",
-        lambda found: {tuple(name): value for name, value in _pairs("name", "value")(found)},
-    )
+_READERS: Mapping[str, Reader] = {
+    **{"": _parts, "text": str, "truth": _truth, "words": _words, "end": _shut_down}
 }
-_NAMESPACE = _form("PushROSNamespace", "namespace", module=_ROS)
-_FORMS: Mapping[str, Form] = MappingProxyType(
-    {
-        "append_env": _form(
-            *("AppendEnvironmentVariable", "name", "value"),
-            values={"prepend": ("prepend", _truth), "separator": ("separator", _parts)},
-        ),
-        "arg": Form(
-            *("launch.actions", "DeclareLaunchArgument"),
-            {
-                "name": ("name", str),
-                "default": ("default_value", _parts),
-                "description": ("description", str),
-            },
-            {"choice": ("choices", lambda found: [str(*_taken(it, "value")) for it in found])},
-            ("name",),
-        ),
-        "executable": Form(
-            *("launch.actions", "ExecuteProcess"),
-            {**_OF_PROCESS, "cmd": ("cmd", _words), "name": ("name", _parts)},
-            _ENVIRONMENT,
-            ("cmd",),
-        ),
-        "for": Form(
-            *(_LOOPS, "loop_of"),
-            {"len": ("length", _parts), "name": ("name", str)},
-            needs=("len", "name"),
-            actions="actions",
-        ),
-        "for_each": _form("each_of", "values", module=_LOOPS, actions="actions"),
-        "group": Form(
-            *("launch.actions", "GroupAction"),
-            {it: (it, _truth) for it in ("scoped", "forwarding")},
-            _KEEP,
-            actions="actions",
-        ),
-        "include": Form(
-            *("launch.actions", "IncludeLaunchDescription"),
-            {"file": ("launch_description_source", _parts)},
-            {"arg": ("launch_arguments", _pairs("name", "value"))},
-            ("file",),
-        ),
-        "let": _form("SetLaunchConfiguration", "name", "value"),
-        "load_composable_node": Form(
-            *(_ROS, "LoadComposableNodes"),
-            {"target": ("target_container", _parts)},
-            _COMPONENTS,
-            ("target",),
-        ),
-        "log": Form(
-            *("launch.actions", "Log"),
-            {"message": ("msg", _parts), "level": ("level", _parts)},
-            needs=("message",),
-        ),
-        **dict.fromkeys(
-            ("log_debug", "log_error", "log_info", "log_warning"),
-            Form("launch.actions", "LogInfo", {"message": ("msg", _parts)}, needs=("message",)),
-        ),
-        "node": _NODE,
-        "node_container": _NODE._replace(
-            name="ComposableNodeContainer", below={**_NODE.below, **_COMPONENTS}
-        ),
-        "push-ros-namespace": _NAMESPACE,
-        "push_ros_namespace": _NAMESPACE,
-        "reset": Form("launch.actions", "ResetLaunchConfigurations", {}, _KEEP),
-        "reset_env": _form("ResetEnvironment"),
-        "ros_timer": _form("ROSTimer", "period", module=_ROS, actions="actions"),
-        "set_env": _form("SetEnvironmentVariable", "name", "value"),
-        "set_parameter": _form("SetParameter", "name", "value", module=_ROS),
-        "set_parameters_from_file": _form("SetParametersFromFile", "filename", module=_ROS),
-        "set_remap": Form(
-            *(_ROS, "SetRemap"),
-            {"from": ("src", _parts), "to": ("dst", _parts)},
-            needs=("from", "to"),
-        ),
-        "set_ros_log_dir": _form("SetROSLogDir", "new_log_dir", module=_ROS),
-        "set_use_sim_time": _form("SetUseSimTime", "value", module=_ROS),
-        "shutdown": _form("Shutdown", values={"reason": ("reason", _parts)}),
-        "timer": _form(
-            *("TimerAction", "period"),
-            values={"cancel_on_shutdown": ("cancel_on_shutdown", _parts)},
-            actions="actions",
-        ),
-        "unset_env": _form("UnsetEnvironmentVariable", "name"),
-    }
-)
+_named = _pairs("name", "value")
+_BELOW: Mapping[str, Reader] = {
+    **dict.fromkeys(("arg", "env", "extra_arg"), _named),
+    "choice": lambda found: [str(*_taken(it, "value")) for it in found],
+    "composable_node": _components,
+    "keep": lambda found: {tuple(name): value for name, value in _named(found)},
+    "param": _parameters,
+    "remap": _pairs("from", "to"),
+}
+
+
+@cache
+def forms() -> Mapping[str, Form]:
+    """The form of each tag, by ``launch.yaml``."""
+    return {tag: _form(text) for tag, text in names().elements.items()}
+
+
+def _form(text: str) -> Form:
+    """``[module] class: attributes`` with the words of groups in it."""
+    while "%" in text:
+        text = re.sub(r"%(\w+)", lambda it: names().groups[it[1]], text)
+    head, _, words = text.partition(":")
+    module, _, class_ = head.rpartition(" ")
+    values, below, needs = {}, {}, []
+    for word in words.split():
+        key, _, argument = word.strip("!").partition("=")
+        key, _, how = key.partition(":")
+        needs += [key] if word[0] == "!" else []
+        if key[0] == "<":
+            below[key[1:-1]] = argument, _BELOW.get(key[1:-1], _parts)
+        else:
+            values[key] = argument or key, _READERS[how]
+    actions, _ = below.pop("*", ("", None))
+    return Form(_MODULES[module], class_, values, below, tuple(needs), actions)

@@ -32,8 +32,6 @@ _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 class _OfFile(Kept, Substitution):
     """Something that is made of a file; ``name`` is that file, as there."""
 
-    source_file: Text
-
     def __init__(self, *words: Any, **options: Any) -> None:
         super().__init__(*words, **options)
         # Of what a file is made is noted when a substitution is made (made_files.py).
@@ -52,10 +50,6 @@ class RewrittenYaml(_OfFile):
 
     names = ("source_file", "param_rewrites", "root_key", "key_rewrites", "convert_types")
     others = ("value_rewrites", "out_dir")
-    param_rewrites: Mapping[str, Text]
-    key_rewrites: Mapping[str, Text] | None
-    root_key: Text
-    convert_types: bool | None
 
     def perform(self, context: LaunchContext) -> str:
         found = _read(self.path(context))
@@ -79,8 +73,6 @@ class ReplaceString(_OfFile):
     """A file with other words in it."""
 
     names = ("source_file", "replacements", "condition")
-    replacements: Mapping[str, Text]
-    condition: Any
 
     def perform(self, context: LaunchContext) -> str:
         path = self.path(context)
@@ -97,7 +89,6 @@ class HasNodeParams(_OfFile):
     """Has a parameter file a section of this name?"""
 
     names = ("source_file", "node_name")
-    node_name: str
 
     def perform(self, context: LaunchContext) -> str:
         return str(self.node_name in _read(self.path(context)))
@@ -107,7 +98,6 @@ class LaunchConfigAsBool(Kept, Substitution):
     """A launch configuration as ``True`` or ``False``."""
 
     names = ("name",)
-    name: str
 
     def perform(self, context: LaunchContext) -> str:
         word = text_of(context, LaunchConfiguration(self.name)).strip().lower()

@@ -8,18 +8,88 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Any
 
-from multibot_rewrite.producers.launch.stand_in.paths import Joined
 from multibot_rewrite.producers.launch.stand_in.values import (
     Kept,
     LaunchContext,
     Substitution,
     SubstitutionFailure,
     Text,
+    normalize_to_list_of_substitutions,
     str_of,
     text_of,
 )
+
+
+class Joined(Substitution):
+    """A path, to which ``/`` adds more."""
+
+    def __truediv__(self, additional_path: Text) -> PathJoinSubstitution:
+        return PathJoinSubstitution([self, additional_path])
+
+
+class PathJoinSubstitution(Kept, Joined):
+    """A path of parts; each is a text, a substitution, or several that are put together."""
+
+    names = ("substitutions",)
+
+    def perform(self, context: LaunchContext) -> str:
+        return os.path.join(*(text_of(context, it) for it in self.substitutions))
+
+
+class PathSubstitution(Kept, Joined):
+    """A path of one text or substitution; those of a list are parts."""
+
+    names = ("path",)
+
+    def perform(self, context: LaunchContext) -> str:
+        parts = normalize_to_list_of_substitutions(self.path)
+        return PathJoinSubstitution(parts).perform(context)
+
+
+class StringJoinSubstitution(Kept, Substitution):
+    """Texts with a delimiter between them."""
+
+    names = ("substitutions", "delimiter")
+
+    def perform(self, context: LaunchContext) -> str:
+        delimiter = text_of(context, "" if self.delimiter is None else self.delimiter)
+        return delimiter.join(text_of(context, it) for it in self.substitutions)
+
+
+class ThisLaunchFile(Kept, Substitution):
+    """The path of the launch file."""
+
+    def perform(self, context: LaunchContext) -> str:
+        return str(context.get_locals_as_dict()["current_launch_file_path"])
+
+
+class ThisLaunchFileDir(Kept, Joined):
+    """The folder of the launch file."""
+
+    def perform(self, context: LaunchContext) -> str:
+        return os.path.dirname(ThisLaunchFile().perform(context))
+
+
+class LaunchLogDir(Kept, Joined):
+    """The folder of the logs, where the environment names one."""
+
+    def perform(self, context: LaunchContext) -> str:
+        return os.environ.get("ROS_LOG_DIR", "")
+
+
+class FileContent(Kept, Substitution):
+    """The text of a file."""
+
+    names = ("path",)
+
+    def perform(self, context: LaunchContext) -> str:
+        path = text_of(context, self.path)
+        if not os.path.isfile(path):
+            raise SubstitutionFailure(f"File not found: {path}")
+        with open(path, encoding="utf-8") as file:
+            return file.read()
+
 
 _INDEX = os.path.join("share", "ament_index", "resource_index")
 
@@ -32,7 +102,6 @@ class FindPackage(Kept, Joined):
     """A folder of a package."""
 
     names: tuple[str, ...] = ("package",)
-    package: Text
 
     def perform(self, context: LaunchContext) -> str:
         return self.find(text_of(context, self.package))
@@ -59,7 +128,6 @@ class ExecutableInPackage(FindPackagePrefix):
     """The path of a program."""
 
     names = ("executable", "package")
-    executable: Text
 
     def perform(self, context: LaunchContext) -> str:
         name = text_of(context, self.package)
@@ -75,8 +143,6 @@ class ParameterSubstitution(Kept, Substitution):
     """A parameter that is set for all nodes."""
 
     names = ("name", "default")
-    name: Text
-    default: Any
 
     def perform(self, context: LaunchContext) -> str:
         name = text_of(context, self.name)

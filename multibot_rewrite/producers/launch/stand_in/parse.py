@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from types import MappingProxyType
+from functools import cache
 from typing import Any
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.producers.launch.stand_in import packages, paths, values
+from multibot_rewrite.producers.launch.stand_in import packages, values
+from multibot_rewrite.producers.launch.stand_in.names import names
 
 Parts = list[Any]
 _NAME = lazy_compile(r"[A-Za-z][\w-]*")
@@ -27,37 +28,21 @@ _WORDS[""] = re.compile(r"(?:[^\\$'\" ()]|\\.|\$(?!\())+", re.DOTALL)
 
 
 _OF_ROS_1 = ("arg", "find", "optenv")
-_KNOWN: Mapping[str, Callable[..., Any]] = MappingProxyType(
-    {
-        "all": values.AllSubstitution,
-        "and": values.AndSubstitution,
-        "anon": values.AnonName,
-        "any": values.AnySubstitution,
-        "command": lambda line, *_: values.Command(line),
-        "dirname": paths.ThisLaunchFileDir,
-        "env": values.EnvironmentVariable,
-        "equals": values.EqualsSubstitution,
-        "eval": lambda *words: values.PythonExpression([it for word in words for it in word]),
-        "exec-in-pkg": packages.ExecutableInPackage,
-        "file-content": paths.FileContent,
-        "filename": paths.ThisLaunchFile,
-        "find-exec": values.FindExecutable,
-        "find-pkg-prefix": packages.FindPackagePrefix,
-        "find-pkg-share": packages.FindPackageShare,
-        "for-var": values.ForEachVar,
-        "if": values.IfElseSubstitution,
-        "index": values.ForLoopIndex,
-        "launch_log_dir": paths.LaunchLogDir,
-        "log_dir": paths.LaunchLogDir,
-        "not": values.NotSubstitution,
-        "not-equals": values.NotEqualsSubstitution,
-        "or": values.OrSubstitution,
-        "param": packages.ParameterSubstitution,
-        "path-join": lambda *words: paths.PathJoinSubstitution(words),
-        "string-join": lambda delimiter, *words: paths.StringJoinSubstitution(words, delimiter),
-        "var": values.LaunchConfiguration,
-    }
-)
+# Those that are not made of their words one by one.
+_OTHERWISE: Mapping[str, Callable[..., Any]] = {
+    "command": lambda line, *_: values.Command(line),
+    "eval": lambda *words: values.PythonExpression([it for word in words for it in word]),
+    "path-join": lambda *words: packages.PathJoinSubstitution(words),
+    "string-join": lambda delimiter, *words: packages.StringJoinSubstitution(words, delimiter),
+}
+
+
+@cache
+def known() -> Mapping[str, Callable[..., Any]]:
+    """What makes each substitution."""
+    classes = {**vars(values), **vars(packages)}
+    plain = {word: classes[it] for word, it in names().substitutions.items()}
+    return {**plain, **_OTHERWISE}
 
 
 def parse_substitution(value: str) -> Parts:
@@ -89,7 +74,7 @@ def _placed(text: str, at: int, quote: str) -> tuple[Any, int]:
     name = found[0] if found else ""
     if name in _OF_ROS_1:
         raise ValueError(f"Unknown substitution: {name}")
-    if name not in _KNOWN:
+    if name not in known():
         raise ValueError(f"$({text[at : at + 40]}: this substitution needs launch itself")
     at += len(name)
     words = []
@@ -98,7 +83,7 @@ def _placed(text: str, at: int, quote: str) -> tuple[Any, int]:
         words.append(word)
     if not text.startswith(")", at):
         raise ValueError(f"$({name} is not closed")
-    return _KNOWN[name](*words), at + 1
+    return known()[name](*words), at + 1
 
 
 def _word(text: str, at: int, quote: str) -> tuple[Parts, int]:

@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs that a launch file starts, their environment, and what is done when something happens to
-them: nothing of it happens here. Names and signatures are those of launch jazzy.
+them: nothing of it happens here; actions that are repeated. Names and signatures are those of launch
+jazzy, of loops those of rolling (actions/for_loop.py, since kilted 3.8.0).
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Mapping
+from copy import deepcopy
 from typing import Any
 
-from multibot_rewrite.producers.launch.stand_in.actions import Action
+from multibot_rewrite.base.bounded import A_VALUE, load_yaml
+from multibot_rewrite.producers.launch.stand_in.actions import Action, OpaqueFunction, doing
 from multibot_rewrite.producers.launch.stand_in.values import (
+    ITERATED,
     Kept,
     LaunchContext,
     Text,
+    kept,
     str_of,
     text_of,
     typed_truth,
@@ -42,63 +48,25 @@ class EventHandler(Kept):
         return self.actions(event, context) if callable(self.actions) else self.actions
 
 
-class OnProcessExit(EventHandler):
-    """The end of a process."""
-
-    names = ("target_action", "on_exit")
-
-
-class OnProcessStart(EventHandler):
-    """The start of a process."""
-
-    names = ("target_action", "on_start")
-
-
-class OnProcessIO(EventHandler):
-    """Output of a process."""
-
-    names = ("target_action", "on_stdin", "on_stderr", "on_stdout")
-
-
-class OnExecutionComplete(EventHandler):
-    """The end of an action."""
-
-    names = ("target_action", "on_completion")
-
-
-class OnIncludeLaunchDescription(EventHandler):
-    """An include."""
-
-    names = ("entities",)
-
-
-class OnShutdown(EventHandler):
-    """The end of the launch."""
-
-    names = ("on_shutdown",)
+OnProcessExit = kept(EventHandler, "OnProcessExit", "target_action on_exit")
+OnProcessStart = kept(EventHandler, "OnProcessStart", "target_action on_start")
+OnProcessIO = kept(EventHandler, "OnProcessIO", "target_action on_stdin on_stderr on_stdout")
+OnExecutionComplete = kept(EventHandler, "OnExecutionComplete", "target_action on_completion")
+OnIncludeLaunchDescription = kept(EventHandler, "OnIncludeLaunchDescription", "entities")
+OnShutdown = kept(EventHandler, "OnShutdown", "on_shutdown")
 
 
 class RegisterEventHandler(Action):
     """Waits for an event, which happens at once."""
 
     names = ("event_handler",)
-    event_handler: Any
 
     def execute(self, context: LaunchContext) -> list[Any]:
         return list(self.event_handler.describe()[1])
 
 
-class TimerAction(Action):
-    """Actions after a time."""
-
-    names = ("period", "actions")
-    others = ("cancel_on_shutdown", "condition")
-
-
-class Executable(Kept):
-    """What a process runs."""
-
-    names = ("cmd", "prefix", "name", "cwd", "env", "additional_env", "arguments")
+TimerAction = kept(Action, "TimerAction", "period actions", "cancel_on_shutdown")
+Executable = kept(Kept, "Executable", "cmd prefix name cwd env additional_env arguments")
 
 
 class ExecuteLocal(Action):
@@ -128,53 +96,30 @@ class ExecuteProcess(ExecuteLocal):
     )
 
 
-class Log(Action):
-    """A line of the log, at a level (launch rolling, actions/log.py)."""
-
-    names = ("msg", "level")
-
-
-class LogInfo(Action):
-    """A line of the log."""
-
-    names = ("msg",)
+Log = kept(Action, "Log", "msg level")
+LogInfo = kept(Action, "LogInfo", "msg")
 
 
 LogDebug = LogWarning = LogError = LogInfo
 
 
-class EmitEvent(Action):
-    """An event."""
-
-    names = ("event",)
+EmitEvent = kept(Action, "EmitEvent", "event")
+Shutdown = kept(Action, "Shutdown", "reason", "event")
 
 
-class Shutdown(Action):
-    """The end."""
-
-    names = ("reason",)
-    others = ("event", "condition")
-
-
-class SetEnvironmentVariable(Action):
-    """A variable of the environment."""
-
-    names = ("name", "value")
-    name: Text
-    value: Text
-
-    def execute(self, context: LaunchContext) -> None:
-        context.environment[text_of(context, self.name)] = text_of(context, self.value)
+SetEnvironmentVariable = doing(
+    *("SetEnvironmentVariable", "name value"),
+    lambda context, name, value: context.environment.update({name: value}),
+)
+UnsetEnvironmentVariable = doing(
+    "UnsetEnvironmentVariable", "name", lambda context, name: context.environment.pop(name, None)
+)
 
 
 class AppendEnvironmentVariable(Action):
     """More of a variable."""
 
     names = ("name", "value", "prepend", "separator")
-    name: Text
-    value: Text
-    prepend: Any
-    separator: Text
 
     def execute(self, context: LaunchContext) -> None:
         name, value = text_of(context, self.name), text_of(context, self.value)
@@ -184,22 +129,51 @@ class AppendEnvironmentVariable(Action):
         context.environment[name] = between.join([value, *known] if first else [*known, value])
 
 
-class UnsetEnvironmentVariable(Action):
-    """A variable is no longer set."""
-
-    names = ("name",)
-    name: Text
-
-    def execute(self, context: LaunchContext) -> None:
-        context.environment.pop(text_of(context, self.name), None)
-
-
-class UnregisterEventHandler(Action):
-    """An event is no longer waited for."""
-
-    names = ("event_handler",)
+UnregisterEventHandler = kept(Action, "UnregisterEventHandler", "event_handler")
 
 
 def matches_action(target_action: Any) -> Any:
     """Is an event that of this action?"""
     return lambda event: event is target_action
+
+
+class ForEach(Action):
+    """What a function makes of each set of values; they are mappings in YAML with ``;`` between."""
+
+    names = ("input_values", "function")
+
+    def execute(self, context: LaunchContext) -> list[Any]:
+        texts = text_of(context, self.input_values).strip().split(";")
+        values = (load_yaml(it.strip(), A_VALUE) for it in texts if it)
+        return [made for it in values if it is not None for made in self.function(**it) or ()]
+
+
+class ForLoop(Action):
+    """What a function makes of each number below a length."""
+
+    names = ("length", "function", "name")
+
+    def execute(self, context: LaunchContext) -> list[Any]:
+        numbers = range(int(text_of(context, self.length)))
+        return [made for i in numbers for made in self.function(i=i) or ()]
+
+
+def each_of(values: Text, actions: Iterable[Any]) -> ForEach:
+    """``<for_each>``: its actions, of which ``$(for-var)`` reads the values."""
+    return ForEach(values, lambda **known: _repeated(actions, known))
+
+
+def loop_of(length: Text, name: str, actions: Iterable[Any]) -> ForLoop:
+    """``<for>``: its actions, of which ``$(index)`` reads the number."""
+    return ForLoop(length, lambda i: _repeated(actions, {name: i}), name)
+
+
+def _repeated(actions: Iterable[Any], values: Mapping[str, Any]) -> list[Any]:
+    known = {f"{ITERATED}{name}": str(value) for name, value in values.items()}
+
+    def enter(context: LaunchContext) -> None:
+        context._push_locals()
+        context.extend_locals(known)
+
+    leave = OpaqueFunction(function=lambda context: context._pop_locals())
+    return [OpaqueFunction(function=enter), *deepcopy([*actions]), leave]

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from types import NoneType
 from typing import Any
 
-from multibot_rewrite.producers.launch.stand_in.actions import Action
+from multibot_rewrite.producers.launch.stand_in.actions import Action, doing
 from multibot_rewrite.producers.launch.stand_in.parameters import flat, value_of
 from multibot_rewrite.producers.launch.stand_in.processes import (
     EventHandler,
@@ -22,6 +22,7 @@ from multibot_rewrite.producers.launch.stand_in.values import (
     Kept,
     LaunchContext,
     Text,
+    kept,
     normalize_to_list_of_substitutions,
     text_of,
 )
@@ -118,7 +119,6 @@ class PushRosNamespace(Action):
     """A namespace for what comes next."""
 
     names = ("namespace",)
-    namespace: Text
 
     def execute(self, context: LaunchContext) -> None:
         above = context.launch_configurations.get("ros_namespace")
@@ -134,34 +134,10 @@ class SetParameter(Action):
     """A parameter for all nodes that come next."""
 
     names = ("name", "value")
-    name: Text
-    value: Any
 
     def execute(self, context: LaunchContext) -> None:
         name = text_of(context, self.name)
         _add(context, "global_params", [(name, value_of(context, self.value, name))])
-
-
-class SetParametersFromFile(Action):
-    """A parameter file for all nodes that come next."""
-
-    names = ("filename",)
-    filename: Text
-
-    def execute(self, context: LaunchContext) -> None:
-        _add(context, "global_params", [text_of(context, self.filename)])
-
-
-class SetRemap(Action):
-    """A remap rule for all nodes that come next."""
-
-    names = ("src", "dst")
-    src: Text
-    dst: Text
-
-    def execute(self, context: LaunchContext) -> None:
-        rule = (text_of(context, self.src), text_of(context, self.dst))
-        _add(context, "ros_remaps", [rule])
 
 
 def _add(context: LaunchContext, key: str, more: Iterable[Any]) -> None:
@@ -169,48 +145,30 @@ def _add(context: LaunchContext, key: str, more: Iterable[Any]) -> None:
     context.launch_configurations.setdefault(key, []).extend(more)
 
 
-class SetUseSimTime(Action):
-    """The clock of the node of launch itself."""
-
-    names = ("value",)
-
-
-class SetROSLogDir(Action):
-    """A folder for logs."""
-
-    names = ("new_log_dir",)
+SetParametersFromFile = doing(
+    *("SetParametersFromFile", "filename"),
+    lambda context, file: _add(context, "global_params", [file]),
+)
+SetRemap = doing("SetRemap", "src dst", lambda context, *rule: _add(context, "ros_remaps", [rule]))
 
 
-class LifecycleTransition(Action):
-    """Changes of life cycles."""
-
-    names = ("lifecycle_node_names", "transition_ids")
-
-
-class ROSTimer(TimerAction):
-    """Actions after a time by the clock of ROS."""
+SetUseSimTime = kept(Action, "SetUseSimTime", "value")
+SetROSLogDir = kept(Action, "SetROSLogDir", "new_log_dir")
+LifecycleTransition = kept(Action, "LifecycleTransition", "lifecycle_node_names transition_ids")
 
 
+ROSTimer = kept(TimerAction, "ROSTimer", "period actions")
 RosTimer = ROSTimer
 
 
-class OnStateTransition(EventHandler):
-    """A change of a life cycle."""
-
-    names = ("target_lifecycle_node", "entities")
-    others = ("start_state", "goal_state", "transition", "matcher", "handle_once")
-
-
-class ChangeState(Kept):
-    """A transition that is asked for."""
-
-    names = ("lifecycle_node_matcher", "transition_id")
-
-
-class StateTransition(Kept):
-    """A transition that has happened."""
-
-    names = ("action", "msg")
+OnStateTransition = kept(
+    EventHandler,
+    "OnStateTransition",
+    "target_lifecycle_node entities",
+    "start_state goal_state transition matcher",
+)
+ChangeState = kept(Kept, "ChangeState", "lifecycle_node_matcher transition_id")
+StateTransition = kept(Kept, "StateTransition", "action msg")
 
 
 class Transition:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from multibot_rewrite.base.bounded import A_VALUE, load_yaml
 
@@ -29,6 +29,9 @@ class Kept:
 
     names: tuple[str, ...] = ()
     others: tuple[str, ...] = ()
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
 
     def __init__(self, *words: Any, **options: Any) -> None:
         given = {**dict(zip(self.names, words, strict=False)), **options}
@@ -37,6 +40,16 @@ class Kept:
             what = f"an unexpected keyword argument {min(unknown)!r}" if unknown else "too many"
             raise TypeError(f"{type(self).__name__} got {what}")
         vars(self).update({**dict.fromkeys(self.names), **given})
+
+
+Kind = TypeVar("Kind", bound=type[Kept])
+
+
+def kept(base: Kind, name: str, names: str, others: str = "") -> Kind:
+    """A class that only keeps what it is given by the words of ``names``, as its ``base`` does."""
+    more = {"others": (*base.others, *others.split())} if others else {}
+    found: Kind = type(name, (base,), {"names": tuple(names.split()), **more})  # type: ignore[assignment]
+    return found
 
 
 class Substitution:
@@ -302,7 +315,7 @@ class IfCondition(Kept, Condition):
     wanted = True
 
     def evaluate(self, context: LaunchContext) -> bool:
-        return truth_of(context, vars(self)["predicate_expression"]) == self.wanted
+        return truth_of(context, self.predicate_expression) == self.wanted
 
 
 class UnlessCondition(IfCondition):
@@ -317,7 +330,7 @@ class LaunchConfigurationEquals(Kept, Condition):
     names = ("launch_configuration_name", "expected_value")
 
     def evaluate(self, context: LaunchContext) -> bool:
-        name, value = (vars(self)[it] for it in self.names)
+        name, value = self.launch_configuration_name, self.expected_value
         wanted = None if value is None else text_of(context, value)
         return bool(context.launch_configurations.get(name) == wanted)
 
