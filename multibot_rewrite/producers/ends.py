@@ -17,13 +17,11 @@ from multibot_rewrite.companions.bridge_entry import (
     below,
 )
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.of_runs import asked_alone, with_names
 from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
 from multibot_rewrite.knowledge.records import MOVE_GROUP, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled, lookup
 from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics
-from multibot_rewrite.spelling.of_runs import expanded, with_names
+from multibot_rewrite.spelling.of_runs import asked_alone, expanded, with_names
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import (
     CALLS,

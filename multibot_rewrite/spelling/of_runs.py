@@ -16,8 +16,7 @@ from multibot_rewrite.base.rosnames import (
     parse_remap,
     resolve_bound,
 )
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint
+from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Rule, Run
 from multibot_rewrite.system.records import ACTION, MAY, RUNS, SERVICE, TOPIC, End, Lookup, Sure
 

@@ -22,8 +22,15 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     SentTransform,
 )
-from multibot_rewrite.spelling.of_runs import asked_alone, asked_beside, parsed, with_names
-from multibot_rewrite.spelling.of_runs import expanded, placed, target_of, with_names
+from multibot_rewrite.spelling.of_runs import (
+    asked_alone,
+    asked_beside,
+    expanded,
+    parsed,
+    placed,
+    target_of,
+    with_names,
+)
 from multibot_rewrite.spelling.records import Rule, Run, Table
 from multibot_rewrite.spelling.table_checks import (
     PROBE,

@@ -13,8 +13,7 @@ from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import every_release
-from multibot_rewrite.spelling.of_runs import asked_beside, parsed
-from multibot_rewrite.spelling.of_runs import expanded, target_of
+from multibot_rewrite.spelling.of_runs import asked_beside, expanded, parsed, target_of
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import SERVICE, TOPIC
 

@@ -9,8 +9,7 @@ from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN
 from multibot_rewrite.base.rosnames import check_name_in_code, expand
 from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.spelling.of_runs import asked_alone
-from multibot_rewrite.spelling.of_runs import target_of
+from multibot_rewrite.spelling.of_runs import asked_alone, target_of
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.system.records import ACTION, TOPIC
 

@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.description.readback.active import active_parts
+from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.fitting.node_topics import topic_of
 from multibot_rewrite.fleet.robots.fitting.sensors import (
@@ -27,7 +27,6 @@ from multibot_rewrite.fleet.robots.fitting.sensors import (
 )
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
-from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, NodeFacts
 from multibot_rewrite.rules.system.instead import is_needed
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SUBSCRIBES, End, System
 from multibot_rewrite.system.words import moves

@@ -17,9 +17,7 @@ from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.launches import Bringup, Row, order_text, said_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
-from multibot_rewrite.producers.launch.once import once_for_all
 from multibot_rewrite.producers.launch.programs import once_for_all
-from multibot_rewrite.producers.launch.records import LaunchOrder
 
 # Files not taken that are named, and launch files beside the robot's that cannot be read.
 MOST, MOST_UNREAD = 10, 3

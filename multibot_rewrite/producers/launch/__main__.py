@@ -31,8 +31,6 @@ from multibot_rewrite.description.sources.child.frames import (
     received,
 )
 from multibot_rewrite.description.sources.child.system import die_with_parent
-from multibot_rewrite.producers.launch.confined import NOT_FENCED, NotFencedError, confine
-from multibot_rewrite.description.sources.packages import package_of, sources_around
 from multibot_rewrite.producers.launch.confined import (
     NOT_FENCED,
     NotFencedError,

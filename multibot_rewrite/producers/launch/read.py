@@ -27,9 +27,12 @@ from multibot_rewrite.producers.launch.failures import (
     not_installed,
 )
 from multibot_rewrite.producers.launch.includes import unread_of
-from multibot_rewrite.producers.launch.kept_paths import GONE, real_paths, with_real_paths
-from multibot_rewrite.producers.launch.made_files import keep_sources
-from multibot_rewrite.producers.launch.kept_paths import keep_sources, lasting
+from multibot_rewrite.producers.launch.kept_paths import (
+    GONE,
+    keep_sources,
+    real_paths,
+    with_real_paths,
+)
 from multibot_rewrite.producers.launch.places import keep_places
 from multibot_rewrite.producers.launch.read_files import descriptions_in, files_read, keep_reads
 from multibot_rewrite.producers.launch.records import (

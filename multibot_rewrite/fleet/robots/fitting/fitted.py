@@ -11,16 +11,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.description.steps.collect import collect
-from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
+from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.robots.fitting.commands import by_way_of_relays, driving, of_one_type
 from multibot_rewrite.fleet.robots.fitting.mux import own_mux, through_a_mux, to_the_drive
 from multibot_rewrite.fleet.robots.fitting.node_topics import (
-    controllers,
-    plugins,
-    topic_of,
-    topics_of,
     usual_values,
 )
 from multibot_rewrite.fleet.robots.fitting.sensors import (
@@ -36,13 +30,11 @@ from multibot_rewrite.fleet.robots.fitting.transforms import (
     without_second_senders,
 )
 from multibot_rewrite.fleet.robots.member import Member
-from multibot_rewrite.knowledge.conditions import holds, verdict
 from multibot_rewrite.knowledge.records import MOVE_GROUP, TWIST_MUX, NodeFacts
-from multibot_rewrite.producers.evidence.filling import lookup, sent_with
-from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, TF_TYPE, bridged_topics
+from multibot_rewrite.producers.evidence.filling import sent_with
+from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, Edge
-from multibot_rewrite.system.words import ODOMETRY
+from multibot_rewrite.system.records import Edge
 
 _BY_FILE = "open: file"
 RVIZ = "rviz2"
