@@ -149,8 +149,8 @@ def _assert_same_by_library(fleet: DrawnFleet, out: Path) -> None:
 
 
 def _without_paths(data: bytes) -> bytes:
-    """A file without comments, and without lines that name its folder, the fleet file or a place in it: a
-    library call has none."""
+    """A file without comments, and without lines that name its folder, the fleet file or a place in it:
+    a library call has none."""
     named = (b"<parameters>", FILE.encode(), SITE.encode(), DICT.encode())
     lines = (it for it in data.splitlines() if not it.lstrip().startswith((b"#", *PLACE)))
     return b"\n".join(it for it in lines if not any(one in it for one in named))
