@@ -90,6 +90,7 @@ def said(text: str) -> str:
     return OR.join(AND.join(map(_said, it.split(AND))) for it in text.split(OR))
 
 
+@lru_cache(maxsize=4096)  # so many facts, so few conditions
 def of_release(text: str, release: str) -> str | None:
     """The condition without what it says of releases; None where it never holds in this one."""
 

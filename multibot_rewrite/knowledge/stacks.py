@@ -47,18 +47,33 @@ def user_stack(path: str, release: str) -> NodeLibrary:
     A built-in node that the file changes is changed in the file's own stacks only. Raises UsageError
     with file and line for errors in the file.
     """
-    return in_release(with_file(path), release)
+    return _extended_in_release(_text_of(path), path, release)
 
 
 def with_file(path: str) -> NodeLibrary:
     """The built-in nodes and stacks of all releases and those of a file; raises as ``user_stack``."""
+    return _extended(_text_of(path), path)
+
+
+# A command asks for what the same file says many times.
+@lru_cache(maxsize=4)
+def _extended_in_release(text: str, path: str, release: str) -> NodeLibrary:
+    return in_release(_extended(text, path), release)
+
+
+@lru_cache(maxsize=4)
+def _extended(text: str, path: str) -> NodeLibrary:
+    return extend(every_release(), text, path)
+
+
+def _text_of(path: str) -> str:
+    """Return the text of a file of nodes."""
     try:
-        text = read_text(path)
+        return read_text(path)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
-    return extend(every_release(), text, path)
 
 
 def is_apart(node: str, release: str) -> bool:

@@ -111,10 +111,10 @@ def said(found: dict[str, str]) -> str:
 def heard(fleet: Fleet) -> Iterator[tuple[str, str, str]]:
     """Whose drive or arm hears a topic or has an action, and of which type."""
     plain = {it.fqn: it.what for it in fleet.nodes}
-    robots = {model: robot for robot, model in fleet.models.items()}
+    robots, plugins = {model: robot for robot, model in fleet.models.items()}, classic(fleet)
     for it in fleet.ends:
         what = plain.get(it.node, "")
-        driving = what in DRIVING or it.node in classic(fleet)
+        driving = what in DRIVING or it.node in plugins
         heard = it.role == "subscribes" and it.type in COMMANDS and it.sure and driving
         posed = it.role == "subscribes" and it.type in POSED and (what in MOVING or driving)
         if heard or posed or (it.role == "serves" and it.type in GOALS and what in MOVING):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite.description.checks.shapes import reach_of
+from multibot_rewrite.description.checks.shapes import filled_by, reach_of
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
@@ -36,10 +36,36 @@ def test_how_far_a_robot_reaches() -> None:
     assert reach_of(etree.fromstring('<robot name="r"><link name="a"/></robot>')) == 0
 
 
-def found(folder: Path, robots: str, more: str = "", code: str = "MG702") -> list[str]:
+SDF = """\
+<sdf version="1.9"><model name="cart"><pose>7 0 0 0 0 0</pose>
+  <link name="base"><collision name="b"><geometry><box><size>0.6 0.4 0.2</size></box></geometry>
+  </collision></link>
+  <link name="mast"><pose>0.5 0 0.5 0 0 1.5707963267948966</pose>
+    <collision name="m"><pose>0.1 0 0 0 0 0</pose><geometry><cylinder><radius>0.05</radius>
+    <length>1</length></cylinder></geometry></collision></link>
+  <link name="arm"><pose relative_to="mast">9 0 0 0 0 0</pose><collision name="a"><geometry>
+    <sphere><radius>1</radius></sphere></geometry></collision></link>
+</model></sdf>
+"""
+
+
+def test_a_model_in_sdf_fills_what_its_urdf_fills(tmp_path: Path) -> None:
+    """A spawner's pose takes the place of the model's; a link in another frame counts not."""
+    assert filled_by(etree.fromstring(SDF)) == pytest.approx(hypot(0.55, 0.15) / 2)
+    (tmp_path / "cart.sdf").write_text(SDF)
+    near = "  - {name: a, pose: {x: 1}}\n  - {name: b, pose: {x: 1.3}}\n"
+    more = "simulator: gazebo\ndistro: jazzy\n"
+    said = found(tmp_path, near, more, description="cart.sdf")
+    assert said == ["robot 'b' starts 0.30 m from robot 'a'; their shapes need 0.57 m"]
+    assert found(tmp_path, near.replace("1.3", "1.7"), more, description="cart.sdf") == []
+
+
+def found(
+    folder: Path, robots: str, more: str = "", code: str = "MG702", description: str = "cart.urdf"
+) -> list[str]:
     (folder / "cart.urdf").write_text(CART)
     file = folder / "fleet.yaml"
-    file.write_text(f"layout: both\ndescription: cart.urdf\n{more}robots:\n{robots}")
+    file.write_text(f"layout: both\ndescription: {description}\n{more}robots:\n{robots}")
     made = make_outputs(plan_fleet(read_fleet(str(file), "", {})))
     return [it.message for it in made.findings if it.code == code]
 

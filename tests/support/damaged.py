@@ -253,16 +253,11 @@ def _value(chance: random.Random, data: bytes) -> bytes:
 
 
 DEEP = 10_000
-TEXTUAL: Mapping[str, Bytes] = {
+BY_CHANCE: Mapping[str, Bytes] = {
     "cut": _cut,
     "NUL": _insert(b"\0"),
     "latin-1": _insert("é".encode("latin-1")),
     "marks": _insert(b"\xef\xbb\xbf", b"\xff\xfe"),
-    "a mark in front": lambda _, data: b"\xef\xbb\xbf" + data,
-    "two marks in front": lambda _, data: b"\xef\xbb\xbf\xef\xbb\xbf" + data,
-    "CRLF": lambda _, data: data.replace(b"\n", b"\r\n"),
-    "CR": lambda _, data: data.replace(b"\n", b"\r"),
-    "UTF-16": lambda _, data: data.decode().encode("utf-16"),
     "signs": _insert(
         b"{",
         b"[",
@@ -291,19 +286,26 @@ TEXTUAL: Mapping[str, Bytes] = {
     "a line gone": _line_gone,
     "lines in disorder": _swapped,
     "a value": _value,
-    "empty": lambda *_: b"",
-    "blank": lambda *_: b" \n\n",
-    "a number": lambda *_: b"3\n",
-    "a list": lambda *_: b"[]\n",
-    "a mapping": lambda *_: b"{}\n",
-    "a word": lambda *_: b"hello\n",
-    "null": lambda *_: b"null\n",
-    "deep": lambda *_: b"[" * DEEP + b"]" * DEEP,
-    "deep elements": lambda *_: b"<a>" * DEEP + b"</a>" * DEEP,
-    "deep blocks": lambda *_: b"".join(b" " * at + b"a:\n" for at in range(500)),
-    "deep calls": lambda *_: b"x = " + b"(" * DEEP + b")" * DEEP,
-    "a circle": lambda _, data: b"a: &a [*a]\n" + data,
-    "laughs": lambda _, data: (
+}
+ALWAYS_ALIKE: Mapping[str, Callable[[bytes], bytes]] = {
+    "a mark in front": lambda data: b"\xef\xbb\xbf" + data,
+    "two marks in front": lambda data: b"\xef\xbb\xbf\xef\xbb\xbf" + data,
+    "CRLF": lambda data: data.replace(b"\n", b"\r\n"),
+    "CR": lambda data: data.replace(b"\n", b"\r"),
+    "UTF-16": lambda data: data.decode().encode("utf-16"),
+    "empty": lambda _: b"",
+    "blank": lambda _: b" \n\n",
+    "a number": lambda _: b"3\n",
+    "a list": lambda _: b"[]\n",
+    "a mapping": lambda _: b"{}\n",
+    "a word": lambda _: b"hello\n",
+    "null": lambda _: b"null\n",
+    "deep": lambda _: b"[" * DEEP + b"]" * DEEP,
+    "deep elements": lambda _: b"<a>" * DEEP + b"</a>" * DEEP,
+    "deep blocks": lambda _: b"".join(b" " * at + b"a:\n" for at in range(500)),
+    "deep calls": lambda _: b"x = " + b"(" * DEEP + b")" * DEEP,
+    "a circle": lambda data: b"a: &a [*a]\n" + data,
+    "laughs": lambda data: (
         b"a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n"
         + b"".join(
             b"a%d: &a%d [%s]\n" % (at, at, b", ".join([b"*a%d" % (at - 1)] * 10))
@@ -311,12 +313,12 @@ TEXTUAL: Mapping[str, Bytes] = {
         )
         + data
     ),
-    "laughs in XML": lambda *_: (
+    "laughs in XML": lambda _: (
         b'<!DOCTYPE r [<!ENTITY l0 "ha">'
         + b"".join(b'<!ENTITY l%d "%s">' % (n, b"&l%d;" % (n - 1) * 10) for n in range(1, 10))
         + b"]>\n<launch>&l9;</launch>"
     ),
-    "other text": lambda *_: bytes(range(256)),
+    "other text": lambda _: bytes(range(256)),
 }
 OTHER_VALUES: tuple[Any, ...] = (
     None,
@@ -420,12 +422,18 @@ INSTEAD = {
 def damages(place: Place, many: int) -> Iterator[tuple[str, Callable[[Path], object]]]:
     """Every damage of a file, each that chance has a part in so many times, by its name."""
     yield from INSTEAD.items()
-    kinds = {**TEXTUAL}
+    for name, change in ALWAYS_ALIKE.items():
+        yield name, partial(_changed, change)
+    kinds = {**BY_CHANCE}
     if place.file.endswith(STRUCTURED):
         kinds |= dict.fromkeys((f"another type {it}" for it in range(4)), another_type)
     for name, damage in kinds.items():
         for at in range(many):
             yield f"{name}, {at}", partial(_damaged, damage, f"{place.file} {name} {at}")
+
+
+def _changed(change: Callable[[bytes], bytes], path: Path) -> None:
+    path.write_bytes(change(path.read_bytes()))
 
 
 def _damaged(damage: Bytes, seed: str, path: Path) -> None:

@@ -34,7 +34,9 @@ from multibot_rewrite.producers.launch.records import LaunchGraph
 # What tells of a fault of the build itself.
 FAULT = "MF823"
 # Of so many fleets one is built a second time, as a whole.
-WHOLE = 4
+WHOLE = 8
+# The lines of a plan that say where in a fleet file a finding is.
+PLACE = (b"line: ", b"column: ")
 
 
 def write(fleet: DrawnFleet, folder: Path) -> None:
@@ -147,10 +149,10 @@ def _assert_same_by_library(fleet: DrawnFleet, out: Path) -> None:
 
 
 def _without_paths(data: bytes) -> bytes:
-    """A file without comments, and without lines that name its folder or the fleet file: a library call
-    has none."""
+    """A file without comments, and without lines that name its folder, the fleet file or a place in it:
+    a library call has none."""
     named = (b"<parameters>", FILE.encode(), SITE.encode(), DICT.encode())
-    lines = (it for it in data.splitlines() if not it.lstrip().startswith(b"#"))
+    lines = (it for it in data.splitlines() if not it.lstrip().startswith((b"#", *PLACE)))
     return b"\n".join(it for it in lines if not any(one in it for one in named))
 
 

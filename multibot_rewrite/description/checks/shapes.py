@@ -5,7 +5,7 @@ link without a shape."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import hypot, inf, sqrt
 from typing import NamedTuple
 
@@ -14,15 +14,18 @@ from lxml.etree import _Element
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.description.checks.poses import (
+    HERE,
     STRAIGHT,
     Pose,
     dot,
     link_poses,
+    matrix_of_quaternion,
     minus,
     origin_of,
     placed,
     plus,
     point_in,
+    quaternion_of_rpy,
     scaled,
 )
 
@@ -63,14 +66,20 @@ def placed_box(box: Extent, pose: Pose) -> Extent:
 def _half(shape: _Element) -> Vector | None:
     """Half of a shape's size along its own axes."""
     if shape.tag == "box":
-        size = vector(shape.get("size"))
+        size = vector(_said(shape, "size"))
         return None if size is None or min(size) <= 0 else scaled(size, 0.5)
     if shape.tag not in ("cylinder", "sphere"):
         return None
-    sizes = numbers(f"{shape.get('radius', '?')} {shape.get('length', '0')}")
+    sizes = numbers(f"{_said(shape, 'radius') or '?'} {_said(shape, 'length') or '0'}")
     if not sizes or sizes[1:2] == () or sizes[0] <= 0:
         return None
     return sizes[0], sizes[0], (sizes[0] if shape.tag == "sphere" else sizes[1] / 2)
+
+
+def _said(shape: _Element, key: str) -> str | None:
+    """Return a size as it is written: an attribute in URDF, an element in SDF."""
+    value = shape.get(key)
+    return shape.findtext(key) if value is None else value
 
 
 def shapes_of(link: _Element, tag: str) -> Iterator[tuple[_Element, _Element]]:
@@ -128,24 +137,54 @@ def reach_of(root: _Element) -> float:
     """The radius in metres of the upright cylinder around the root link that holds the robot's
     collisions, else its visuals, with every joint at 0; 0 where nothing of it has a size,
     and for an SDF."""
-    robot = read_robot(root)
-    corners = [*_corners(robot, "collision")] or [*_corners(robot, "visual")]
-    return max((hypot(x, y) for x, y, _ in corners), default=0.0)
+    return _reach(_posed_links(read_robot(root)))
 
 
 def filled_by(root: _Element) -> float:
-    """What a robot surely fills, however it is turned: half of how far it reaches. Two overlap where
-    they are nearer than both fill."""
-    return reach_of(root) / 2
+    """What a robot surely fills, however it is turned: half of how far it reaches, in SDF from the
+    origin of its model. Two overlap where they are nearer than both fill."""
+    return (reach_of(root) or _reach(_posed_links_of_sdf(root))) / 2
 
 
-def _corners(robot: Robot, tag: str) -> Iterator[Vector]:
-    """The corners of the boxes around all shapes."""
+_Placed = tuple[_Element, Pose, Callable[[_Element], Pose | None]]
+
+
+def _posed_links(robot: Robot) -> list[_Placed]:
+    """Each link with its pose, and what says the pose of its shapes."""
     poses = link_poses(robot)
-    for link in robot.links:
-        for element, shape in shapes_of(link.element, tag) if link.name in poses else ():
-            own = origin_of(element)
-            extent = extent_of(shape, placed(poses[link.name], own)) if own else None
+    return [(it.element, poses[it.name], origin_of) for it in robot.links if it.name in poses]
+
+
+def _posed_links_of_sdf(root: _Element) -> list[_Placed]:
+    """The same of the first model of an SDF, but for links whose pose another frame decides."""
+    model = root if root.tag == "model" else next(root.iter("model"), None)
+    links = () if model is None else model.iterchildren("link")
+    return [(it, pose, _sdf_pose) for it in links if (pose := _sdf_pose(it)) is not None]
+
+
+def _sdf_pose(element: _Element) -> Pose | None:
+    """The ``<pose>`` in what is around an element; None where another frame or unit is said."""
+    written = element.find("pose")
+    if written is None:
+        return HERE
+    values = numbers(written.text or "0 0 0 0 0 0")
+    if written.attrib or values is None or len(values) != 6:
+        return None
+    x, y, z, *rpy = values
+    return Pose((x, y, z), matrix_of_quaternion(quaternion_of_rpy(_three(rpy))))
+
+
+def _reach(links: Sequence[_Placed]) -> float:
+    corners = [*_corners(links, "collision")] or [*_corners(links, "visual")]
+    return max((hypot(x, y) for x, y, _ in corners), default=0.0)
+
+
+def _corners(links: Iterable[_Placed], tag: str) -> Iterator[Vector]:
+    """The corners of the boxes around all shapes."""
+    for link, pose, pose_of_shape in links:
+        for element, shape in shapes_of(link, tag):
+            own = pose_of_shape(element)
+            extent = extent_of(shape, placed(pose, own)) if own else None
             if extent:
                 (x1, y1, z), (x2, y2, _) = extent
                 yield from ((x, y, z) for x in (x1, x2) for y in (y1, y2))
