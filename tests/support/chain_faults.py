@@ -81,7 +81,7 @@ def chain_rows() -> tuple[Fault, ...]:
                 renamed("/robot2/cmd_vel", "/robot2/drive/cmd_vel", "/robot2/diff_drive"),
                 added("/robot2/recovery", (PUBLISHES, "/robot2/drive/cmd_vel", TWIST)),
             ),
-            "MG308", ("/robot2/collision_monitor", "/robot2/cmd_vel:=/robot2/drive/cmd_vel"),
+            "MG308", ("/robot2/collision_monitor", "obeys /robot2/recovery there"),
         ),
         Fault(
             "the drive has a topic of its own", nav,

@@ -52,6 +52,8 @@ def _read(order: LaunchOrder, folder: Path) -> LaunchGraph | InputError:
             kept.setattr(kind, method, getattr(kind, method))
         kept.setattr(tempfile, "tempdir", tempfile.mkdtemp(dir=folder))
         kept.setattr(sys, "argv", sys.argv)
+        # It stays for good, and sees the process that expands xacros as well, which is another one.
+        kept.setattr(sys, "addaudithook", lambda _: None)
         for name in ("system", "listdir", "scandir", "stat", "lstat", "access"):
             kept.setattr(os, name, getattr(os, name))
         kept.setattr(subprocess, "Popen", subprocess.Popen)

@@ -140,7 +140,7 @@ def command_rows() -> tuple[Fault, ...]:
         ),
         Fault(
             "a joystick in the root", nav, added("/teleop_node", (PUBLISHES, "/cmd_vel", TWIST)),
-            "MG308", ("no node reads", "/cmd_vel:=/robot"),
+            "MG308", ("no node reads", "/cmd_vel", "put twist_mux before"),
         ),
         Fault(
             "a joystick in a namespace with a capital", nav,

@@ -91,7 +91,7 @@ def with_real_paths(it: Any) -> Any:
 def real_paths(text: str) -> str:
     """Return a text in which the paths are there when the launch is over."""
     top = _top()
-    if top not in text:
+    if not top or top not in text:
         return text
     return re.sub(rf"{re.escape(top)}(?:/\d+)?({_REST})", lambda it: _real(it[0], it[1]), text)
 

@@ -166,7 +166,8 @@ def _apart(seen: Index, tree: Tree, robots: Sequence[str]) -> Cause:
         for it in tf_remaps([node], tree.topic, f"{node.rpartition('/')[0]}{tree.topic}")
     )
     whole = len(robots) == len(robots_of(seen, nodes))
-    return Cause(f"{own}, or {named}; {senders}", remaps=tuple(remaps) if whole else ())
+    own += ", or put its name into its frames (urdf-postfix)"
+    return Cause(f"{own}; {senders}", remaps=tuple(remaps) if whole else ())
 
 
 def tf_remaps(nodes: Iterable[str], topic: str, home: str) -> tuple[Remap, ...]:
