@@ -9,6 +9,7 @@ import pytest
 import yaml
 from fleet_folder import planned_fleet
 from nav2_graphs import environment
+from paths import ROBOTS
 from plans import optional, own
 
 from multibot_rewrite import InputError, compare
@@ -252,3 +253,17 @@ def test_a_drive_that_nobody_has_read_is_told(
     gaps = closed_plan(planned_fleet(tmp_path / "f.yaml")).gaps
     found = [it.message for it in gaps if it.code == "MF844"]
     assert [said in it for it in found] == ([True] if said else [])
+
+
+@pytest.mark.parametrize("affix", ["prefix", "postfix"])
+def test_the_time_of_a_manager_in_the_simulator_is_that_of_its_robot(
+    affix: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A node is known by its name without its robot's, on either side."""
+    words = f"layout: postfix\naffix: {affix}\ndistro: jazzy\nstack: gz_ros2_control\n"
+    robot = ROBOTS / "rover_gz.urdf"
+    file = tmp_path / "fleet.yaml"
+    file.write_text(f"{words}description: {robot}\nuse_sim_time: false\nrobots: [r1, r2]\n")
+    assert main(["build", str(file), "-o", str(tmp_path / "out"), "-q"]) == 1
+    name = "r1_robot_state_publisher" if affix == "prefix" else "robot_state_publisher_r1"
+    assert f"/{name}: error: MG503" in capsys.readouterr().err

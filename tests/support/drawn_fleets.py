@@ -20,6 +20,7 @@ from drawn_keys import (
     has_no_such_world,
     in_other_layout,
     in_other_style,
+    is_bringup,
     maybe,
     parts,
     shares_no_such_node,
@@ -819,7 +820,8 @@ CAUSES = {
             )
         ),
     ),
-    # A start pose is given to no robot that maps: slam_toolbox says where it is.
+    # A start pose is given to no robot that maps: slam_toolbox says where it is. nav2_bringup takes one
+    # file of a robot, which has the pose as well: no other is written.
     "a parameter file is called as one that is written": Cause(
         lambda data, _: _first(data).update(
             companions={"params": ["start_pose.yaml"]}, pose={"x": -9}
@@ -828,6 +830,7 @@ CAUSES = {
             "pose" in row
             and "start_pose.yaml" in row.get("companions", {}).get("params", ())
             and {"slam_toolbox", "nav2_slam"}.isdisjoint(row.get("stack", ()))
+            and not is_bringup(fleet.data)
             for row in fleet.data["robots"]
         ),
     ),
@@ -838,7 +841,8 @@ CAUSES = {
         ),
         lambda fleet: fleet.data.get("use_sim_time") is True and not simulated(fleet),
     ),
-    # Its controller manager has the simulator's time, whatever the file says.
+    # Its controller manager reads the simulator's clock, whatever the file says. The drive of Classic
+    # reads none, and no node of ROS sends one there.
     "the machine's time beside the simulator's": Cause(
         lambda data, _: (
             data.update(use_sim_time=False),
@@ -846,7 +850,7 @@ CAUSES = {
         ),
         lambda fleet: (
             fleet.data.get("use_sim_time") is False
-            and any(kind in IN_SIMULATOR for _, kind in simulated(fleet))
+            and any(kind == "gz arm" for _, kind in simulated(fleet))
         ),
     ),
     "a node in the simulator has another domain": Cause(

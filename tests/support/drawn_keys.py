@@ -108,7 +108,7 @@ def _written(draw: st.DrawFn, data: Data, _: dict[str, str]) -> None:
             data["params_style"] = SHAPES[data["shape"]][1]
     elif maybe(draw, 4) and data["layout"] in BRINGUP and "shared_nodes" not in data:
         data["params_style"] = draw(st.sampled_from(("bringup", "full")))
-    if "shared_nodes" in data and "bringup" in (style(data), data.get("params_style")):
+    if "shared_nodes" in data and is_bringup(data):
         del data["shared_nodes"]
     if maybe(draw, 3):
         data["installed"] = "/opt/fleet"
@@ -220,8 +220,12 @@ def shares_no_such_node(data: Data) -> bool:
 
 def started_for_each(data: Data) -> bool:
     """Does nav2_bringup start a node for each robot that all should share?"""
-    is_bringup = "bringup" in (style(data), data.get("params_style"))
-    return is_bringup and "map_server" in data.get("shared_nodes", ())
+    return is_bringup(data) and "map_server" in data.get("shared_nodes", ())
+
+
+def is_bringup(data: Data) -> bool:
+    """Are the parameters of a robot in the one file that nav2_bringup takes?"""
+    return "bringup" in (style(data), data.get("params_style"))
 
 
 def has_no_adapter(data: Data) -> bool:

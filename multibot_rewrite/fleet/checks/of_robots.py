@@ -34,7 +34,6 @@ from multibot_rewrite.producers.launch.handed_on import for_robot
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.files.ros_names import in_description
 from multibot_rewrite.rules.launch.models import in_each_other
-from multibot_rewrite.rules.system.clocks import clocks_mixed
 from multibot_rewrite.rules.system.sharing import one_device
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.index import index
@@ -59,7 +58,6 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
     yield from lacking(plan)
     yield from without_camera(plan)
     yield from _too_near(plan)
-    yield from _on_two_clocks(plan)
     yield from launched_prefixes(plan)
     yield from moveit_frames(plan)
     yield from differences(plan)
@@ -150,21 +148,6 @@ def _for_another_robot(plan: FleetPlan) -> Iterator[Finding]:
         others = words if more else words.difference(first.spec.words)
         problems = in_description(source.root, others, first.names.declared)
         yield from to_findings(source, problems, ERROR)
-
-
-def _on_two_clocks(plan: FleetPlan) -> Iterator[Finding]:
-    """The robots on the machine's time that the launch file spawns, though nothing says that they are
-    simulated: nodes in plugins have the simulator's time. Of others the plan tells it."""
-    inside = {it.robot for it in plan.fleet.table.runs if it.fact.plugin}
-    for it in plan.robots:
-        is_spawned = it.spec.namespace in plan.fleet.maybe_real & inside and is_simulated(it)
-        if is_spawned and it.spec.use_sim_time is False:
-            message = (
-                f"use_sim_time is false, and plugins of robot {it.spec.name!r} have the time of the"
-                " simulator, which the launch file starts"
-            )
-            hint = "write simulator: none for a real robot, else use_sim_time: true"
-            yield at_robot(clocks_mixed, it, message, hint)
 
 
 def _too_near(plan: FleetPlan) -> Iterator[Finding]:

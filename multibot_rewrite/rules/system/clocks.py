@@ -131,7 +131,7 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
     if not simulated or not _clocks(seen):
         return
     untold = without_clock(seen.system)
-    asked = {node for node in seen.nodes if _is_timed(node) and node not in untold}
+    asked = {node for node in seen.nodes if _is_timed(seen, node) and node not in untold}
     timed = asked - planned_clocks(seen).keys()
     first, their = min(simulated), {*map(seen.robot, simulated)}
     by_robot: dict[str, list[str]] = defaultdict(list)
@@ -170,8 +170,9 @@ def _not_as_planned(seen: Index) -> Iterator[Finding]:
         )  # fmt: skip
 
 
-def _is_timed(node: str) -> bool:
-    return not is_viewer(node) and bool(_IS_TIMED.fullmatch(last_word(node)))
+def _is_timed(seen: Index, node: str) -> bool:
+    """Does a node compare times, by its name without the robot's?"""
+    return not is_viewer(node) and bool(_IS_TIMED.fullmatch(last_word(seen.plain(node))))
 
 
 def _mixed(robot: str, others: list[str], simulated: str) -> Finding:
