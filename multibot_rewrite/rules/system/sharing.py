@@ -49,8 +49,8 @@ def own_names(seen: Index, ends: Ends, robots: Sequence[str]) -> Cause:
     more = f"; then {shorten(readers)} has to read those of all robots" if readers else ""
     return Cause(
         "each robot needs its own: write a relative name in the code or parameters of these nodes;"
-        f" or give each that uses it the rule {ends.name}:={ends.name.strip('/')} in the namespace of its"
-        f" robot (--ros-args -r, remappings= in the launch file){more}",
+        f" or give each that uses it the rule {ends.name}:={ends.name.strip('/')} in its robot's"
+        f" namespace (--ros-args -r, remappings= in the launch file){more}",
         remaps=() if readers else tuple(remaps),
     )
 
