@@ -159,6 +159,28 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
+# By so many bytes a process grows before it is looked for what may be thrown away.
+GROWTH = 200_000_000
+SIZE = pytest.StashKey[int]()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item) -> None:
+    """What tests leave in circles, as large files in the frames of an error, is thrown away where it
+    is much: by the thresholds above it would stay for thousands of tests."""
+    stash = item.config.stash
+    if _size() > stash.setdefault(SIZE, _size()) + GROWTH:
+        gc.collect()
+        stash[SIZE] = _size()
+
+
+def _size() -> int:
+    """The bytes of memory that this process has; 0 where the system does not tell."""
+    told = Path("/proc/self/statm")
+    pages = int(told.read_text().split()[1]) if told.exists() else 0
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
 # Files whose tests build fleets for minutes.
 BUILDING_FILES = ("test_drawn_fleets.py", "test_cells_of_stacks.py")
 # Files whose tests start nodes.
