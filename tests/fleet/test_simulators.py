@@ -263,7 +263,9 @@ def test_the_time_of_a_manager_in_the_simulator_is_that_of_its_robot(
     words = f"layout: postfix\naffix: {affix}\ndistro: jazzy\nstack: gz_ros2_control\n"
     robot = ROBOTS / "rover_gz.urdf"
     file = tmp_path / "fleet.yaml"
-    file.write_text(f"{words}description: {robot}\nuse_sim_time: false\nrobots: [{{name: r1}}, {{name: r2}}]\n")
+    file.write_text(
+        f"{words}description: {robot}\nuse_sim_time: false\nrobots: [{{name: r1}}, {{name: r2}}]\n"
+    )
     assert main(["build", str(file), "-o", str(tmp_path / "out"), "-q"]) == 1
     name = "r1_robot_state_publisher" if affix == "prefix" else "robot_state_publisher_r1"
     assert f"/{name}: error: MG503" in capsys.readouterr().err
