@@ -564,8 +564,7 @@ NAV = "/robot1/controller_server"
         ),
         (
             (*TWO_DRIVES, f"/joystick publishes /cmd_vel {TWIST}"),
-            [f"MG308 error /joystick: {unread('/cmd_vel', beside=NAV)} (or that of another of the 2"
-             " robots)"],
+            [f"MG308 error /joystick: {unread('/cmd_vel', beside=NAV)}"],
         ),
         # Stamped velocities are others.
         ((DRIVE, SERVER, f"/joystick publishes /cmd_vel {TWIST}Stamped"), []),

@@ -15,7 +15,7 @@ from multibot_rewrite.base.conventions import (
 )
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.wording import and_then, shorten
+from multibot_rewrite.base.wording import and_then, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.causes import Spelled, alike
 from multibot_rewrite.rules.system.matching import STAMPED
@@ -69,16 +69,10 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
     spelled: dict[str, Spelled] = {}
     for name, ends in unread.items():
         same = obeyed[ends.type]
-        robots, mine = plainly[ends.type, name], robots_of(seen, nodes_of(ends.publishers))
-        if len(mine) == 1:
-            # What another robot reads is not meant for it.
-            own = seen.of_robot(mine[0], TOPIC, seen.plain(name))
-            robots = [own.name] if own and own.name != name and _obeyed(own) else []
         spelled[ends.type] = spelled.get(ends.type) or Spelled(same)
-        is_own = lambda it: len(mine) != 1 or seen.robot(it) in ("", mine[0])  # noqa: B023, E731
-        near = next(iter(robots), "") or alike(name, spelled[ends.type], ends.type, is_own)
-        meant = near or _of_a_mux(seen, ends)
-        meant = meant or _of_a_person(seen, ends, same)
+        robots = _of_whom(seen, ends, plainly[ends.type, name])
+        near = next(iter(robots), "") or _alike(seen, ends, spelled[ends.type])
+        meant = near or _of_a_mux(seen, ends) or _of_a_person(seen, ends, same)
         if meant:
             yield _unread(seen, ends, meant, len(robots))
         elif absent := nobody_in(seen, name, same):
@@ -87,6 +81,22 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
                     f"publishes {name}, which no node reads; {absent}", ABSENT,
                     level=WARNING, node=node, names=(name,),
                 )  # fmt: skip
+
+
+def _of_whom(seen: Index, ends: Ends, names: Sequence[str]) -> Sequence[str]:
+    """Return the obeyed names of robots that a sender may mean, of those that are called as its own;
+    where it is of one robot, that of this robot alone."""
+    mine = only(robots_of(seen, nodes_of(ends.publishers)))
+    if not mine:
+        return names
+    own = seen.of_robot(mine, TOPIC, seen.plain(ends.name))
+    return [own.name] if own and own.name != ends.name and _obeyed(own) else []
+
+
+def _alike(seen: Index, ends: Ends, known: Spelled) -> str:
+    """Return the obeyed name that is nearly this one, not of another robot than the sender's."""
+    mine = only(robots_of(seen, nodes_of(ends.publishers)))
+    return alike(ends.name, known, ends.type, lambda it: not mine or seen.robot(it) in ("", mine))
 
 
 def _sent_for_sure(ends: Ends) -> Ends:
@@ -182,7 +192,7 @@ def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     remaps = tuple(Remap(it, ends.name, meant) for it in nodes_of(at_work(ends.publishers)))
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
     if others := _sends_already(seen, meant):
-        remaps, cause = (), f"{reader} obeys {others} there: {_CHOOSE}{several}"
+        remaps, cause = (), f"{reader} obeys {others} there: {_CHOOSE}"
     # RViz offers these from the start.
     usual = last_word(ends.name) in _OFFERED and is_viewer(node) and not is_hidden(node)
     level = NOTE if usual else WARNING if is_viewer(node) and not is_hidden(node) else ERROR
@@ -195,11 +205,9 @@ def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
 def _sends_already(seen: Index, name: str) -> str:
     """Return who sends velocities to a reader that does not choose between them; empty for nobody."""
     there = seen.by_name[TOPIC, name]
-    if not words.moves(seen.plain(name), there.type) or any(
-        chooses(it) for it in nodes_of(there.subscribers)
-    ):
-        return ""
-    return shorten(nodes_of(at_work(there.publishers))) if there.publishers else ""
+    chosen = any(map(chooses, nodes_of(there.subscribers)))
+    moves = words.moves(seen.plain(name), there.type)
+    return shorten(nodes_of(at_work(there.publishers))) if moves and not chosen else ""
 
 
 @system_rule(
