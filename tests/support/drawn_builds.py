@@ -72,7 +72,9 @@ def judge(fleet: DrawnFleet, folder: Path, whole: bool = True) -> None:
 
 def _judge(fleet: DrawnFleet, whole: bool) -> None:
     out = Path("out")
-    code, said = run("build", FILE, "-o", str(out), "--fail-on", "error", "-q", *trusted(fleet))
+    code, said = run("build", FILE, "-o", str(out), "--fail-on", "error", *trusted(fleet))
+    lines = said.splitlines()
+    assert sorted(lines) == sorted({*lines}), "a line is said twice"
     causes = causes_of(fleet)
     if causes:
         assert code in (1, 2), f"builds, in spite of: {causes}"

@@ -121,6 +121,7 @@ def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
         node=blank(finding.node),
         robot=_SLOT,
         names=tuple(map(blank, finding.names)),
+        remaps=tuple(it._make(map(blank, it)) for it in finding.remaps),
         robots=(),
     )
 

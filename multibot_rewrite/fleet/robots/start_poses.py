@@ -22,6 +22,7 @@ from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
+from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridge_rows import PLUGINS, rows_of
 from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
@@ -138,7 +139,7 @@ def _localised(robot: RewrittenRobot, locators: Sequence[str]) -> Finding:
     nodes = " and ".join(it or "its description" for it in locators)
     says = "already says" if len(locators) == 1 else "already say"
     what = f"its pose is not published, because {nodes} {says} where it is"
-    if robot.spec.simulator not in ("", REAL):
+    if is_simulated(robot):
         hint = "the simulator starts it there, which is enough"
         return _finding(LOCALISED_ALREADY, robot, what, hint)._replace(level=NOTE)
     hint = "remove the pose: a second parent would make the frame jump"
