@@ -25,6 +25,8 @@ from multibot_rewrite.system.records import (
 
 # Participants announce themselves every 3 s: a shorter quiet time proves nothing.
 QUIET_SECONDS = 3.5
+# What a network loses is sent again every 3 s, and may be lost again.
+LOSSY_QUIET_SECONDS = 10.5
 # Where all participants that there can be are known. Their nodes and endpoints follow at once, or one
 # after another where a program starts.
 ALL_KNOWN_SECONDS = 1.5
@@ -135,6 +137,17 @@ def unannounced(announced: int, here: int, nodes: int, lost: int) -> Iterator[Ca
     yield Caveat("programs-unannounced", True, text)
 
 
+def seen_by_one(nodes: Sequence[str]) -> Iterator[Caveat]:
+    """Yield a caveat where two participants of this process see different ends of these nodes."""
+    if nodes:
+        text = (
+            f"two participants of this look see different topics or services of"
+            f" {shorten(nodes, SEVERAL)}: the network between the machines loses packets;"
+            " look again, with a longer --timeout"
+        )
+        yield Caveat("network-loses-packets", True, text)
+
+
 def not_heard(silent: Sequence[str]) -> Iterator[Caveat]:
     """Where the time was over before messages could come."""
     which = f" on {shorten(silent, SEVERAL)}" if silent else ""
@@ -149,16 +162,16 @@ def why_settled(
     timeout: float,
     quiet: float = QUIET_SECONDS,
     *,
-    starved: bool = False,
+    unsure: bool = False,
 ) -> str:
     """Why the observation can end, or an empty string; times are seconds since its start.
 
     ``complete``: all that is expected is there; ``quiet``: so long without a change suffices, unless
-    the look was ``starved`` meanwhile.
+    the look is ``unsure``: it waited for a processor meanwhile, or two participants see different ends.
     """
     if complete and now - changed.expected >= BURST_SECONDS:
         return EXPECTED
-    if now - changed.all >= quiet and not starved:
+    if now - changed.all >= quiet and not unsure:
         return QUIET
     return TIMEOUT if now >= timeout else ""
 
