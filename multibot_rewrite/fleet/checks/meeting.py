@@ -89,6 +89,7 @@ def _of_description(it: Member, ruled: Set[str]) -> Iterator[RuntimeName]:
         is_ruled = name.tag == "ros2_control" and name.name in ruled
         if not (is_ruled or name.of_controllers):
             yield name
+    yield from it.published
 
 
 def _finding(met: Meeting, member: Member | None, written: Written | None) -> Finding:
@@ -98,8 +99,9 @@ def _finding(met: Meeting, member: Member | None, written: Written | None) -> Fi
     found = Finding(code, _level(code), message, advice(name, together=True), names=(name.name,))
     if name.tag and member:
         found = found._replace(hint=_own_value(name, member, written) or found.hint)
-        line = line_of(member.source, name.tag, name.number)
-        return found._replace(file=member.source.file, line=line, column=1)
+        source = member.sent if name in member.published else member.source
+        line = line_of(source, name.tag, name.number)
+        return found._replace(file=source.file, line=line, column=1)
     return found._replace(robot=met.robot, node=name.path)
 
 
