@@ -79,7 +79,11 @@ def _linted(
         raise
     except Exception as error:  # the other files are still linted
         found.append(breakdown(path, error))
-    return sorted(unsuppressed(_merged(found), sources, settings), key=by_place)
+    # A finding that several expansions have is reported once, for the first of them.
+    first: dict[Finding, Finding] = {}
+    for finding in found:
+        first.setdefault(finding._replace(arguments=""), finding)
+    return sorted(unsuppressed(list(first.values()), sources, settings), key=by_place)
 
 
 def _look(
@@ -123,14 +127,6 @@ def lint_subject(subject: Subject, wanted: Callable[[Rule], bool] = bool) -> lis
         return crashes
     numbers = numbered(subject, [it for _, its in found for it in its])
     return crashes + [placed(subject, numbers, it, rule) for rule, its in found for it in its]
-
-
-def _merged(found: Iterable[Finding]) -> list[Finding]:
-    """A finding that several expansions have is reported once, for the first of them."""
-    first: dict[Finding, Finding] = {}
-    for finding in found:
-        first.setdefault(finding._replace(arguments=""), finding)
-    return list(first.values())
 
 
 @contextmanager

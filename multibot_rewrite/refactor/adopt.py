@@ -177,7 +177,14 @@ def _made(
     wrong = {at: _fault(it, its, after, argument, how) for at, (it, its) in enumerate(every)}
     wrong = {at: why for at, why in wrong.items() if why}
     lacking = {at for at, its in enumerate(asked) if len(its) > len(made.changes[at])}
-    proved = _proved(found, wrong, lacking)
+    # The descriptions without a configuration that is ``wrong`` or ``lacking`` the prefix of a
+    # name. Raises InputError where each has a wrong one.
+    paths = dict.fromkeys(it.path for it in found)
+    if len({found[at].path for at in wrong}) == len(paths):
+        at, why = next(iter(wrong.items()))
+        raise InputError(f"{found[at].words}: {_ALONE}; {why}")
+    unmade = {found[at].path for at in (*wrong, *lacking)}
+    proved = tuple(path for path in paths if path not in unmade)
     left = (
         *made.left,
         *chain.from_iterable(map(_not_written, found)),
@@ -188,19 +195,6 @@ def _made(
     before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
     others = tuple(it.words for at, it in enumerate(found) if it.arguments and at not in wrong)
     return Adopted(argument, before, named, proved, left, {}, configurations=others), after
-
-
-def _proved(
-    found: Sequence[Description], wrong: Mapping[int, str], lacking: Collection[int]
-) -> tuple[str, ...]:
-    """The descriptions without a configuration that is ``wrong`` or ``lacking`` the prefix of a name.
-    Raises InputError where each has a wrong one."""
-    paths = dict.fromkeys(it.path for it in found)
-    if len({found[at].path for at in wrong}) == len(paths):
-        at, why = next(iter(wrong.items()))
-        raise InputError(f"{found[at].words}: {_ALONE}; {why}")
-    unmade = {found[at].path for at in (*wrong, *lacking)}
-    return tuple(path for path in paths if path not in unmade)
 
 
 def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _Job) -> Adopted:

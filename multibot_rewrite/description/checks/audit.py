@@ -177,20 +177,15 @@ def loosely_written(document: Document) -> Iterator[Problem]:
             line, _ = locate(source, offset)
             hint = f"{_MENDS[what]}; {_READERS}"
             yield Problem(element, f"{what} in line {line}", None, hint, (), CODE)
-    for prefix, uri in _undeclared(document):
-        found = next((it for it in document.elements if _uses(it, uri)), document.root)
-        message = f"the prefix {prefix!r} is not declared"
-        hint = f'declare it on the root element: xmlns:{prefix}="{uri}"; {_READERS}'
-        yield Problem(found, message, None, hint, (), CODE)
-
-
-def _undeclared(document: Document) -> Iterator[tuple[str, str]]:
-    """The prefixes that reading added to the root, with what they stand for."""
+    # The prefixes that reading added to the root, with what they stand for.
     start = document.starts[0]
     written = document.source[start : tag_end(document.source, start)]
     for prefix, uri in document.root.nsmap.items():
         if prefix and b"xmlns:" + prefix.encode() not in written:
-            yield prefix, uri
+            found = next((it for it in document.elements if _uses(it, uri)), document.root)
+            message = f"the prefix {prefix!r} is not declared"
+            hint = f'declare it on the root element: xmlns:{prefix}="{uri}"; {_READERS}'
+            yield Problem(found, message, None, hint, (), CODE)
 
 
 def _uses(element: _Element, uri: str) -> bool:

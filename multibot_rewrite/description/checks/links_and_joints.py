@@ -195,13 +195,8 @@ def loops(robot: Robot) -> list[list[Joint]]:
             path[name] = next(it for it in robot.above[name] if _ties(it) and it.parent in rest)
             name = path[name].parent
         if name in path:
-            found.append(_from(path, name)[::-1])
+            found.append(list(path.values())[list(path).index(name) :][::-1])
     return found
-
-
-def _from(path: Mapping[str, Joint], name: str) -> list[Joint]:
-    """The joints of a path, from the one above ``name`` on."""
-    return list(path.values())[list(path).index(name) :]
 
 
 def _not_of_a_tree(robot: Robot) -> dict[str, None]:

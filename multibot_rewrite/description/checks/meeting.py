@@ -144,7 +144,13 @@ def _changed(
     if b":=" not in document.source and not images and not _alike(reading, robot):
         return
     before = read_tree(document.root, vocabulary)
-    yield from _lost(document, before, reading, naming)
+    # Rules of the file that match no name any more.
+    for lost in lost_rules(before, reading):
+        if lost.name.strip("/") not in naming.shared_topics:
+            plugin = next(islice(document.root.iter("plugin"), lost.number, None), document.root)
+            message = f"{lost.rule!r} is for {lost.name}, and matches nothing after the rewrite"
+            hint = "write the topic and the left side of its rule the same way"
+            yield Problem(plugin, message, None, hint, (), LOST_RULE)
     for it, other in parted(before, reading):
         one, two = (name.name.replace(robot, ROBOT) for name in (it, other))
         message = (
@@ -169,18 +175,6 @@ def _alike(reading: Reading, robot: str) -> bool:
     topics = {it.name for it in every if it.kind in (TOPIC, SERVICE)}
     bare = {it.replace(robot, "").replace("/", "").replace("_", "") for it in topics}
     return len(bare) < len(topics)
-
-
-def _lost(
-    document: Document, before: Reading, reading: Reading, naming: Naming
-) -> Iterator[Problem]:
-    """Rules of the file that match no name any more."""
-    for it in lost_rules(before, reading):
-        if it.name.strip("/") not in naming.shared_topics:
-            plugin = next(islice(document.root.iter("plugin"), it.number, None), document.root)
-            message = f"{it.rule!r} is for {it.name}, and matches nothing after the rewrite"
-            hint = "write the topic and the left side of its rule the same way"
-            yield Problem(plugin, message, None, hint, (), LOST_RULE)
 
 
 def _of_controllers(

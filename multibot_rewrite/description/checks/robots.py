@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
 from multibot_rewrite.base.model import Claim
-from multibot_rewrite.base.naming import FRAME_KINDS, NO_OWN_NAMES, TOPIC_KINDS, Naming, removal
+from multibot_rewrite.base.naming import FRAME_KINDS, NO_OWN_NAMES, TOPIC_KINDS, removal
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.spelling import is_reached, must_be_declared
@@ -39,7 +39,8 @@ def taken_names(
     naming = renames.naming._replace(own=NO_OWN_NAMES)
     for robot in robots if kept else ():
         for kind, name, claim in kept:
-            stem = _stem(naming, robot, kind, name)
+            span = removal(naming, robot, kind, name)
+            stem = name[: span[0]] + name[span[1] :] if span else ""
             is_own = (kind, stem) in renames.naming.own
             if stem in inventory.declared.get(kind, ()) and not is_own:
                 message = (
@@ -86,11 +87,6 @@ def _declarations(
         kind, name = claim.site.kinds[0], claim.value.strip()
         if claim.site.role == "declares" and name and kind in inventory.declared:
             yield kind, name, claim, bool(spelling)
-
-
-def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
-    span = removal(naming, robot, kind, name)
-    return name[: span[0]] + name[span[1] :] if span else ""
 
 
 def meeting(

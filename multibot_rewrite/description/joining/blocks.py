@@ -105,13 +105,9 @@ def _more_files(before: Spans, plugin: _Element, other: _Element, spans: Spans) 
     elif texts:
         start, end = before.start_of(plugin), before.end_of(plugin)
         old = before.text_of(plugin)
-        yield was(start, end, old, _filled(old, b"".join(texts), plugin))
-
-
-def _filled(old: bytes, inside: bytes, plugin: _Element) -> bytes:
-    """A plugin without elements, with one."""
-    head = old[:-2] + b">" if old.endswith(b"/>") else old[: old.rindex(b"</")]
-    return head + inside + b"</%s>" % str(plugin.tag).encode()
+        # A plugin without elements, with one.
+        head = old[:-2] + b">" if old.endswith(b"/>") else old[: old.rindex(b"</")]
+        yield was(start, end, old, head + b"".join(texts) + b"</%s>" % str(plugin.tag).encode())
 
 
 def _other_settings(plugin: _Element, other: _Element, part: Inventory) -> Iterator[str]:

@@ -13,7 +13,6 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from lxml import etree
-from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.loose_xml import ESCAPES
@@ -264,18 +263,16 @@ def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list
 def _edits(joined: Document, spans: Spans, edited: Collection[int]) -> Iterator[Edit]:
     lacking = _declared(spans.document) - _declared(joined)
     for it in spans.document.root.iterchildren("*") if lacking else ():
-        used = sorted(_spaces(it) & {uri for _, uri in lacking})
+        names = (name for one in it.iter("*") for name in (one.tag, *one.attrib))
+        found = (etree.QName(str(name)).namespace for name in names)
+        used = sorted({uri.encode() for uri in found if uri} & {uri for _, uri in lacking})
         start = spans.start_of(it)
         if not used or start in edited:
             continue
         old = spans.text_of(it)
         words = (b' xmlns:%s="%s"' % pair for pair in sorted(lacking) if pair[1] in used)
-        at = 1 + len(_name(old))
+        at = 1 + len(old[1:].split(b">", 1)[0].split(None, 1)[0].rstrip(b"/"))
         yield was(start, spans.end_of(it), old, old[:at] + b"".join(words) + old[at:])
-
-
-def _name(element: bytes) -> bytes:
-    return element[1:].split(b">", 1)[0].split(None, 1)[0].rstrip(b"/")
 
 
 def _declared(document: Document) -> set[tuple[bytes, bytes]]:
@@ -285,9 +282,3 @@ def _declared(document: Document) -> set[tuple[bytes, bytes]]:
     found = ((prefix, uri) for prefix, uri in document.root.nsmap.items() if prefix)
     pairs = {(prefix.encode(), uri.encode()) for prefix, uri in found}
     return {pair for pair in pairs if b"xmlns:%s" % pair[0] in tag}
-
-
-def _spaces(element: _Element) -> set[bytes]:
-    names = (name for it in element.iter("*") for name in (it.tag, *it.attrib))
-    found = (etree.QName(str(name)).namespace for name in names)
-    return {uri.encode() for uri in found if uri}

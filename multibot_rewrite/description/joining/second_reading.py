@@ -64,7 +64,11 @@ def check_read(root: _Element, parts: Sequence[Mounted]) -> None:
         wanted -= Counter([("link", WORLD)] if mounted.is_without_world else [])
         if mounted.joint:
             wanted["joint", mounted.joint] += 1
-            _check_joint(mounted, root)
+            joint = next(it for it in root.iterchildren("joint") if it.get("name") == mounted.joint)
+            ends = [end_of(joint, tag) for tag in ("parent", "child")]
+            fixed = joint.get("type") == "fixed" and ends == [mounted.at, mounted.part.root]
+            if not fixed or not _is_at(joint, pose_of_six(mounted.pose)):
+                raise ProofError(f"{mounted.part.file}: it is not fixed to {mounted.at!r} as asked")
     found = Counter(_names(root))
     if found != wanted:
         kind, name = next(iter((found - wanted) + (wanted - found)))
@@ -121,14 +125,6 @@ def _moved(old: _Element, mounted: Mounted, root: _Element) -> bool:
     if inner is None or same[0] != same[1] or old.attrib != new.attrib:
         return False
     return _is_at(new, placed(pose_of_six(mounted.pose), inner))
-
-
-def _check_joint(mounted: Mounted, root: _Element) -> None:
-    joint = next(it for it in root.iterchildren("joint") if it.get("name") == mounted.joint)
-    ends = [end_of(joint, tag) for tag in ("parent", "child")]
-    fixed = joint.get("type") == "fixed" and ends == [mounted.at, mounted.part.root]
-    if not fixed or not _is_at(joint, pose_of_six(mounted.pose)):
-        raise ProofError(f"{mounted.part.file}: it is not fixed to {mounted.at!r} as asked")
 
 
 def _is_at(joint: _Element, wanted: Pose) -> bool:

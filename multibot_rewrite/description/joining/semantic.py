@@ -81,7 +81,12 @@ def joined_srdf(
         own = read_xml(it.data, it.file) if it.data else root.makeelement("robot", {})
         if at:
             without_virtual_joints(own)
-        _check_names(own, it, known, hint)
+        named = [(str(one.tag), one.get("name", "")) for tag in _NAMED for one in own.findall(tag)]
+        for key in dict.fromkeys(named):
+            if key in known:
+                what = f"{key[0]} {key[1]!r} is in {known[key]}, too"
+                raise InputError(f"{it.file}: {what}; {hint}")
+            known[key] = it.file
         root.extend(list(own))
     reasons = dict.fromkeys(sorted(set(_adjacent(described, parts))), "Adjacent")
     others = [it for it in _between(described, parts) if it not in reasons]
@@ -111,17 +116,6 @@ def xml_text(root: _Element) -> bytes:
     """A description as it is written, a line an element."""
     etree.indent(root)
     return etree.tostring(root, xml_declaration=True, encoding="utf-8") + b"\n"
-
-
-def _check_names(
-    own: _Element, it: PartSemantics, known: dict[tuple[str, ...], str], hint: str
-) -> None:
-    named = [(str(one.tag), one.get("name", "")) for tag in _NAMED for one in own.findall(tag)]
-    for key in dict.fromkeys(named):
-        if key in known:
-            what = f"{key[0]} {key[1]!r} is in {known[key]}, too"
-            raise InputError(f"{it.file}: {what}; {hint}")
-        known[key] = it.file
 
 
 def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[tuple[str, str]]:

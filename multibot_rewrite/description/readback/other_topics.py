@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from lxml.etree import _Element
 
@@ -51,7 +51,12 @@ def resolved(
     words = [(site.path, value) for site in stems for value in values_of(host, site)]
     if above is not None:
         yield from ((BELOW, _joined(above, word), path) for path, word in words)
-    yield from _of_nobody(host, stems)
+    # A word that topics are made of and that is there and empty: it takes the place of the model's
+    # name, so that no robot is in them (gz-sim Thruster.cc: HasElement("namespace")).
+    for site in stems:
+        given = [*values_at(host, site.path)] if site.empty not in ("default", "model") else []
+        if given and not any(given):
+            yield BELOW, "/", site.path
     for site in filter(holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         below = above
@@ -88,15 +93,6 @@ def _full(
             yield name
         elif above is not None and not name.startswith("~"):
             yield _joined(above, name)
-
-
-def _of_nobody(host: _Element, stems: Iterable[SiteRow]) -> Iterator[tuple[str, str, str]]:
-    """A word that topics are made of and that is there and empty: it takes the place of the model's
-    name, so that no robot is in them (gz-sim Thruster.cc: HasElement("namespace"))."""
-    for site in stems:
-        given = [*values_at(host, site.path)] if site.empty not in ("default", "model") else []
-        if given and not any(given):
-            yield BELOW, "/", site.path
 
 
 def as_valid_topic(name: str) -> str:

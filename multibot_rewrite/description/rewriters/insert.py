@@ -166,7 +166,10 @@ def _defaults(
             continue
         of_model = default.startswith(MODEL)
         path = site.path.removeprefix(hidden)
-        there = _there(host, path)
+        # The first element at ``path`` that has its attribute.
+        steps, attribute = split_path(path)
+        found = host.find("/".join(query(step) for step in steps))
+        there = found if found is None or not attribute or attribute in found.attrib else None
         if there is not None and (site.empty != "default" or "@" in path or text_of(there)):
             continue
         wanted = filled(host, site.fill) or default.removeprefix(MODEL)
@@ -188,13 +191,6 @@ def _without(site: SiteRow, default: str, naming: Naming) -> str:
     if site.default != SENSOR:
         return default
     return spelled(naming, ROBOT_SLOT, "sensor", default)
-
-
-def _there(host: etree._Element, path: str) -> etree._Element | None:
-    """The first element at ``path`` that has its attribute."""
-    steps, attribute = split_path(path)
-    found = host.find("/".join(query(step) for step in steps))
-    return found if found is None or not attribute or attribute in found.attrib else None
 
 
 def query(step: str) -> str:
@@ -243,7 +239,9 @@ def _remaps(
             for it in rules
             if expand(it.source, namespace, node) == full and _is_for(it, wired, section, node)
         ]
-        if not target or any(_stays(it, naming) for it in there):
+        if not target or any(
+            naming.topics != NAMESPACE or it.source.startswith("/") for it in there
+        ):
             continue
         if there:
             target = spelled(naming, ROBOT_SLOT, "topic", there[0].target, True)
@@ -259,11 +257,6 @@ def _is_for(rule: RemapRule, wired: WiredTopic, section: VocabularySection, node
     other = TOPIC_SCHEME if wired.role == "serves" else SERVICE_SCHEME
     of_node = "" if section.process_wide else node
     return rule.scheme != other and rule.node in ("", of_node)
-
-
-def _stays(rule: RemapRule, naming: Naming) -> bool:
-    """Does it match the same name after the rewrite? A relative left side moves with the namespace."""
-    return naming.topics != NAMESPACE or rule.source.startswith("/")
 
 
 def _remap_target(topic: str, naming: Naming) -> str:

@@ -58,19 +58,15 @@ def _counts(content: object) -> Counter[Key]:
         raise ValueError('"findings" is not a list')
     counts: Counter[Key] = Counter()
     for number, entry in enumerate(listed, 1):
-        _check(entry, number)
+        if not isinstance(entry, dict) or set(entry) != set(FIELDS):
+            raise ValueError(f"finding {number} does not have just {', '.join(FIELDS)}")
+        wrong = next((name for name, kind in FIELDS.items() if type(entry[name]) is not kind), None)
+        if wrong is not None:
+            raise ValueError(f"{wrong!r} of finding {number} is {entry[wrong]!r}")
+        if entry["count"] < 1:
+            raise ValueError(f"'count' of finding {number} is {entry['count']}")
         counts[Key(entry["code"], entry["file"], entry["message"])] += entry["count"]
     return counts
-
-
-def _check(entry: object, number: int) -> None:
-    if not isinstance(entry, dict) or set(entry) != set(FIELDS):
-        raise ValueError(f"finding {number} does not have just {', '.join(FIELDS)}")
-    wrong = next((name for name, kind in FIELDS.items() if type(entry[name]) is not kind), None)
-    if wrong is not None:
-        raise ValueError(f"{wrong!r} of finding {number} is {entry[wrong]!r}")
-    if entry["count"] < 1:
-        raise ValueError(f"'count' of finding {number} is {entry['count']}")
 
 
 def beyond(

@@ -46,15 +46,11 @@ def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
     """
     if not rev or rev.startswith("-") or "\0" in rev:
         raise UsageError(f"{rev!r} is not a revision; name a branch, a tag or a commit")
-    changes = _changes(rev)
-    touched = _touched(paths, changes)
-    return [it for it in paths if touched[it]]
-
-
-def _changes(rev: str) -> Changes:
     top = os.fsdecode(_git(".", "rev-parse", "--show-toplevel").removesuffix(b"\n"))
     changed, others = _differing(top, _base(rev))
-    return Changes(top, changed | others, _names(_git(top, "ls-files", "-z")), others)
+    changes = Changes(top, changed | others, _names(_git(top, "ls-files", "-z")), others)
+    touched = _touched(paths, changes)
+    return [it for it in paths if touched[it]]
 
 
 def _differing(top: str, base: str) -> tuple[frozenset[str], frozenset[str]]:

@@ -35,21 +35,17 @@ def undeclared_controller(file: NamedFile) -> Iterator[Finding]:
     given = beside(file).given if found else ()
     declared = {it.node.rpartition("/")[2]: it for it in given if it.host_name}
     for manager in found if declared else ():
-        yield from _without_body(file, manager)
+        # Listed controllers that have no parameters, which may be in another file.
+        keys = {str(key.value): key for key, _ in pairs(manager) if key.value != NAMES}
+        names = listed(manager, NAMES)
+        left = keys.keys() - {it.value for it in names}
+        for it in names:
+            near = nearest(str(it.value), left) if it.value not in keys else ""
+            if near:
+                place = Place(file.file, keys[near].start_mark.line + 1)
+                yield from _lacks(it, f"controller {it.value}", did_you_mean_at(near, place))
         for key, body in controllers_of(manager):
             yield from _of_one(file, key, body, declared)
-
-
-def _without_body(file: NamedFile, manager: yaml.Node) -> Iterator[Finding]:
-    """Listed controllers that have no parameters, which may be in another file."""
-    keys = {str(key.value): key for key, _ in pairs(manager) if key.value != NAMES}
-    names = listed(manager, NAMES)
-    left = keys.keys() - {it.value for it in names}
-    for it in names:
-        near = nearest(str(it.value), left) if it.value not in keys else ""
-        if near:
-            place = Place(file.file, keys[near].start_mark.line + 1)
-            yield from _lacks(it, f"controller {it.value}", did_you_mean_at(near, place))
 
 
 def _of_one(
@@ -62,7 +58,11 @@ def _of_one(
         hint = did_you_mean_at(near, declared[near].place) if near else ""
         yield from _lacks(key, f"controller {name}", hint)
         return
-    own = _own_joints(controller)
+    # The joints of a controller; none where its parameters do not list any.
+    own: dict[str, Place] = {}
+    for given in filter(None, map(controller.values.get, ("joints", "joint"))):
+        words = given.value if isinstance(given.value, list) else [given.value]
+        own |= {str(it): given.place for it in words}
     for joint in listed(body, JOINTS) if own else ():
         if joint.value not in own:
             near = nearest(joint.value, own)
@@ -96,15 +96,6 @@ def _lacks(node: yaml.Node, name: str, hint: str) -> Iterator[Finding]:
     # Launch files fill in placeholders.
     if not PLACEHOLDER.search(name):
         yield remark_at(node, f"MoveIt uses {name}, which no parameter file of the robot has", hint)
-
-
-def _own_joints(controller: Run) -> dict[str, Place]:
-    """The joints of a controller; none where its parameters do not list any."""
-    found: dict[str, Place] = {}
-    for given in filter(None, map(controller.values.get, ("joints", "joint"))):
-        words = given.value if isinstance(given.value, list) else [given.value]
-        found |= {str(it): given.place for it in words}
-    return found
 
 
 @rule("MB878", "section-of-no-controller", WARNING, formats=(PARAMS,))

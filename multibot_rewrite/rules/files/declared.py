@@ -66,7 +66,12 @@ def _meant_by(
     there += dict.fromkeys(name for group in above for name in _beside(group, paths))
     said = {it.name for it in section.given}
     free = [it for it in there if it not in said]
-    groups, guesses = _by_group(free), Guesses()
+    # Group -> last word -> parameter.
+    groups: dict[str, dict[str, str]] = defaultdict(dict)
+    for name in free:
+        group, _, last = name.rpartition(".")
+        groups[group][last] = name
+    guesses = Guesses()
     for it in unknown:
         yield it, "" if _renamed(it.name) in said else _meant(it.name, free, groups, guesses)
 
@@ -102,15 +107,6 @@ def _is_known(section: Section, it: Setting) -> bool:
     """Has every node such a parameter, or does it hold names?"""
     of_node = section.node is not None and bool(params_at(section.node, it.name, it.key))
     return of_node or _EVERYWHERE.fullmatch(it.name) is not None
-
-
-def _by_group(names: Iterable[str]) -> Mapping[str, Mapping[str, str]]:
-    """Group -> last word -> parameter."""
-    found: dict[str, dict[str, str]] = defaultdict(dict)
-    for name in names:
-        above, _, last = name.rpartition(".")
-        found[above][last] = name
-    return found
 
 
 def _meant(

@@ -111,9 +111,18 @@ def _missing(file: NamedFile, site: Site) -> str:
     if (site.in_key and file.kind == RVIZ) or not (site.is_sure or file.is_certain):
         return ""
     if site.kind in _FRAMES:
-        return _missing_frame(file, site)
+        links, bare = file.declared.get("link", {}), site.text.strip("/")
+        if not file.is_certain:
+            bare = bare.rpartition("/")[2]
+        declared = any(is_declared(file.context.names, it, bare) for it in (site.kind, "frame"))
+        sent = bare in file.sent | built_in_nodes(file.context.distro).sent
+        free = not links or declared or sent or is_shared_frame(file.context, bare)
+        return "" if free else bare
     if site.kind == "interface":
-        return _missing_owner(file, site)
+        # ``joint1/position`` of an unknown controller: other ones may be another controller's.
+        owner, slash, _ = site.text.rpartition("/")
+        free = site.is_sure or not slash or "/" in owner or not file.declared.get("joint")
+        return "" if free or is_component(file.context, owner) else owner
     name = site.text.lstrip("/")
     known = file.declared.get(site.kind, {})
     # A joint of another controller: controller/joint.
@@ -122,23 +131,6 @@ def _missing(file: NamedFile, site: Site) -> str:
     sensors = site.kind != "joint" and not file.is_certain
     none = not known and not (file.is_certain and file.kind == BRIDGE)
     return "" if none or name in known or chained or guessed or sensors else name
-
-
-def _missing_frame(file: NamedFile, site: Site) -> str:
-    links, bare = file.declared.get("link", {}), site.text.strip("/")
-    if not file.is_certain:
-        bare = bare.rpartition("/")[2]
-    known = any(is_declared(file.context.names, it, bare) for it in (site.kind, "frame"))
-    sent = bare in file.sent | built_in_nodes(file.context.distro).sent
-    free = not links or known or sent or is_shared_frame(file.context, bare)
-    return "" if free else bare
-
-
-def _missing_owner(file: NamedFile, site: Site) -> str:
-    """``joint1/position`` of an unknown controller: other ones may be another controller's."""
-    owner, slash, _ = site.text.rpartition("/")
-    free = site.is_sure or not slash or "/" in owner or not file.declared.get("joint")
-    return "" if free or is_component(file.context, owner) else owner
 
 
 @rule("MB875", "file-of-another-robot", ERROR, formats=(MOVEIT,), options={"build": True})

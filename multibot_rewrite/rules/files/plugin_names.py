@@ -196,17 +196,13 @@ def without_plugin(file: NamedFile) -> Iterator[Finding]:
             )
             elsewhere = not found and is_set_beside(file, it.section.title, f"{below}plugin")
             if not found and not elsewhere and not _is_misspelt(it, word, words):
-                yield _without(it, word, below)
+                what = "plugin" if it.check == "classes" else "parameters"
+                message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
+                name = below + "plugin" if what == "plugin" else below.rstrip(".")
+                # Another parameter file, or the launch file, may have it.
+                hint = f"add {name}, or take {word} off the list"
+                yield remark_at(it.given.node, message, hint, WARNING)
     yield from _without_type(file)
-
-
-def _without(it: Demand, word: str, below: str) -> Finding:
-    what = "plugin" if it.check == "classes" else "parameters"
-    message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
-    name = below + "plugin" if what == "plugin" else below.rstrip(".")
-    # Another parameter file, or the launch file, may have it.
-    hint = f"add {name}, or take {word} off the list"
-    return remark_at(it.given.node, message, hint, WARNING)
 
 
 def _is_misspelt(it: Demand, word: str, words: Sequence[str]) -> bool:

@@ -30,7 +30,14 @@ def deprecated(file: NamedFile) -> Iterator[Finding]:
     """Parameters of known nodes, and types of controllers."""
     release = file.context.distro
     for section, _ in file.pages:
-        yield from _deprecated_parameters(section, release)
+        for name, key in flattened(section.body):
+            param = section.node.params.get(name) if section.node else None
+            if param and param.deprecated and has_release(param.deprecated, release):
+                there = has_release(param.releases, release)
+                state = "is deprecated" if there else "is gone and has no effect"
+                message = f"{name} {state} in {release}"
+                instead = f"use {' or '.join(param.instead)}" if param.instead else "delete it"
+                yield remark_at(key, message, f"{instead}{_source(param.source)}")
         yield from _deprecated_types(section.body, file.known, release)
 
 
@@ -58,17 +65,6 @@ def elsewhere(file: NamedFile) -> Iterator[Finding]:
     for section, _ in file.pages:
         yield from _of_another_release(section, file.context.distro)
     yield from of_other_releases(file)
-
-
-def _deprecated_parameters(section: ParamSection, release: str) -> Iterator[Finding]:
-    for name, key in flattened(section.body):
-        param = section.node.params.get(name) if section.node else None
-        if param and param.deprecated and has_release(param.deprecated, release):
-            there = has_release(param.releases, release)
-            state = "is deprecated" if there else "is gone and has no effect"
-            message = f"{name} {state} in {release}"
-            instead = f"use {' or '.join(param.instead)}" if param.instead else "delete it"
-            yield remark_at(key, message, f"{instead}{_source(param.source)}")
 
 
 def _of_another_release(section: ParamSection, release: str) -> Iterator[Finding]:

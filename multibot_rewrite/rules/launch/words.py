@@ -56,10 +56,6 @@ def _faults(it: Run) -> Iterator[tuple[str, str]]:
         elif not flags and value is None:
             hint = "numbers come first, then the two frames; or use flags, as --frame-id"
             yield f"{word} is in the place of {flag}", hint
-    yield from _no_rotation(named)
-
-
-def _no_rotation(named: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     found = [_number(named[it]) for it in _QUATERNION if it in named]
     if len(found) == len(_QUATERNION) and None not in found:
         length = sum(it * it for it in found if it is not None) ** 0.5
@@ -161,7 +157,14 @@ def _named_files(it: LaunchedNode) -> Iterator[str]:
 @launch_rule("MG714", "program-misspelt")
 def misspelt(launched: Launched) -> Iterator[Finding]:
     """By what is known of a package's programs."""
-    known = _programs(launched.release)
+    # The programs of each package that are known.
+    known: dict[str, set[str]] = defaultdict(set)
+    for node in built_in(launched.release).nodes.values():
+        for path in node.programs or (node.kind,):
+            package, slash, program = path.rpartition("/")
+            known[package if slash else node.package].add(program)
+    for package, _, program in (path.partition("/") for path in programs().passing):
+        known[package].add(program)
     for it in launched.graph.nodes:
         every = known.get(it.package, ())
         if not it.executable or "::" in it.executable or it.executable in every:
@@ -183,18 +186,6 @@ def _package_meant(it: LaunchedNode, known: Mapping[str, Collection[str]]) -> st
         return ""
     around = sources_around(it.place.file)
     return "" if around and it.package in packages_below((around,)) else near
-
-
-def _programs(release: str) -> dict[str, set[str]]:
-    """The programs of each package that are known."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for node in built_in(release).nodes.values():
-        for it in node.programs or (node.kind,):
-            package, slash, program = it.rpartition("/")
-            found[package if slash else node.package].add(program)
-    for package, _, program in (it.partition("/") for it in programs().passing):
-        found[package].add(program)
-    return found
 
 
 def _differ(program: str, near: str) -> bool:

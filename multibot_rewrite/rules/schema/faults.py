@@ -192,7 +192,12 @@ def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Ite
     for tag in missing:
         yield fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
     yield from _repeated(element, section, count)
-    yield from _shapes(element, section)
+    # Shapes after the first one of a geometry.
+    either = [tag for tag, child in section.children.items() if child.times == "either"]
+    shapes = list(element.iterchildren(*either)) if either else []
+    if len(shapes) > 1:
+        message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads only the first"
+        yield fault("repeated", shapes[1], None, message)
 
 
 def _unknown_child(
@@ -239,15 +244,6 @@ def canonical(element: etree._Element) -> bytes:
     return etree.tostring(element, method="c14n", with_tail=False)
 
 
-def _shapes(element: etree._Element, section: UrdfPart) -> Iterator[Problem]:
-    """Shapes after the first one of a geometry."""
-    known = [tag for tag, child in section.children.items() if child.times == "either"]
-    shapes = list(element.iterchildren(*known)) if known else []
-    if len(shapes) > 1:
-        message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads only the first"
-        yield fault("repeated", shapes[1], None, message)
-
-
 def _near(name: str, known: Collection[str]) -> str:
     """The known name that is most like another: the same letters, or nearly all of them."""
     low = name.lower()
@@ -276,19 +272,13 @@ def _value(
         if not value:
             yield fault("missing", element, attribute, f"{attribute} of <{element.tag}> is empty")
     elif not _is_unread(element):
-        yield from _numbers(element, kind, attribute, version)
-
-
-def _numbers(
-    element: etree._Element, kind: Kind, attribute: str, version: Version
-) -> Iterator[Problem]:
-    value = element.get(attribute, "")
-    named, problem, hint = wrong_numbers(value, kind.type)
-    if named:
-        # Readers go on without a colour, and take a number out of range before it is refused.
-        mild = kind.type == "rgba" or (named == "range" and kind.refused > version)
-        message = f"{element.tag}@{attribute} is {shortened(value)!r}{problem}"
-        yield fault(named, element, attribute, message, hint, WARNING if mild else "")
+        value = element.get(attribute, "")
+        named, problem, hint = wrong_numbers(value, kind.type)
+        if named:
+            # Readers go on without a colour, and take a number out of range before it is refused.
+            mild = kind.type == "rgba" or (named == "range" and kind.refused > version)
+            message = f"{element.tag}@{attribute} is {shortened(value)!r}{problem}"
+            yield fault(named, element, attribute, message, hint, WARNING if mild else "")
 
 
 def _is_unread(element: etree._Element) -> bool:

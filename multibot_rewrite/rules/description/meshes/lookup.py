@@ -185,12 +185,8 @@ def _nearest(it: MeshFile) -> str:
 def package_not_found(subject: Subject) -> Iterator[Problem]:
     """Once for each package."""
     lost = [it for it in lookups(subject) if it.path and not it.folders]
-    for package, it in {_package(it): it for it in reversed(lost)}.items():
+    for package, it in {it.used.path.partition("/")[0]: it for it in reversed(lost)}.items():
         yield problem(it.used, f"package {package!r} was not found", "give its folder with --roots")
-
-
-def _package(it: MeshFile) -> str:
-    return it.used.path.partition("/")[0]
 
 
 @rule("MB703", "mesh-name-case", ERROR)
@@ -287,7 +283,11 @@ def _box(path: str, state: tuple[int, ...], whole: bool) -> Extent | None:
         )  # few descriptions are near such a file
 
         return collada_box(data)
-    return _around(_corners(path, data, size))
+    columns = list(zip(*_corners(path, data, size), strict=True))
+    if not columns or not isfinite(sum(map(sum, columns))):
+        return None
+    (a, b, c), (d, e, f) = ([best(it) for it in columns] for best in (min, max))
+    return Extent((a, b, c), (d, e, f))
 
 
 def _corners(path: str, data: bytes, size: int) -> Iterable[Vector]:
@@ -304,11 +304,3 @@ def _corners(path: str, data: bytes, size: int) -> Iterable[Vector]:
         except ValueError:
             return
         yield x, y, z
-
-
-def _around(corners: Iterable[Vector]) -> Extent | None:
-    columns = list(zip(*corners, strict=True))
-    if not columns or not isfinite(sum(map(sum, columns))):
-        return None
-    (a, b, c), (d, e, f) = ([best(it) for it in columns] for best in (min, max))
-    return Extent((a, b, c), (d, e, f))

@@ -195,7 +195,16 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
                 if name not in read and macro.find(".//link") is not None:
                     message = f"macro {macro.get('name', '')!r} takes {name!r} and does not use it"
                     yield Problem(macro, message, "params", "put it in front of the names")
-    yield from _unused_arguments(root)
+    # An included file sees the arguments too, so a file with includes is left alone.
+    if any(is_xacro(it) for it in root.iter("{*}include")) or root.find(".//link") is None:
+        return
+    arguments = [it for it in root.iter("{*}arg") if is_xacro(it)]
+    read = words_of(root) if arguments else frozenset()
+    for element in arguments:
+        name = element.get("name", "")
+        if PREFIX.fullmatch(name) and name not in read:
+            message = f"argument {name!r} is declared and not used"
+            yield Problem(element, message, "name", "put it in front of the names")
 
 
 def _forgotten(scope: Scope, declared: list[WrittenName]) -> Iterator[Problem]:
@@ -208,19 +217,6 @@ def _forgotten(scope: Scope, declared: list[WrittenName]) -> Iterator[Problem]:
             f"{it.element.tag}s of {_of(scope)} have"
         )
         yield Problem(it.element, message, it.attribute, _hint(scope, it.text))
-
-
-def _unused_arguments(root: _Element) -> Iterator[Problem]:
-    """An included file sees the arguments too, so a file with includes is left alone."""
-    if any(is_xacro(it) for it in root.iter("{*}include")) or root.find(".//link") is None:
-        return
-    arguments = [it for it in root.iter("{*}arg") if is_xacro(it)]
-    read = words_of(root) if arguments else frozenset()
-    for element in arguments:
-        name = element.get("name", "")
-        if PREFIX.fullmatch(name) and name not in read:
-            message = f"argument {name!r} is declared and not used"
-            yield Problem(element, message, "name", "put it in front of the names")
 
 
 def _calls_others(macro: _Element) -> bool:
