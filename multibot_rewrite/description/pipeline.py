@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, RewriteRefused
@@ -102,7 +102,10 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
         already_rewritten(inventory, robots, again, renames.naming.own),
     )
     pairs = overlap(naming, robots)
-    whole = list(checks.meeting(inventory, renames, pairs)) or _meeting(prepared, pairs)
+    whole = list(checks.meeting(inventory, renames, pairs))
+    # What robots whose names overlap would share in the running system.
+    for robot, other, _ in () if whole or inventory.format == SRDF else pairs:
+        whole += shared_by_both(document, pieces, (robot, other), naming, tree.vocabulary)
     at_start = to_findings(document, whole, ERROR, of_file=True)
     _stop_on_errors([*to_findings(document, at_values, ERROR), *at_start])
     for robot in robots[:1]:
@@ -118,14 +121,6 @@ def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str])
     inventory, own = prepared.inventory, prepared.naming.own
     found = already_rewritten(inventory, robots, False, own, kinds)
     _stop_on_errors([*to_findings(inventory.document, found, ERROR)])
-
-
-def _meeting(prepared: Template, pairs: Iterable[tuple[str, str, str]]) -> Iterator[Problem]:
-    """What robots whose names overlap would share in the running system."""
-    inventory, _, pieces, _, naming, tree, _ = prepared
-    for robot, other, _ in pairs if inventory.format != SRDF else ():
-        pair = robot, other
-        yield from shared_by_both(inventory.document, pieces, pair, naming, tree.vocabulary)
 
 
 def check_apart(made: Mapping[str, Template]) -> None:

@@ -69,7 +69,11 @@ def _linted(
             if not beside or kind_of(data):
                 refuse_templates(data, path)
             if beside:
-                return sorted(_beside(path, data, settings), key=by_place)
+                # A description needs none of it.
+                from multibot_rewrite.lint.beside import beside_findings
+
+                its = list(beside_findings(path, data, settings))
+                return sorted(unsuppressed(its, {}, settings), key=by_place)
             _look(path, data, settings, wanted, found, sources)
     except InputError as error:
         found.append(failure(path, error, settings))
@@ -103,12 +107,6 @@ def _look(
             continue
         found += lint_subject(subject, wanted)
         sources |= {**subject.sources, path: data}
-
-
-def _beside(path: str, data: bytes, settings: Settings) -> list[Finding]:
-    from multibot_rewrite.lint.beside import beside_findings  # a description needs none of it
-
-    return unsuppressed(list(beside_findings(path, data, settings)), {}, settings)
 
 
 def lint_subject(subject: Subject, wanted: Callable[[Rule], bool] = bool) -> list[Finding]:

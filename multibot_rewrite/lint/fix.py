@@ -39,7 +39,8 @@ def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Findi
     """
     findings = lint_data(path, source, settings)
     for _ in range(ROUNDS):
-        edits = list(_not_overlapping(_edits(path, findings)))
+        found = {edit for it in findings if it.file == path for edit in it.edits}
+        edits = list(_not_overlapping(found))
         if not edits:
             return source, findings
         fixed = b"".join(cut(source, edits))
@@ -47,10 +48,6 @@ def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Findi
         _prove(path, (source, findings), (fixed, after), edits)
         source, findings = fixed, after
     raise ProofError(f"{path}: there is still something to fix after {ROUNDS} rounds")
-
-
-def _edits(path: str, findings: Iterable[Finding]) -> set[Edit]:
-    return {edit for finding in findings if finding.file == path for edit in finding.edits}
 
 
 def _not_overlapping(edits: Iterable[Edit]) -> Iterator[Edit]:

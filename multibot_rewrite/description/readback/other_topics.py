@@ -63,7 +63,15 @@ def resolved(
         if site.kinds[0] == "subtopic" and stems and above is not None:
             below = _joined(above, words[0][1]) if words else None
         yield from ((kind, it, site.path) for it in _full(host, section, site, below))
-    yield from _coded(host, section, above)
+    # The names in the code of what is no ROS 2 node, as those of ROS 1: roscpp puts the namespace
+    # in front of relative ones (names.cpp), and tf's broadcaster has an absolute one (tf2_ros
+    # transform_broadcaster.cpp).
+    off = switched_off(host, section)
+    for wired, path in wired_of(host, section):
+        if wired.name not in off and (above is not None or wired.name.startswith("/")):
+            kind = SERVICE if wired.role == SERVES else TOPIC
+            name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
+            yield TRANSFORMS if wired.name in TF_TOPICS else kind, name, path or wired.name
 
 
 def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
@@ -99,20 +107,6 @@ def as_valid_topic(name: str) -> str:
     """The topic that gz-transport makes of a text: it has no ``~``, and takes out what it does not know
     (gz-transport TopicUtils.cc AsValidTopic, which gz-sim's validTopic and gz-sensors call)."""
     return _NOT_VALID.sub("", name.replace(" ", "_"))
-
-
-def _coded(
-    host: _Element, section: VocabularySection, above: str | None
-) -> Iterator[tuple[str, str, str]]:
-    """The names in the code of what is no ROS 2 node, as those of ROS 1: roscpp puts the namespace in
-    front of relative ones (names.cpp), and tf's broadcaster has an absolute one
-    (tf2_ros transform_broadcaster.cpp)."""
-    off = switched_off(host, section)
-    for wired, path in wired_of(host, section):
-        if wired.name not in off and (above is not None or wired.name.startswith("/")):
-            kind = SERVICE if wired.role == SERVES else TOPIC
-            name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
-            yield TRANSFORMS if wired.name in TF_TOPICS else kind, name, path or wired.name
 
 
 def _namespace(host: _Element, section: VocabularySection) -> str | None:

@@ -188,7 +188,7 @@ def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
     word = tag_kind(path)
     guesses = [_guess(value, word, declared) for value in values]
     made = [it for it in guesses if it is not None]
-    best = max(made, key=_weight, default=None)
+    best = max(made, key=lambda it: (not it.by_tag, it.form != "whole"), default=None)
     if best is None or not _is_path(path):
         return SuggestedRow(path, values[0], None)
     value = values[guesses.index(best)]
@@ -198,10 +198,6 @@ def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
     return SuggestedRow(
         path, value, best._replace(kinds=tuple(dict.fromkeys((*best.kinds, *others))))
     )
-
-
-def _weight(guess: Guess) -> tuple[bool, bool]:
-    return not guess.by_tag, guess.form != "whole"
 
 
 def tag_kind(path: str) -> str:

@@ -187,7 +187,9 @@ def _argument(
         data = expand(path, {**given, name: _MARK}, reach=reach)
         inventory = collect(read_document(data, path), tree)
     except InputError as error:
-        return Argument(name, default, (), 0, _reason(error))
+        # What xacro said, without place and advice.
+        said = str(error).rpartition("xacro failed")[2].partition(": ")[2].partition("; ")[0]
+        return Argument(name, default, (), 0, said or str(error))
     values = [it for it in slot_values(inventory.document.root) if _MARK in it]
     claimed = sum(_MARK in claim.value for claim in inventory.claims)
     renamed = plain - _parts(inventory)
@@ -199,12 +201,6 @@ def _argument(
 def _parts(inventory: Inventory) -> frozenset[str]:
     """The links and joints that are declared."""
     return frozenset(it for kind in PARTS for it in inventory.declared.get(kind, ()))
-
-
-def _reason(error: InputError) -> str:
-    """What xacro said, without place and advice."""
-    text = str(error)
-    return text.rpartition("xacro failed")[2].partition(": ")[2].partition("; ")[0] or text
 
 
 def _uses(inventory: Inventory) -> Iterator[Use]:

@@ -11,7 +11,7 @@ from lxml import etree
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
-from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, RemapRule, expand
+from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, expand
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.model_namespaces import has_own_names
 from multibot_rewrite.description.rewriters.own_defaults import (
@@ -30,7 +30,6 @@ from multibot_rewrite.description.rewriters.vocabulary import (
     split_path,
     split_step,
 )
-from multibot_rewrite.description.rewriters.vocabulary.values import WiredTopic
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 
@@ -75,7 +74,9 @@ def _insertions(
     host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
 ) -> list[Insertion]:
     home = ros_home(host, section)
-    found = list(_defaults(host, section, declared, naming, _hidden(host, home)))
+    # What stands in the host itself has no step for it in its path.
+    hidden = "ros/" if home is host else ""
+    found = list(_defaults(host, section, declared, naming, hidden))
     if any(site.path == "ros/remapping" for site in section.sites):
         found += _remaps(host, section, naming, home)
     if naming.separators:
@@ -133,13 +134,9 @@ def lacks_namespace(
     sites = tuple([it for it in section.sites if "namespace" in it.kinds])
     if not sites or not section.inserts:
         return False
-    hidden, asked = _hidden(host, ros_home(host, section)), section._replace(sites=sites)
+    hidden = "ros/" if ros_home(host, section) is host else ""
+    asked = section._replace(sites=sites)
     return any(it.kind == "namespace" for it in _defaults(host, asked, declared, naming, hidden))
-
-
-def _hidden(host: etree._Element, home: etree._Element | None) -> str:
-    """What the paths of a host leave out whose ROS settings stand in itself."""
-    return "ros/" if home is host else ""
 
 
 def without(item: Insertion, release: str) -> str:
@@ -231,14 +228,14 @@ def _remaps(
     """A rule for each topic that only a remap can move, unless the file has one."""
     rules = rules_in(home)
     node, namespace = named(host, section)
+    of_node = ("", "" if section.process_wide else node)
     for wired in (it for it in section.wired if not it.is_moved):
         topic, target = wired.name, _remap_target(wired.name, naming)
         full = expand(topic, namespace, node)
-        there = [
-            it
-            for it in rules
-            if expand(it.source, namespace, node) == full and _is_for(it, wired, section, node)
-        ]
+        # The rules that rcl asks for it.
+        other = TOPIC_SCHEME if wired.role == "serves" else SERVICE_SCHEME
+        asked = (it for it in rules if it.scheme != other and it.node in of_node)
+        there = [it for it in asked if expand(it.source, namespace, node) == full]
         if not target or any(
             naming.topics != NAMESPACE or it.source.startswith("/") for it in there
         ):
@@ -250,13 +247,6 @@ def _remaps(
         of_controllers = section.process_wide and topic in section.publishes
         made = Insertion(parent, wrap, xml, "topic", topic, target)
         yield made._replace(of_controllers=of_controllers)
-
-
-def _is_for(rule: RemapRule, wired: WiredTopic, section: VocabularySection, node: str) -> bool:
-    """Does rcl ask this rule for the topic or service? One for another node it does not."""
-    other = TOPIC_SCHEME if wired.role == "serves" else SERVICE_SCHEME
-    of_node = "" if section.process_wide else node
-    return rule.scheme != other and rule.node in ("", of_node)
 
 
 def _remap_target(topic: str, naming: Naming) -> str:

@@ -138,7 +138,9 @@ def expand_traced(
 
 
 def _text(path: str, result: Result, trace: Trace) -> bytes:
-    _print(result.notes)
+    # What xacro warns about, without what a terminal would obey.
+    for line in result.notes.splitlines():
+        sys.stderr.write("".join(it if it.isprintable() else "?" for it in line) + "\n")
     if result.failure:
         said = result.failure.reason
         text = re.sub(r"^\[Errno \d+\] |<class '[\w.]+'>: ", "", said.partition(" [Errno")[0])
@@ -148,7 +150,13 @@ def _text(path: str, result: Result, trace: Trace) -> bytes:
         reason = " ".join((text or said).split())
         message = _message(path, result.failure, reason, trace)
         raise InputError(message, *_cause(reason))
-    _check_root(path, *result.root)
+    # xacro expands what is inside the root, and drops the declaration of its own prefix.
+    prefix, tag = result.root
+    if prefix == "xacro":
+        raise InputError(
+            f"{path}: the root element is <{tag}>, which xacro does not expand; "
+            "put everything inside a <robot> element"
+        )
     return result.text
 
 
@@ -162,21 +170,6 @@ def _tell_missing(reach: Reach, held: tuple[str, ...]) -> None:
 def _tell_once() -> None:
     said = "xacro files are held by limits and Python's audit hook alone: this system has neither"
     sys.stderr.write(f"{said} Landlock nor seccomp (SECURITY.md)\n")
-
-
-def _print(notes: str) -> None:
-    """What xacro warns about, without what a terminal would obey."""
-    lines = ("".join(it if it.isprintable() else "?" for it in line) for line in notes.splitlines())
-    sys.stderr.writelines(f"{line}\n" for line in lines)
-
-
-def _check_root(path: str, prefix: str, tag: str) -> None:
-    """xacro expands what is inside the root, and drops the declaration of its own prefix."""
-    if prefix == "xacro":
-        raise InputError(
-            f"{path}: the root element is <{tag}>, which xacro does not expand; "
-            "put everything inside a <robot> element"
-        )
 
 
 def _cause(reason: str) -> tuple[str, str]:

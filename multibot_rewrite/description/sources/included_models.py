@@ -88,7 +88,8 @@ def _made(include: _Element, file: str, above: tuple[str, ...]) -> bytes:
         text = (element.text or "").strip()
         if text and "://" not in text and is_file(os.path.join(folder, text)):
             element.text = "file://" + os.path.join(folder, text)
-    parts = _merged(include, model) if _is_merged(include) else [_nested(include, model)]
+    is_merged = include.get("merge", "").strip().lower() in ("true", "1")
+    parts = _merged(include, model) if is_merged else [_nested(include, model)]
     return b"".join(_SPACES.sub(b" ", etree.tostring(it, with_tail=False)) for it in parts)
 
 
@@ -104,10 +105,6 @@ def _root(data: bytes, path: str) -> _Element | None:
         return None
     etree.strip_tags(document.root, etree.Comment)
     return document.root
-
-
-def _is_merged(include: _Element) -> bool:
-    return include.get("merge", "").strip().lower() in ("true", "1")
 
 
 def _nested(include: _Element, model: _Element) -> _Element:

@@ -277,16 +277,12 @@ def as_decided(it: Evidence) -> None:
         if not item.step and item.xml.replace(ROBOT_SLOT, robot).encode() not in inserted:
             raise ProofError(f"{it.file}: {item.old!r} was to be replaced by {item.xml}")
     wanted = sorted(item.new.replace(ROBOT_SLOT, robot) for item in every if item.step)
-    if sorted(_filled(it)) != wanted:
+    # What the markers say was empty.
+    above = ((marker.comment.getparent(), marker.filled) for marker in it.markers)
+    asked = ((parent, step) for parent, steps in above for step in steps if parent is not None)
+    filled = (parent.find(query(step)) for parent, step in asked)
+    if sorted(text_of(element) for element in filled if element is not None) != wanted:
         raise ProofError(f"{it.file}: empty elements were to be filled with {', '.join(wanted)}")
-
-
-def _filled(it: Evidence) -> Iterator[str]:
-    """The texts of the elements that the markers say were empty."""
-    for marker in it.markers:
-        parent = marker.comment.getparent()
-        found = () if parent is None else (parent.find(query(step)) for step in marker.filled)
-        yield from (text_of(element) for element in found if element is not None)
 
 
 def as_planned(it: Evidence) -> None:

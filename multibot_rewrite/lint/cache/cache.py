@@ -133,10 +133,9 @@ class Cache:
         if path not in self.shards:
             self.shards[path] = read_shard(path)
         entry = self.shards[path].get(key)
-        return entry.value if entry and self._holds(entry.asked) else None
-
-    def _holds(self, asked: Asked) -> bool:
-        return all(self._answer(question) == answer for question, answer in asked.items())
+        asked = entry.asked.items() if entry else ()
+        holds = all(self._answer(question) == answer for question, answer in asked)
+        return entry.value if entry and holds else None
 
     def _answer(self, question: Question) -> str:
         if question not in self.answers:

@@ -89,14 +89,13 @@ def beyond(
         else:
             new.append(finding)
     names = None if linted is None else {_relative(it, path) for it in linted}
-    gone = (count for key, count in left.items() if _is_judged(key.file, path, names))
+    folder = os.path.dirname(path)
+    gone = (
+        count
+        for key, count in left.items()
+        if names is None or key.file in names or not os.path.exists(os.path.join(folder, key.file))
+    )
     return new, sum(gone)
-
-
-def _is_judged(file: str, path: str, names: Collection[str] | None) -> bool:
-    if names is None or file in names:
-        return True
-    return not os.path.exists(os.path.join(os.path.dirname(path), file))
 
 
 def baseline_text(findings: Iterable[Finding], path: str) -> bytes:

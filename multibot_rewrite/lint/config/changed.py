@@ -115,7 +115,9 @@ def _touched(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
     names = set(_base_names(changes))
     names.update(os.path.basename(path) for path, it in changed_by_path.items() if it)
     left = {path: patterns for path, patterns in reads.items() if not changed_by_path[path]}
-    while more := [path for path, patterns in left.items() if _reach(patterns, names)]:
+    while more := [
+        path for path, patterns in left.items() if any(_matching(it, names) for it in patterns)
+    ]:
         changed_by_path.update(dict.fromkeys(more, True))
         names.update(os.path.basename(path) for path in more)
         left = {path: patterns for path, patterns in left.items() if not changed_by_path[path]}
@@ -194,7 +196,3 @@ def _matching(pattern: str, names: Collection[str]) -> list[str]:
     if not any(it in pattern for it in "*?["):
         return found
     return found + [it for it in names if it != pattern and fnmatchcase(it, pattern)]
-
-
-def _reach(patterns: Iterable[str], names: Collection[str]) -> bool:
-    return any(_matching(it, names) for it in patterns)

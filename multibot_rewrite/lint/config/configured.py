@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.config import (
@@ -104,7 +104,9 @@ def _configured(path: str, table: Mapping[str, object]) -> Configured:
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in READERS:
-            raise UsageError(f"{path}: unknown key {key!r}{_meant(key, READERS)}")
+            near = nearest(key.replace("_", "-"), list(READERS))
+            meant = f"did you mean {near!r}?" if near else f"use one of {', '.join(READERS)}"
+            raise UsageError(f"{path}: unknown key {key!r}, {meant}")
         field = FIELDS.get(key, key.replace("-", "_"))
         values[field] = READERS[key](KeyValue(f"{path}: {key}", folder, value))
     naming_options = {name: values.pop(name) for name in NAMING if name in values}
@@ -130,11 +132,6 @@ def _named(it: Configured, naming_options: Mapping[str, Any]) -> Configured:
     naming = {**it.naming, **naming_options}
     settings = it.settings._replace(naming=make_naming(**naming))
     return it._replace(settings=settings, naming=naming)
-
-
-def _meant(key: str, known: Iterable[str]) -> str:
-    near = nearest(key.replace("_", "-"), list(known))
-    return f", did you mean {near!r}?" if near else f", use one of {', '.join(known)}"
 
 
 def is_excluded(path: str, it: Configured) -> bool:

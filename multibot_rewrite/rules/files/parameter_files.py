@@ -69,7 +69,16 @@ def file_parameters(text: str) -> tuple[FileParameter, ...]:
 def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[FileParameter]:
     keys = {key.value: value for key, value in pairs(node)}
     if _is_type(keys.get("type")):
-        yield _parameter(owner, node, path, keys)
+        given = {key: _value(value) for key, value in keys.items()}
+        yield FileParameter(
+            owner,
+            ".".join(path),
+            str(given["type"]),
+            text_of(given.get("default_value")),
+            _bounds(given.get("validation")),
+            "read_only" if given.get("read_only") is True else "",
+            node.start_mark.line + 1,
+        )
         return
     for key, below in pairs(node):
         yield from _parameters(owner, below, (*path, _segment(key.value)))
@@ -84,21 +93,6 @@ def _is_type(node: yaml.Node | None) -> bool:
 def _segment(word: str) -> str:
     """``__map_joints`` stands for each of the names in the parameter ``joints``."""
     return f"<{word.removeprefix(_MAP)}>" if word.startswith(_MAP) else word
-
-
-def _parameter(
-    owner: str, node: yaml.Node, path: tuple[str, ...], keys: dict[str, yaml.Node]
-) -> FileParameter:
-    given = {key: _value(value) for key, value in keys.items()}
-    return FileParameter(
-        owner,
-        ".".join(path),
-        str(given["type"]),
-        text_of(given.get("default_value")),
-        _bounds(given.get("validation")),
-        "read_only" if given.get("read_only") is True else "",
-        node.start_mark.line + 1,
-    )
 
 
 def _value(node: yaml.Node) -> object:

@@ -191,7 +191,16 @@ def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Ite
             yield from _unknown_child(element, child, section, schema, meant)
     for tag in missing:
         yield fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
-    yield from _repeated(element, section, count)
+    # Children that are read once and come again with other content.
+    for tag, times in count.items():
+        declared = section.children.get(tag)
+        if times < 2 or declared is None or declared.times not in ("once", "required"):
+            continue
+        first, *others = element.findall(tag)
+        other = next((it for it in others if canonical(it) != canonical(first)), None)
+        if other is not None:
+            message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
+            yield fault("repeated", other, None, message)
     # Shapes after the first one of a geometry.
     either = [tag for tag, child in section.children.items() if child.times == "either"]
     shapes = list(element.iterchildren(*either)) if either else []
@@ -224,19 +233,6 @@ def _unknown_child(
         yield fault("misplaced", child, None, message, hint)
     elif section.name != ROBOT:
         yield fault("not-read", child, None, message)
-
-
-def _repeated(element: etree._Element, section: UrdfPart, count: Counter[str]) -> Iterator[Problem]:
-    """Children that are read once and come again with other content."""
-    for tag, times in count.items():
-        child = section.children.get(tag)
-        if times < 2 or child is None or child.times not in ("once", "required"):
-            continue
-        first, *others = element.findall(tag)
-        other = next((it for it in others if canonical(it) != canonical(first)), None)
-        if other is not None:
-            message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
-            yield fault("repeated", other, None, message)
 
 
 def canonical(element: etree._Element) -> bytes:

@@ -69,21 +69,20 @@ class Vocabulary:
         made: list[VocabularySection] = []
         for raw in self._raw[key]:
             section = self._read(*raw, within)
-            if self._is_here(section.releases):
-                self._add(made, section)
+            if not self._is_here(section.releases):
+                continue
+            here = [
+                at
+                for at, old in enumerate(made)
+                if section.ros in ("", old.ros)
+                and (self.release or section.releases == old.releases)
+            ]
+            for at in here:
+                made[at] = merge(made[at], section)
+            if not here:
+                made.append(section)
         # Whole when others see it; two threads that make it at once both get the first one's.
         return self._found.setdefault(key, tuple(made))
-
-    def _add(self, found: list[VocabularySection], new: VocabularySection) -> None:
-        same = [
-            at
-            for at, old in enumerate(found)
-            if new.ros in ("", old.ros) and (self.release or new.releases == old.releases)
-        ]
-        for at in same:
-            found[at] = merge(found[at], new)
-        if not same:
-            found.append(new)
 
     def _is_here(self, words: str) -> bool:
         return not self.release or has_release(words, self.release)
