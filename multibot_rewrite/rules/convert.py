@@ -64,13 +64,9 @@ def end_tag_of(text: Spanned, element: _Element) -> int:
     *_, last = element.iter("*")
     start, tag = text.starts[last], f"</{element.tag}".encode()
     at = text.source.index(tag, start)
-    while _in_comment(text.source[start:at]):
+    while text.source.count(b"<!--", start, at) > text.source.count(b"-->", start, at):
         at = text.source.index(tag, at + 1)
     return at
-
-
-def _in_comment(before: bytes) -> bool:
-    return before.count(b"<!--") > before.count(b"-->")
 
 
 def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -> Edit | None:

@@ -123,7 +123,7 @@ class Access:
                 if seen > MOST_FILES:
                     raise NotAllowedError(f"{pattern} names more than {MOST_FILES} files")
             found = beside
-        return sorted(it for it in found if self.readable(it) and os.path.lexists(it))
+        return sorted(it for it in found if self.readable(it) and _is_there(it))
 
     def read(self, name: str) -> bytes:
         """The bytes of a file, one more than may be if it has more; raises NotAllowedError, OSError.
@@ -131,7 +131,7 @@ class Access:
         Of a package that is not built its sources count: a build may install files elsewhere.
         """
         path = self.readable(name)
-        if not os.path.lexists(path):
+        if not _is_there(path):
             path = self.readable(in_sources(path) or path)
         data = _content(path, self.reach.trust)
         if data is None:
@@ -159,6 +159,11 @@ def _content(path: str, trust: bool) -> bytes | None:
     with open(path, "rb", opener=lambda it, _: os.open(it, flags)) as file:
         is_regular = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
         return file.read(MAX_BYTES + 1) if is_regular or trust else None
+
+
+@outside
+def _is_there(path: str) -> bool:
+    return os.path.lexists(path)
 
 
 @outside

@@ -9,7 +9,7 @@ ros2_control controller_manager.cpp (a controller is what ``NAME.type`` of the m
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 import yaml
 
@@ -104,7 +104,9 @@ def section_of_no_controller(file: NamedFile) -> Iterator[Finding]:
     given, known = beside(file)
     declared = {it.node: it for it in given if it.host_name}
     bare = [name for name, it in declared.items() if not it.values]
-    loose = [*_undeclared((it for it in given if is_in(file, it.place)), known)]
+    here = (it for it in given if is_in(file, it.place) and not it.host_name)
+    nodes = ((it, known.get(it.fact.known)) for it in here if TYPE not in it.values)
+    loose = [it for it, node in nodes if node and node.host == MANAGER]
     for it in loose:
         alike = [one for one in loose if one.fact.known == it.fact.known]
         same = [name for name in bare if declared[name].fact.known == it.fact.known]
@@ -117,10 +119,3 @@ def section_of_no_controller(file: NamedFile) -> Iterator[Finding]:
         hint = did_you_mean_at(near, place) if near else hint
         message = f"{it.node} has parameters of a controller that nothing declares"
         yield remark(it.place._replace(column=1), message, hint, WARNING if near else NOTE)
-
-
-def _undeclared(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> Iterator[Run]:
-    for it in given:
-        node = known.get(it.fact.known)
-        if not it.host_name and TYPE not in it.values and node and node.host == MANAGER:
-            yield it

@@ -42,7 +42,12 @@ _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 def unknown_parameters(file: NamedFile) -> Iterator[Finding]:
     """Parameters that no release of their node declares, with a name nearly that of one."""
     for section in sections(file):
-        unknown = [it for it, found in section.known if all(map(_is_any_name, found))]
+        # What is asked for by whatever name there is counts for none.
+        unknown = [
+            it
+            for it, found in section.known
+            if all(fact.how == READ and fact.path.endswith(">") for fact in found)
+        ]
         for it, near in _meant_by(section, unknown, file.context.distro):
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
@@ -80,11 +85,6 @@ def _renamed(name: str) -> str:
     """Today's name of a parameter that has another one elsewhere; empty for none."""
     *above, last = name.split(".")
     return ".".join((*above, RENAMED[last])) if last in RENAMED else ""
-
-
-def _is_any_name(fact: Declared) -> bool:
-    """Is it asked for by whatever name there is?"""
-    return fact.how == READ and fact.path.endswith(">")
 
 
 def _beside(above: str, paths: Sequence[str]) -> Iterator[str]:

@@ -64,7 +64,8 @@ def undeclared_joint(file: NamedFile) -> Iterator[Finding]:
 
 
 def _undeclared(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Finding]:
-    there = {it.together for it in file.names if _is_there(file, it)}
+    joints = (it for it in file.names if it.kind == "joint")
+    there = {it.together for it in joints if it.text in file.declared.get("joint", ())}
     foreign = set(_foreign(file)[0])
     hinted: dict[str, str] = {}
     for site in (it for it in file.names if it.kind in kinds):
@@ -97,10 +98,6 @@ def _near(file: NamedFile, site: Site, name: str, known: Iterable[str]) -> str:
         near = meant_name(name, known)
         return f"did you mean {near!r}?" if near else ""
     return did_you_mean(name, known, *(() if _is_sure(file, site) else (MISTYPED,)))
-
-
-def _is_there(file: NamedFile, site: Site) -> bool:
-    return site.kind == "joint" and site.text in file.declared.get("joint", ())
 
 
 def _missing(file: NamedFile, site: Site) -> str:
@@ -238,12 +235,9 @@ def _said(file: NamedFile, site: Site, known: Mapping[str, str], renamed: frozen
 def _begins_all(file: NamedFile, text: str) -> bool:
     """Do most links begin so? Code that puts it before names makes other ones than the description."""
     links = [it for it in file.declared.get("link", ()) if it != WORLD]
-    return len(links) >= _FEWEST and 2 * len(_begun(text, links)) > len(links)
-
-
-def _begun(text: str, names: Iterable[str]) -> list[str]:
     starts = tuple(f"{text.rstrip('_/')}{it}" for it in "_/")
-    return [it for it in names if text and it.startswith(starts)]
+    begun = [it for it in links if text and it.startswith(starts)]
+    return len(links) >= _FEWEST and 2 * len(begun) > len(links)
 
 
 def _robots_names(file: NamedFile) -> dict[str, str]:

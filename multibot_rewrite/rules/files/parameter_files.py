@@ -68,8 +68,10 @@ def file_parameters(text: str) -> tuple[FileParameter, ...]:
 
 def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[FileParameter]:
     keys = {key.value: value for key, value in pairs(node)}
-    if _is_type(keys.get("type")):
-        given = {key: _value(value) for key, value in keys.items()}
+    type_ = keys.get("type")
+    if isinstance(type_, yaml.ScalarNode) and type_.value.partition("_")[0] in _TYPES:
+        made = yaml.SafeLoader("").construct_object
+        given = {key: made(value, deep=True) for key, value in keys.items()}
         yield FileParameter(
             owner,
             ".".join(path),
@@ -84,20 +86,9 @@ def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[
         yield from _parameters(owner, below, (*path, _segment(key.value)))
 
 
-def _is_type(node: yaml.Node | None) -> bool:
-    if not isinstance(node, yaml.ScalarNode):
-        return False
-    return node.value.partition("_")[0] in _TYPES
-
-
 def _segment(word: str) -> str:
     """``__map_joints`` stands for each of the names in the parameter ``joints``."""
     return f"<{word.removeprefix(_MAP)}>" if word.startswith(_MAP) else word
-
-
-def _value(node: yaml.Node) -> object:
-    loader = yaml.SafeLoader("")
-    return loader.construct_object(node, deep=True)
 
 
 def _bounds(validation: object) -> str:

@@ -132,7 +132,9 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
     package, _, last = canonical(name).partition("::")
     if package in packages():
         # Whoever writes a class of his own may put it into the namespace of a package.
-        slip = _slip(last, [it for it in there if canonical(it).startswith(f"{package}::")])
+        own = [it for it in there if canonical(it).startswith(f"{package}::")]
+        by_last = {canonical(it).rpartition("::")[2]: it for it in own}
+        slip = by_last.get(slip_of(last.rpartition("::")[2], by_last), "")
         hint = f"did you mean {slip}?" if slip else "see the plugins of its package"
         return "which its package does not have", hint, ERROR if slip else NOTE
     slip = nearest(package, packages(), MISTYPED)
@@ -140,12 +142,6 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
     # A package that is not known may have it, whatever its name is like.
     unknown = f"a class of {package}, which is not known"
     return (unknown, f"did you mean {alike}?", NOTE) if alike else ("", "", "")
-
-
-def _slip(last: str, known: Sequence[str]) -> str:
-    """The class whose own name differs by a letter or two."""
-    by_last = {canonical(it).rpartition("::")[2]: it for it in known}
-    return by_last.get(slip_of(last.rpartition("::")[2], by_last), "")
 
 
 def _near(name: str, there: Sequence[str]) -> str:

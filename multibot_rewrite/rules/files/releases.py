@@ -46,10 +46,19 @@ def deprecated(file: NamedFile) -> Iterator[Finding]:
 )
 def not_sent(file: NamedFile) -> Iterator[Finding]:
     """Interfaces of joint_state_broadcaster that no topic holds."""
-    if has_release(_GONE_SINCE, file.context.distro):
-        for section, _ in file.pages:
-            if section.node is not None and section.node.name == _BROADCASTER:
-                yield from _not_sent(section.body)
+    if not has_release(_GONE_SINCE, file.context.distro):
+        return
+    nodes = ((section.node, section.body) for section, _ in file.pages)
+    for body in (it for node, it in nodes if node is not None and node.name == _BROADCASTER):
+        given = {key.value: value for key, value in pairs(body)}
+        words = scalars(given.get("map_interface_to_joint_state"))
+        mapped = {getattr(it, "value", "") for _, it in words}
+        for item in items(given.get("interfaces")):
+            name = getattr(item, "value", "")
+            if name not in _IN_JOINT_STATES | mapped:
+                message = f"no node publishes {name}: joint_states has no field for it"
+                hint = "use a state_interfaces_broadcaster for it"
+                yield remark_at(item, message, hint)
 
 
 @rule(
@@ -111,17 +120,3 @@ def _deprecated_types(body: yaml.Node, known: KnownNodes | None, release: str) -
             interface = value.value.partition("_")[0]
             hint = f"use {_FORWARD} with interface_name: {interface}"
             yield remark_at(value, message, hint)
-
-
-def _not_sent(body: yaml.MappingNode) -> Iterator[Finding]:
-    """Interfaces that no topic holds."""
-    given = {key.value: value for key, value in pairs(body)}
-    mapped = {
-        getattr(it, "value", "") for _, it in scalars(given.get("map_interface_to_joint_state"))
-    }
-    for item in items(given.get("interfaces")):
-        name = getattr(item, "value", "")
-        if name not in _IN_JOINT_STATES | mapped:
-            message = f"no node publishes {name}: joint_states has no field for it"
-            hint = "use a state_interfaces_broadcaster for it"
-            yield remark_at(item, message, hint)

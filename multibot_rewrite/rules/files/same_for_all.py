@@ -68,20 +68,16 @@ def not_renamed(file: NamedFile) -> Iterator[Finding]:
         if sure and site.text not in _OPEN_PATTERNS:
             message = f"names in {site.key} {site.text!r} are not rewritten"
             yield remark(site, message, "check that it works for each robot")
-    for one in file.shown:
-        yield from (it for place in one.places for it in _in_display(file, one, place))
+    for one, place in ((item, site) for item in file.shown for site in item.places):
+        why = _why_not(file.context, one, place) if place.slot.value else None
+        if why:
+            message, hint = why
+            yield remark(place, f"{place.key.rstrip('.*')} {place.slot.value!r} {message}", hint)
 
 
 def _mentions(context: Context, value: str) -> bool:
     words = "".join(c if c.isalnum() or c in "_-/" else " " for c in value).split()
     return any(is_declared(context.names, kind, it) for it in words for kind in ("link", "joint"))
-
-
-def _in_display(file: NamedFile, one: RvizItem, place: Site) -> Iterator[Finding]:
-    there = _why_not(file.context, one, place) if place.slot.value else None
-    if there:
-        message, hint = there
-        yield remark(place, f"{place.key.rstrip('.*')} {place.slot.value!r} {message}", hint)
 
 
 def _why_not(context: Context, one: RvizItem, place: Site) -> tuple[str, str] | None:

@@ -23,12 +23,8 @@ _LEFT = "no node of its stack or file is started here: name the launch file that
 MODULES = (models, started, rules_of_words)
 
 
-def _rules() -> Iterator[Rule]:
-    for module in MODULES:
-        yield from (it for it in vars(module).values() if isinstance(it, Rule))
-
-
-RULES = tuple(sorted(_rules(), key=lambda it: it.code))
+_DECLARED = (it for module in MODULES for it in vars(module).values() if isinstance(it, Rule))
+RULES = tuple(sorted(_DECLARED, key=lambda it: it.code))
 
 
 def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
@@ -93,7 +89,8 @@ def placed(findings: Iterable[Finding], launched: Launched) -> Iterator[Finding]
     """Yield findings about a system where the launch file starts the nodes that they are about."""
     nodes = {node.full_name: node.place for node in launched.nodes}
     for it in findings:
-        about = chain((it.node,), _ends(it, launched.system), _of_robot(it.robot, nodes))
+        robots = [name for name in nodes if it.robot and it.robot in name.split("/")]
+        about = chain((it.node,), _ends(it, launched.system), robots)
         place = None if it.file else next((nodes[name] for name in about if name in nodes), None)
         if place is None or not place.file:
             yield it
@@ -108,10 +105,6 @@ def _ends(it: Finding, system: System) -> Iterator[str]:
     yield from (end.node for end in system.ends if end.name in it.names)
     edges = (edge for edge in system.edges if edge.child in it.names)
     yield from (node for edge in edges for node in edge.publishers)
-
-
-def _of_robot(robot: str, nodes: Iterable[str]) -> Iterator[str]:
-    yield from (name for name in nodes if robot and robot in name.split("/"))
 
 
 def judge_launch(launched: Launched) -> list[Finding]:

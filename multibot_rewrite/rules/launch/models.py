@@ -116,17 +116,16 @@ def not_brought(launched: Launched) -> Iterator[Finding]:
 def _lacking(launched: Launched, inwards: bool) -> Iterator[tuple[InSimulator, str]]:
     """Yield the topics of models that no bridge has, where one has that of another model."""
     told = {it.gz for it in _rows(launched) if it.inwards is inwards}
-    every = [(model, one) for model in launched.simulated for one in _topics(model, inwards)]
+    every = [
+        (model, (it.ros_type, f"/{it.gz.lstrip('/')}"))
+        for model in launched.simulated
+        for it in model.topics
+        if (it.direction == _INTO_GAZEBO) is inwards
+    ]
     alike = {_plain(model, one) for model, one in every if one[1] in told}
     for model, one in every:
         if one[1] not in told and _plain(model, one) in alike:
             yield model, one[1]
-
-
-def _topics(model: InSimulator, inwards: bool) -> Iterator[tuple[str, str]]:
-    for it in model.topics:
-        if (it.direction == _INTO_GAZEBO) is inwards:
-            yield it.ros_type, f"/{it.gz.lstrip('/')}"
 
 
 def _plain(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:

@@ -109,12 +109,20 @@ def not_there(launched: Launched) -> Iterator[Finding]:
         if note.parameters and note.file:
             told.add((note.place.file, note.place.line, note.file))
             yield at(not_there, note.place, note.message, _PATH)
-    named = [(it.full_name, it.place, path) for it in launched.nodes for path in _files(it)]
+    named = [
+        (it.full_name, it.place, str(it.values[parameter].value))
+        for it in launched.nodes
+        for parameter in _NAMED
+        if parameter in it.values
+    ]
     for node in launched.graph.nodes:
-        named += [(node.name or node.executable, node.place, path) for path in _named_files(node)]
+        words = [word for flag, word in pairwise(node.arguments) if flag in ("-d", "-file")]
+        who = node.name or node.executable
+        named += [(who, node.place, path) for path in (*words, *world_files(node))]
     for who, place, path in named:
         key = (place.file, place.line, path)
-        if not os.path.exists(path) and key not in told:
+        is_meant = os.path.isabs(path) and _is_ours(path)
+        if is_meant and not os.path.exists(path) and key not in told:
             told.add(key)
             yield at(not_there, place, f"{who} is given {path}, which is not there", _PATH)
 
@@ -139,19 +147,6 @@ def _is_ours(path: str) -> bool:
     """May it be judged here? What another machine has, or a program makes, may not."""
     folder = os.path.dirname(path)
     return os.path.isdir(folder) and folder not in _TEMPORARY
-
-
-def _files(it: Run) -> Iterator[str]:
-    values = (str(it.values[name].value) for name in _NAMED if name in it.values)
-    yield from (path for path in values if os.path.isabs(path) and _is_ours(path))
-
-
-def _named_files(it: LaunchedNode) -> Iterator[str]:
-    """The files that the words of a program name."""
-    words = [word for flag, word in pairwise(it.arguments) if flag in ("-d", "-file")]
-    for path in (*words, *world_files(it)):
-        if os.path.isabs(path) and _is_ours(path):
-            yield path
 
 
 @launch_rule("MG714", "program-misspelt")

@@ -6,6 +6,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import chain
 
 from lxml import etree
 
@@ -268,13 +269,12 @@ def _value(
         if not value:
             yield fault("missing", element, attribute, f"{attribute} of <{element.tag}> is empty")
     elif not _is_unread(element):
-        value = element.get(attribute, "")
         named, problem, hint = wrong_numbers(value, kind.type)
         if named:
             # Readers go on without a colour, and take a number out of range before it is refused.
             mild = kind.type == "rgba" or (named == "range" and kind.refused > version)
-            message = f"{element.tag}@{attribute} is {shortened(value)!r}{problem}"
-            yield fault(named, element, attribute, message, hint, WARNING if mild else "")
+            level = WARNING if mild else ""
+            yield fault(named, element, attribute, f"{where}{problem}", hint, level)
 
 
 def _is_unread(element: etree._Element) -> bool:
@@ -285,19 +285,17 @@ def _is_unread(element: etree._Element) -> bool:
 
 def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Problem]:
     """Text where no parser expects any, mostly a stray ``>``."""
-    for element in (it for top in _found(_TOPS, root) for it in _elements_with_text(top)):
+    tops = _found(_TOPS, root)
+    inside = ([top] if top.tag == ROBOT else _found(_TEXTS, top) for top in tops)
+    for element in chain.from_iterable(inside):
         section = section_of(element, known)
         if section is None or section.text:
             continue
         pieces = [element.text, *(child.tail for child in element)]
         found = next(" ".join(it.split()) for it in pieces if it and it.strip())
-        inside = "" if element.text and element.text.strip() else None
+        at = "" if element.text and element.text.strip() else None
         message = f"text {shortened(found)!r} in <{element.tag}>, which no parser reads"
-        yield fault("not-read", element, inside, message)
-
-
-def _elements_with_text(top: etree._Element) -> list[etree._Element]:
-    return [top] if top.tag == ROBOT else _found(_TEXTS, top)
+        yield fault("not-read", element, at, message)
 
 
 def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:

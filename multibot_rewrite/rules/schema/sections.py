@@ -81,7 +81,8 @@ def schema(version: Version) -> Schema:
     """The schema of a version."""
     sections = {name: _of_version(it, version) for name, it in _all_sections().items()}
     tags = frozenset(tag for it in sections.values() for tag in it.children)
-    parents = frozenset(name for name, it in sections.items() if _needs_a_child(it))
+    kinds = ((name, child.times) for name, it in sections.items() for child in it.children.values())
+    parents = frozenset(name for name, times in kinds if times == "required")
     return Schema(version, sections, tags, parents)
 
 
@@ -92,7 +93,10 @@ def _all_sections() -> Mapping[str, UrdfPart]:
 
 def _of_version(section: UrdfPart, version: Version) -> UrdfPart:
     """A section as a version has it: what comes later has no type, nothing in it is checked."""
-    attributes = {key: _kind_of_version(it, version) for key, it in section.attributes.items()}
+    attributes = {
+        key: it if it.since <= version else it._replace(type="", instead_of="")
+        for key, it in section.attributes.items()
+    }
     children = {
         tag: it if it.since <= version else it._replace(section="")
         for tag, it in section.children.items()
@@ -100,14 +104,6 @@ def _of_version(section: UrdfPart, version: Version) -> UrdfPart:
     later = {f"@{key}": it.since for key, it in attributes.items() if it.since > version}
     later |= {tag: it.since for tag, it in children.items() if it.since > version}
     return section._replace(attributes=attributes, children=children, later=later)
-
-
-def _kind_of_version(kind: Kind, version: Version) -> Kind:
-    return kind._replace(type="", instead_of="") if kind.since > version else kind
-
-
-def _needs_a_child(section: UrdfPart) -> bool:
-    return any(it.times == "required" for it in section.children.values())
 
 
 def _sections(lines: Iterable[str]) -> Mapping[str, UrdfPart]:

@@ -160,18 +160,16 @@ def _elsewhere(subject: Subject, it: MeshFile) -> str:
     package, root = own
     tail = os.path.normpath(it.path).replace("../", "")
     here = os.path.dirname(file)
-    above = [here[: len(here) - len(rest)] for rest in _ends(here[len(root) :])]
+    within = here[len(root) :]
+    # The folders from its own up to the package's.
+    steps = (at for at in range(len(within) - 1, -1, -1) if within[at] == os.sep)
+    above = [here, *(here[: len(root) + at] for at in steps)]
     places = [*((folder, tail) for folder in above), (root, f"meshes/{os.path.basename(tail)}")]
     for folder, path in places:
         found = find_in(folder, path)
         if found:
             return f"package://{package}/{os.path.relpath(os.path.join(folder, found), root)}"
     return ""
-
-
-def _ends(path: str) -> list[str]:
-    """The ends of a path that start with a slash, the shortest first, and with it the empty one."""
-    return ["", *(path[at:] for at in range(len(path) - 1, -1, -1) if path[at] == os.sep)]
 
 
 def _nearest(it: MeshFile) -> str:

@@ -211,10 +211,11 @@ def _forgotten(scope: Scope, declared: list[WrittenName]) -> Iterator[Problem]:
     """Literal names, where most links (joints) have the prefix."""
     bare = [it for it in declared if not it.words and it.text.strip("/") not in WORLD_FRAMES]
     prefixed = sum(1 for it in declared if it.words & scope.prefix_names)
+    owner = "this file" if scope.macro is None else f"macro {scope.macro.get('name', '')!r}"
     for it in bare if prefixed >= len(bare) else ():
         message = (
             f"{it.element.tag} {it.text!r} lacks the prefix that {prefixed} other "
-            f"{it.element.tag}s of {_of(scope)} have"
+            f"{it.element.tag}s of {owner} have"
         )
         yield Problem(it.element, message, it.attribute, _hint(scope, it.text))
 
@@ -223,10 +224,6 @@ def _calls_others(macro: _Element) -> bool:
     """Does it call macros? They see the parameters of their caller."""
     inside = (it for it in macro.iterdescendants("{*}*") if is_xacro(it))
     return any(str(it.tag).rpartition("}")[2] not in _BUILTIN for it in inside)
-
-
-def _of(scope: Scope) -> str:
-    return "this file" if scope.macro is None else f"macro {scope.macro.get('name', '')!r}"
 
 
 def _hint(scope: Scope, text: str) -> str:

@@ -335,14 +335,11 @@ def _masses(robot: Robot) -> dict[str, float]:
 def relied_on(subject: Subject, gone: frozenset[str]) -> tuple[str, ...]:
     """What goes with these links, in the words of a message."""
     joints = {it.name for it in subject.robot.joints if it.child in gone or it.parent in gone}
-    found = [*_sensors(subject, gone | joints), *_driven(subject, joints)]
+    blocks = subject.elements.tops("gazebo")
+    lost = (it for it in blocks if it.get("reference") in gone | joints)
+    sensors = (it.get("name") for block in lost for it in block.iterchildren("sensor"))
+    found = [*(f"sensor {name!r}" for name in sensors), *_driven(subject, joints)]
     return tuple(dict.fromkeys(found))
-
-
-def _sensors(subject: Subject, gone: frozenset[str]) -> Iterator[str]:
-    for block in subject.elements.tops("gazebo"):
-        if block.get("reference") in gone:
-            yield from (f"sensor {it.get('name')!r}" for it in block.iterchildren("sensor"))
 
 
 def _driven(subject: Subject, joints: set[str]) -> Iterator[str]:

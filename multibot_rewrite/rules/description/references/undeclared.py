@@ -100,14 +100,10 @@ def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
         level = it.level
         if "ros2_control" in inside:
             level = level or since_jazzy(subject)
-        elif inside and code == JOINT and _in_simulator(subject):
-            level = ERROR
+        elif inside and code == JOINT and subject.settings.simulated:
+            # Its plugins run: for certain, if it is an error that they find no joint.
+            level = ERROR if level_of_absence(subject) == ERROR else level
         yield it._replace(level=level)
-
-
-def _in_simulator(subject: Subject) -> bool:
-    """Do its plugins run for certain, and find no joint that is not there?"""
-    return subject.settings.simulated and level_of_absence(subject) == ERROR
 
 
 undeclared_link = rule("MB202", "undeclared-link", ERROR)(partial(undeclared, "MB202"))
