@@ -88,10 +88,7 @@ def fixed(part: ReadPart, spec: Part, spans: Spans) -> Fixed:
         at, _ = spans.inside(spans.document.root)
         text = _MOUNT.format(name=name, origin=origin, **words)
         return Fixed((was(at, at, b"", text.encode()),), name)
-    return _without_world(part, spec, spans, robot.below.get(WORLD, ()))
-
-
-def _without_world(part: ReadPart, spec: Part, spans: Spans, joints: Sequence[Joint]) -> Fixed:
+    joints = robot.below.get(WORLD, ())
     root = spans.document.root
     link = next(it for it in root.iterchildren("link") if it.get("name") == WORLD)
     if len(link) or not joints:
@@ -257,10 +254,8 @@ def _check_link(at: str, part: ReadPart, robot: Robot) -> None:
 
 def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list[Edit]:
     """The edits that declare them; elements that the ``others`` leave out need none."""
-    return list(_edits(joined, spans, {it.start for it in others if it.start < it.end}))
-
-
-def _edits(joined: Document, spans: Spans, edited: Collection[int]) -> Iterator[Edit]:
+    edited = {it.start for it in others if it.start < it.end}
+    edits: list[Edit] = []
     lacking = _declared(spans.document) - _declared(joined)
     for it in spans.document.root.iterchildren("*") if lacking else ():
         names = (name for one in it.iter("*") for name in (one.tag, *one.attrib))
@@ -272,7 +267,8 @@ def _edits(joined: Document, spans: Spans, edited: Collection[int]) -> Iterator[
         old = spans.text_of(it)
         words = (b' xmlns:%s="%s"' % pair for pair in sorted(lacking) if pair[1] in used)
         at = 1 + len(old[1:].split(b">", 1)[0].split(None, 1)[0].rstrip(b"/"))
-        yield was(start, spans.end_of(it), old, old[:at] + b"".join(words) + old[at:])
+        edits.append(was(start, spans.end_of(it), old, old[:at] + b"".join(words) + old[at:]))
+    return edits
 
 
 def _declared(document: Document) -> set[tuple[bytes, bytes]]:

@@ -173,20 +173,16 @@ def split_text(data: bytes, file: str, tree: Tree) -> dict[str, bytes]:
 def prove(data: bytes, parts: Sequence[Mounted], tree: Tree) -> None:
     """Raise ProofError unless ``data`` is these parts and nothing else."""
     try:
-        _same_parts(data, parts, tree)
+        found = split_text(data, "the joined description", tree)
+        first = parts[0].part
+        before = split_text(first.data, first.file, tree) if is_joined_whole(first.data) else {}
+        wanted = before or {first.name: first.data}
+        wanted |= {it.part.name: it.part.data for it in parts[1:]}
+        for name, text in wanted.items():
+            if found.get(name) != text:
+                raise ProofError(f"part {name!r} cannot be taken out again as it was")
+        if list(found) != list(wanted):
+            raise ProofError(f"{len(wanted)} parts went in, {len(found)} come out")
         check_read(read_xml(data, "the joined description"), parts)
     except InputError as error:
         raise ProofError(f"the joined description cannot be read: {error}") from None
-
-
-def _same_parts(data: bytes, parts: Sequence[Mounted], tree: Tree) -> None:
-    found = split_text(data, "the joined description", tree)
-    first = parts[0].part
-    before = split_text(first.data, first.file, tree) if is_joined_whole(first.data) else {}
-    wanted = before or {first.name: first.data}
-    wanted |= {it.part.name: it.part.data for it in parts[1:]}
-    for name, text in wanted.items():
-        if found.get(name) != text:
-            raise ProofError(f"part {name!r} cannot be taken out again as it was")
-    if list(found) != list(wanted):
-        raise ProofError(f"{len(wanted)} parts went in, {len(found)} come out")

@@ -62,28 +62,20 @@ def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Inserti
     """Everything that ``hosts`` need beyond what they say themselves."""
     served = [(host, section) for host, section in hosts if section.inserts]
     silent = second_senders(served, naming)
-    return [
-        item
-        for host, section in served
-        for item in _insertions(host, section, declared, naming)
-        if item.shared or host not in silent
-    ]
-
-
-def _insertions(
-    host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
-) -> list[Insertion]:
-    home = ros_home(host, section)
-    # What stands in the host itself has no step for it in its path.
-    hidden = "ros/" if home is host else ""
-    found = list(_defaults(host, section, declared, naming, hidden))
-    if any(site.path == "ros/remapping" for site in section.sites):
-        found += _remaps(host, section, naming, home)
-    if naming.separators:
-        found += _of_ros_1(host, section, naming)
-    if section.helper and naming.separators and naming.topics != NAMESPACE:
-        found += _apart(host, section, declared, naming, home)
-    return found
+    every: list[Insertion] = []
+    for host, section in served:
+        home = ros_home(host, section)
+        # What stands in the host itself has no step for it in its path.
+        hidden = "ros/" if home is host else ""
+        found = list(_defaults(host, section, declared, naming, hidden))
+        if any(site.path == "ros/remapping" for site in section.sites):
+            found += _remaps(host, section, naming, home)
+        if naming.separators:
+            found += _of_ros_1(host, section, naming)
+        if section.helper and naming.separators and naming.topics != NAMESPACE:
+            found += _apart(host, section, declared, naming, home)
+        every += (item for item in found if item.shared or host not in silent)
+    return every
 
 
 def _of_ros_1(

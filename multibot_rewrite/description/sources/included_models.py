@@ -45,10 +45,7 @@ def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:
     document = _document(data, file) if b"<include" in data and len(above) <= _DEEPEST else None
     if document is None or document.root.tag != "sdf" or document.root.find("world") is not None:
         return data
-    return _filled(document, (*above, real_path(file)))
-
-
-def _filled(document: Document, above: tuple[str, ...]) -> bytes:
+    above = (*above, real_path(file))
     source, last = document.source, 0
     done: list[bytes] = []
     for element, start in zip(document.elements, document.starts, strict=True):

@@ -248,27 +248,23 @@ def older_nodes(file: NamedFile) -> Iterator[tuple[str, ParamSection]]:
 def missing_parameters(file: NamedFile) -> Iterator[Finding]:
     """What a node asks for and has no default: by itself, in a block, or with another parameter."""
     for section in sections(file):
-        yield from _missing(file, section)
+        facts = of_release(section.facts, file.context.distro)
+        needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]
+        found = [it for fact, words in needed for it in _required(file, section, fact, words)]
+        # What a controller has under another name is misspelt, or it is of another class that is called
+        # the same; a section with nothing of it adds to one of another file.
+        unknown = [it for it, known in section.known if not known and it.name != TYPE]
+        is_whole = len(unknown) < len(found) < len(needed)
+        controller = section.node is not None and bool(section.node.types)
+        yield from found if is_whole or not controller else ()
+        for fact in facts:
+            for words in (words for check, words in fact.checks if check == "required_or"):
+                yield from _required_or(file, section, fact, words.split())
     for it in demands(file, "needs"):
         # A value that only a launch file fills in is there, too.
         if it.given.value is True and it.section.at + it.words[0] not in it.section.whole:
             message = f"{it.section.title}: {it.given.name} is true without {it.words[0]}"
             yield remark_at(it.given.key, message, f"add it, or set this to false; see {it.source}")
-
-
-def _missing(file: NamedFile, section: Section) -> Iterator[Finding]:
-    facts = of_release(section.facts, file.context.distro)
-    needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]
-    found = [it for fact, words in needed for it in _required(file, section, fact, words)]
-    # What a controller has under another name is misspelt, or it is of another class that is called the
-    # same; a section with nothing of it adds to one of another file.
-    unknown = [it for it, known in section.known if not known and it.name != TYPE]
-    is_whole = len(unknown) < len(found) < len(needed)
-    controller = section.node is not None and bool(section.node.types)
-    yield from found if is_whole or not controller else ()
-    for fact in facts:
-        for words in (words for check, words in fact.checks if check == "required_or"):
-            yield from _required_or(file, section, fact, words.split())
 
 
 def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:

@@ -69,8 +69,7 @@ def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tupl
     """Every fault in these ``<gazebo>`` elements."""
     version, taken = version_of_release(release), described("urdf")
     assert taken
-    filled = (it for it in blocks if len(it))
-    found = tuple(it for block in filled for it in _block(block, robot, version, taken))
+    found = tuple(it for block in blocks for it in _block(block, robot, version, taken))
     return _by_reader(found, blocks[0].getroottree().getroot(), release)
 
 

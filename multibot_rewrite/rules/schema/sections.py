@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import isfinite
 from typing import NamedTuple
@@ -88,7 +88,22 @@ def schema(version: Version) -> Schema:
 
 @lru_cache
 def _all_sections() -> Mapping[str, UrdfPart]:
-    return _sections(table_text(_FILE).splitlines())
+    found: dict[str, UrdfPart] = {}
+    attributes: dict[str, Kind] = {}
+    children: dict[str, Child] = {}
+    name = ""
+    for line in table_text(_FILE).splitlines():
+        head, *words = line.partition("#")[0].split() or [""]
+        if head.startswith("["):
+            name, attributes, children = head.strip("[]"), {}, {}
+            found[name] = UrdfPart(name, attributes, children, False)
+        elif head == "text":
+            found[name] = found[name]._replace(text=True)
+        elif head.startswith("@"):
+            attributes[head[1:]] = _kind(words)
+        elif head:
+            children[head] = _child(head, words)
+    return found
 
 
 def _of_version(section: UrdfPart, version: Version) -> UrdfPart:
@@ -104,25 +119,6 @@ def _of_version(section: UrdfPart, version: Version) -> UrdfPart:
     later = {f"@{key}": it.since for key, it in attributes.items() if it.since > version}
     later |= {tag: it.since for tag, it in children.items() if it.since > version}
     return section._replace(attributes=attributes, children=children, later=later)
-
-
-def _sections(lines: Iterable[str]) -> Mapping[str, UrdfPart]:
-    found: dict[str, UrdfPart] = {}
-    attributes: dict[str, Kind] = {}
-    children: dict[str, Child] = {}
-    name = ""
-    for line in lines:
-        head, *words = line.partition("#")[0].split() or [""]
-        if head.startswith("["):
-            name, attributes, children = head.strip("[]"), {}, {}
-            found[name] = UrdfPart(name, attributes, children, False)
-        elif head == "text":
-            found[name] = found[name]._replace(text=True)
-        elif head.startswith("@"):
-            attributes[head[1:]] = _kind(words)
-        elif head:
-            children[head] = _child(head, words)
-    return found
 
 
 def _kind(words: Sequence[str]) -> Kind:

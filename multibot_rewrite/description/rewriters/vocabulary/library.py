@@ -40,20 +40,17 @@ class Vocabulary:
         self._found: dict[tuple[str, str], tuple[VocabularySection, ...]] = {}
         self._values: dict[tuple[str, bool], Values | None] = {}
         for file, text in texts.items():
-            self._index(file, text)
-
-    def _index(self, file: str, text: str) -> None:
-        preamble, *chunks = ("\n" + text).split("\n[")
-        line = 0
-        for line, row in enumerate(preamble.split("\n")):
-            if row.strip() and not row.startswith("#"):
-                raise VocabularyError(f"{file}:{line}: text before the first [section]")
-        for chunk in chunks:
-            line += 1
-            type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
-            for name in names:
-                self._raw.setdefault((type_, name), []).append((file, line, chunk))
-            line += chunk.count("\n")
+            preamble, *chunks = ("\n" + text).split("\n[")
+            line = 0
+            for line, row in enumerate(preamble.split("\n")):
+                if row.strip() and not row.startswith("#"):
+                    raise VocabularyError(f"{file}:{line}: text before the first [section]")
+            for chunk in chunks:
+                line += 1
+                type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
+                for name in names:
+                    self._raw.setdefault((type_, name), []).append((file, line, chunk))
+                line += chunk.count("\n")
 
     def find(self, type_: str, name: str) -> tuple[VocabularySection, ...]:
         """The rewriters of that type under that name: more than one where ROS 1 and 2 differ.

@@ -70,22 +70,18 @@ def scopes(root: _Element) -> list[Scope]:
         if scope is None:
             names = given if home is None else own[home]
             scope = found[home] = Scope(home, prefix_names[names], [], [])
-        _add(scope, element)
+        tag = str(element.tag)
+        if tag in ("link", "joint"):
+            declares = _declares(element)
+            name = element.get("name")
+            if name:
+                (scope.declared if declares else scope.used).append(_name_at(element, "name", name))
+            continue
+        attribute = _REFERENCES[tag]
+        value = element.get(attribute) if attribute else element.text
+        if value and value.strip():
+            scope.used.append(_name_at(element, attribute, value.strip()))
     return list(found.values())
-
-
-def _add(scope: Scope, element: _Element) -> None:
-    tag = str(element.tag)
-    if tag in ("link", "joint"):
-        declares = _declares(element)
-        name = element.get("name")
-        if name:
-            (scope.declared if declares else scope.used).append(_name_at(element, "name", name))
-        return
-    attribute = _REFERENCES[tag]
-    value = element.get(attribute) if attribute else element.text
-    if value and value.strip():
-        scope.used.append(_name_at(element, attribute, value.strip()))
 
 
 def _declares(element: _Element) -> bool:

@@ -164,17 +164,7 @@ def _sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
 @rule("MB217", "frame-not-a-link", WARNING)
 def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
     """Frames that the robot does not have; others than misspelt ones may be a localisation's."""
-    for claim, name, near in _frames(subject):
-        message = f"{where(claim)} names the frame {name!r}, which is not a link"
-        place = (claim.element, message, claim.attribute)
-        if near:
-            yield Problem(*place, f"did you mean {near!r}?")
-        elif not claim.site.default and not name.endswith(SENT_FRAMES):
-            yield Problem(*place, "another node must publish it", level=NOTE)
-
-
-def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
-    """Frames that nothing declares, and the link that was meant, if one is near enough."""
+    # Frames that nothing declares, and the link that was meant, if one is near enough.
     declared = subject.inventory.declared
     links = declared["link"]
     meant: dict[str, str] = {}
@@ -192,4 +182,9 @@ def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
                 continue
             if name not in meant:
                 meant[name] = meant_name(own, links) if len(meant) < HINTED else ""
-            yield claim, name, meant[name]
+            message = f"{where(claim)} names the frame {name!r}, which is not a link"
+            place = (claim.element, message, claim.attribute)
+            if meant[name]:
+                yield Problem(*place, f"did you mean {meant[name]!r}?")
+            elif not claim.site.default and not name.endswith(SENT_FRAMES):
+                yield Problem(*place, "another node must publish it", level=NOTE)
