@@ -175,6 +175,7 @@ _ATTRIBUTE = lazy_compile(rb"\s((?:[^\s=:/>\"']+:)?([^\s=:/>\"']+))\s*=\s*(?:\"[
 def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> Finding:
     """The finding for a problem; ``numbers`` are those of ``numbered``."""
     number, level = numbers[problem.element], problem.level or rule.level
+    sources = subject.sources
     file, source, offset, calls = _place(subject, number, problem.attribute)
     line, column = locate(source, offset)
     if level == ERROR and _is_argument(subject, number, problem.attribute):
@@ -187,10 +188,10 @@ def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> 
         file,
         line,
         column,
-        tuple(_call_text(subject, call) for call in calls),
+        tuple(f"{it.file}:{locate(sources[it.file], it.start)[0]}: {it.macro}" for it in calls),
         subject.arguments,
         # An edit is one of the text that was looked at.
-        () if subject.sources else problem.edits,
+        () if sources else problem.edits,
     )
 
 
@@ -239,8 +240,3 @@ def _attributes(source: bytes, start: int) -> dict[bytes, int]:
     found = list(_ATTRIBUTE.finditer(source, start, tag_end(source, start)))
     bare = {it[2]: it.start(2) for it in found}
     return bare | {it[1]: it.start(1) for it in found}
-
-
-def _call_text(subject: Subject, call: Call) -> str:
-    line, _ = locate(subject.sources[call.file], call.start)
-    return f"{call.file}:{line}: {call.macro}"

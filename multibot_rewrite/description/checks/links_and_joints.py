@@ -87,21 +87,17 @@ def read_robot(root: _Element) -> Robot:
 
 
 def _link(element: _Element) -> Link:
-    inertial = next(element.iterchildren("inertial"), None)
     name = element.get("name", "")
-    return Link(name, element, None if inertial is None else _inertial(inertial))
-
-
-def _inertial(element: _Element) -> Inertial:
-    parts = {it.tag: it for it in reversed(element)}
+    inertial = next(element.iterchildren("inertial"), None)
+    if inertial is None:
+        return Link(name, element)
+    parts = {it.tag: it for it in reversed(inertial)}
     mass, inertia = parts.get("mass"), parts.get("inertia")
     values = [] if inertia is None else [number(inertia.get(it)) for it in MOMENTS]
     moments = tuple([it for it in values if it is not None])
-    return Inertial(
-        element,
-        None if mass is None else value_of(mass, "value"),
-        moments if len(moments) == len(MOMENTS) else None,
-    )
+    weight = None if mass is None else value_of(mass, "value")
+    whole = moments if len(moments) == len(MOMENTS) else None
+    return Link(name, element, Inertial(inertial, weight, whole))
 
 
 def _firsts(things: Sequence[_Named]) -> dict[str, _Named]:

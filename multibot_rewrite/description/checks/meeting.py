@@ -98,7 +98,17 @@ def shared_with(
         raise ProofError(
             f"{document.file}: {it.name!r} ({it.path}) is a frame that tf does not have"
         )
-    found = [*_would_share(document, reading, robot, naming, vocabulary)]
+    found = [*_changed(document, reading, robot, naming, vocabulary)]
+    of_plugins: dict[int, list[RuntimeName]] = {}
+    for it in same_for_all(reading.names, robot, naming):
+        if it.of_controllers:
+            of_plugins.setdefault(it.number, []).append(it)
+            continue
+        element, message = it.element_in(document.root), said(ALL, it)
+        found.append(Problem(element, message, None, advice(it), (), code_of(it)))
+    for names in of_plugins.values():
+        plugin = names[0].element_in(document.root)
+        found.append(_of_controllers(plugin, names, naming, vocabulary.release))
     yield from found
     if not found and robot.encode() not in text:
         yield from _same_text(document, naming, vocabulary)
@@ -107,21 +117,6 @@ def shared_with(
 
         hint = robot_instead(document.file)
         yield Problem(document.root, "the robot has no link", None, hint, (), NO_LINK)
-
-
-def _would_share(
-    document: Document, reading: Reading, robot: str, naming: Naming, vocabulary: Vocabulary
-) -> Iterator[Problem]:
-    yield from _changed(document, reading, robot, naming, vocabulary)
-    of_plugins: dict[int, list[RuntimeName]] = {}
-    for it in same_for_all(reading.names, robot, naming):
-        if it.of_controllers:
-            of_plugins.setdefault(it.number, []).append(it)
-        else:
-            element, message = it.element_in(document.root), said(ALL, it)
-            yield Problem(element, message, None, advice(it), (), code_of(it))
-    for names in of_plugins.values():
-        yield _of_controllers(names[0].element_in(document.root), names, naming, vocabulary.release)
 
 
 def _same_text(document: Document, naming: Naming, vocabulary: Vocabulary) -> Iterator[Problem]:

@@ -88,13 +88,11 @@ def parts_of(value: str, stems: Stems, declared: Declared) -> Iterator[NamePart]
         # A word with its own ``model/`` in front.
         at, word = bare, _longest(value, bare, stems)
     kinds, name = (STEM, word) if word else (("model",), model)
-    if name:
-        yield NamePart(at, name, kinds, False, kinds)
-        yield from _below(value, at + len(name), declared)
-
-
-def _below(value: str, at: int, declared: Declared) -> Iterator[NamePart]:
-    """The links, joints and sensors below a model, each declared in this file."""
+    if not name:
+        return
+    yield NamePart(at, name, kinds, False, kinds)
+    at += len(name)
+    # The links, joints and sensors below a model, each declared in this file.
     while part := _PART.match(value, at):
         kind, start = part[1], part.end()
         name = _longest(value, start, declared.get(kind, ()))

@@ -87,16 +87,13 @@ class Pattern:
         for character in _bytes(name):
             step = here, character
             if step not in self._steps:
-                self._steps[step] = self._next(*step)
+                states = (self._states[at] for at in here)
+                led = (behind for over, behind in states if over is not None and character in over)
+                self._steps[step] = self._reached({at for behind in led for at in behind}, set())
             here = self._steps[step]
             if not here:
                 return False
         return 0 in self._reached(here, {_END})
-
-    def _next(self, here: frozenset[int], character: str) -> frozenset[int]:
-        states = (self._states[at] for at in here)
-        led = (behind for over, behind in states if over is not None and character in over)
-        return self._reached({at for behind in led for at in behind}, set())
 
     def _reached(self, states: Iterable[int], places: Container[str]) -> frozenset[int]:
         """These and all that follow without a character."""

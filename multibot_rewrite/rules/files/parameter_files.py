@@ -135,14 +135,11 @@ def facts_of_node(
     shared = (it for it in node.declared_in if not named or it not in others)
     owners = (node.package, *shared, *one)
     known = (it for owner in owners for it in declared_by(owner))
-    return (*_in_nodl(node), *known)
-
-
-def _in_nodl(node: NodeParameters) -> Iterator[Declared]:
-    """What the installed NoDL document of a node declares."""
-    for path, type_ in nodl_parameters(node.package, node.name):
-        if says_something(path):
-            yield Declared(path, type_, "", "", NODL, f"NoDL of {node.package}/{node.name}")
+    # What the installed NoDL document of the node declares.
+    given = nodl_parameters(node.package, node.name)
+    source = f"NoDL of {node.package}/{node.name}"
+    said = (Declared(*it, "", "", NODL, source) for it in given if says_something(it[0]))
+    return (*said, *known)
 
 
 @outside

@@ -79,10 +79,12 @@ def elsewhere(file: NamedFile) -> Iterator[Finding]:
     """The nodes and parameters of a file that its release does not have and another one has."""
     release = file.context.distro
     for section, node in ((it, it.node) for it, _ in file.pages if not it.wild):
-        if node is not None and not has_release(node.releases, release):
+        if node is None:
+            continue
+        if not has_release(node.releases, release):
             yield _elsewhere(section.keys[-1], f"node {node.name}", node, release)
             continue
-        for name, key in flattened(section.body) if node is not None else ():
+        for name, key in flattened(section.body):
             found = params_at(node, name, key)
             # What is called deprecated is told there.
             told = any(it.deprecated and has_release(it.deprecated, release) for it in found)

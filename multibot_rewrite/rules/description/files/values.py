@@ -141,7 +141,10 @@ def sees_nothing(subject: Subject) -> Iterator[Problem]:
             yield from _none_of(inner, _ABOVE_0["camera"])
         for inner in sensor.iterchildren(*_LIDAR) if type_ in LIDARS else ():
             yield from _none_of(inner, _ABOVE_0["lidar"])
-            yield from _in_millimetres(inner)
+            near, far = number_at(inner, "range/min"), number_at(inner, "range/max")
+            if near is not None and far is not None and near >= BLIND and far >= FAR:
+                hint = "divide by 1000: are these millimetres?"
+                yield _problem(inner, "range/max", "is a length in metres", hint)
 
 
 def unusable_numbers(subject: Subject) -> Iterator[Problem]:
@@ -172,14 +175,6 @@ def _none_of(inner: _Element, paths: tuple[str, ...]) -> Iterator[Problem]:
         value = number_at(inner, path)
         if value is not None and value <= 0:
             yield _problem(inner, path, "has to be above 0")
-
-
-def _in_millimetres(lidar: _Element) -> Iterator[Problem]:
-    near, far = number_at(lidar, "range/min"), number_at(lidar, "range/max")
-    if near is not None and far is not None and near >= BLIND and far >= FAR:
-        yield _problem(
-            lidar, "range/max", "is a length in metres", "divide by 1000: are these millimetres?"
-        )
 
 
 def _problem(above: _Element, path: str, words: str, hint: str = "") -> Problem:

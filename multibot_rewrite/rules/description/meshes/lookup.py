@@ -108,13 +108,13 @@ def _unquoted(path: str) -> str:
 
 def _packages(name: str, first: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
     """The folders that may be a package; ``first`` is the first folder of a path below it."""
+    found = ((it, entries(it)) for it in package_folders(name, file, roots))
     # A folder without a manifest must at least have that.
-    found = package_folders(name, file, roots)
-    return tuple(it for it in found if _may_be_the_package(entries(it), first))
-
-
-def _may_be_the_package(names: frozenset[str], first: str) -> bool:
-    return "package.xml" in names or any(name.lower() == first for name in names)
+    return tuple(
+        folder
+        for folder, names in found
+        if "package.xml" in names or any(name.lower() == first for name in names)
+    )
 
 
 @rule("MB701", "mesh-missing", ERROR)
