@@ -131,7 +131,10 @@ class _Job(NamedTuple):
 
 def _with_files_beside(made: Adopted, found: Sequence[Description], job: _Job) -> Adopted:
     """With launch files and the parameters that they fill in, and what other files name."""
-    there, names = job.package.found, set(_names(found))
+    there, shared = job.package.found, prefixing().shared_frames
+    # What gets the prefix.
+    declared = (it.inventory.declared.get(kind, ()) for it in found for kind in PREFIXED)
+    names = {name for its in declared for name in its if name not in shared}
     urdfs = [it.inventory.document.source for it in found if not _is_srdf(it)]
     filled = fillable(there.params, urdfs, names, made.argument, TRIED)
     space = Space(made.namespace or SPACES[0], bool(made.namespace))
@@ -250,13 +253,6 @@ def _is_prefix(it: Argument) -> bool:
     it."""
     links = (use for use in it.uses if (use.kind, use.how) == ("link", PREFIX))
     return bool(it.value) and any(2 * use.names >= use.total for use in links)
-
-
-def _names(found: Iterable[Description]) -> Iterator[str]:
-    """What gets the prefix."""
-    shared = prefixing().shared_frames
-    declared = (it.inventory.declared.get(kind, ()) for it in found for kind in PREFIXED)
-    yield from (name for names in declared for name in names if name not in shared)
 
 
 def _as_xacros(descriptions: Iterable[Description], job: _Job) -> Iterator[Description]:

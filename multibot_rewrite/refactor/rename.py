@@ -23,7 +23,6 @@ from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.rewriters.contact import respell_collisions
-from multibot_rewrite.description.rewriters.spelling import ResolvedName
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.renames import make_renames
@@ -130,7 +129,12 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
     """The package with the name changed in its descriptions and the files beside."""
     changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
     if not any(changes.values()):
-        raise UsageError(f"{folder}: no description has {_named(symbol, package)}")
+        # One that is nowhere declared is of no kind.
+        every = chain.from_iterable(chain(*(it.inventory.names for it in package.descriptions)))
+        known = sorted({it.text for it in every if it.kind in KINDS[symbol.kind]})
+        near = did_you_mean_one_of(symbol.old, known)
+        what = f"a {symbol.kind} {symbol.old!r}" + (f"; {near}" if near else "")
+        raise UsageError(f"{folder}: no description has {what}")
     _check_free(symbol, package, changes)
     edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
     after = edited(texts_of(package.descriptions), edits)
@@ -139,7 +143,11 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
         wanted = expected(it.inventory.document, changes[it.path])
         data, _ = read_text(it.path, how, after)
         if data != wanted:
-            raise InputError(f"{it.path}: {_difference(data, wanted)}")
+            line = first_difference(data, wanted)
+            others = "what makes the name makes others, too"
+            why = others if line else "the name cannot be changed alone"
+            then = f"then there would be {line}; change what makes it by hand"
+            raise InputError(f"{it.path}: {why}: {then}")
     beside = dict(_beside(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
     after |= {path: data for path, (data, _) in beside.items()}
@@ -147,17 +155,6 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
     after = as_named(after, package.descriptions)
     before = {path: read_bytes(path) for path in after}
     return Renaming(before, after, places, found, package.unread)
-
-
-def _named(symbol: _Symbol, package: Package) -> str:
-    every = (_known(it, KINDS[symbol.kind]) for it in package.descriptions)
-    near = did_you_mean_one_of(symbol.old, sorted({it.text for it in chain.from_iterable(every)}))
-    return f"a {symbol.kind} {symbol.old!r}" + (f"; {near}" if near else "")
-
-
-def _known(it: Description, kinds: Collection[str]) -> Iterator[ResolvedName]:
-    """The names of these kinds that are in a description: one that is nowhere declared is of none."""
-    return (one for one in chain.from_iterable(it.inventory.names) if one.kind in kinds)
 
 
 def _check_free(
@@ -205,12 +202,6 @@ def _edits(it: Description, changes: Sequence[ValueEdit]) -> Iterator[SourceEdit
             what = f"{found.place}: {found.value!r} cannot be renamed here: {found.why}"
             raise InputError(f"{what}; write the name out, or change what makes it by hand")
         yield found._replace(file=os.path.realpath(found.file))
-
-
-def _difference(made: bytes, wanted: bytes | None) -> str:
-    line = first_difference(made, wanted)
-    what = "what makes the name makes others, too" if line else "the name cannot be changed alone"
-    return f"{what}: then there would be {line}; change what makes it by hand"
 
 
 def _beside(

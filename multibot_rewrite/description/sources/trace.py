@@ -171,13 +171,9 @@ class Pieces:
         start = place[1]
         begin, end = (_byte(source, slot, it) for it in (offset, offset + length))
         as_is = not whole and source[begin:end] == text.encode()
-        kind = _kind(source, start) if as_is else EXPRESSION
-        return Piece(text, kind, name, begin, end)
-
-
-def _kind(source: bytes, start: int) -> str:
-    name = source[start + 1 : tag_end(source, start)].split(None, 1)[0].rstrip(b"/>").decode()
-    return _KINDS.get(name, "parameter" if name.startswith("xacro:") else LITERAL)
+        tag = source[start + 1 : tag_end(source, start)].split(None, 1)[0].rstrip(b"/>").decode()
+        kind = _KINDS.get(tag, "parameter" if tag.startswith("xacro:") else LITERAL)
+        return Piece(text, kind if as_is else EXPRESSION, name, begin, end)
 
 
 def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:

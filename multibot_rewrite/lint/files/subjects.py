@@ -103,13 +103,9 @@ def _only_defines(root: _Element) -> bool:
 
     One that only includes may be a whole robot; one that defines macros as well is read by others.
     """
-    tags = {_local(child) for child in root.iterchildren("*")}
+    parts = (str(child.tag).rpartition("}") for child in root.iterchildren("*"))
+    tags = {name if "xacro" in space else "" for space, _, name in parts}
     return tags <= DEFINITIONS and ("include" not in tags or "macro" in tags)
-
-
-def _local(element: _Element) -> str:
-    space, _, name = str(element.tag).rpartition("}")
-    return name if "xacro" in space else ""
 
 
 def make_subject(document: Document, settings: Settings) -> Subject:

@@ -66,7 +66,11 @@ def _meant_by(
     facts = [it for it in section.facts if it.how != READ]
     paths = [it.path for it in of_release(facts, release)]
     there = [it for it in paths if "<" not in it]
-    there += _in_blocks(section, paths) if section.node is None else ()
+    if section.node is None:
+        # Parameters of a plugin in the blocks that the file gives it: ``scan`` of a layer's sources.
+        blocks = sorted({it.name.partition(".")[0] for it in section.given if "." in it.name})
+        inner = [it.removeprefix(ID) for it in paths if it.startswith(ID)]
+        there += (f"{block}.{it}" for block in blocks for it in inner if "<" not in it)
     above = sorted({it.name.rpartition(".")[0] for it in unknown})
     there += dict.fromkeys(name for group in above for name in _beside(group, paths))
     said = {it.name for it in section.given}
@@ -94,13 +98,6 @@ def _beside(above: str, paths: Sequence[str]) -> Iterator[str]:
         stand = stands_for(pattern, above) if "<" in pattern and "<" not in last else {}
         if stand and all("." not in word for word in stand.values()):
             yield f"{above}.{last}"
-
-
-def _in_blocks(section: Section, paths: Sequence[str]) -> Iterator[str]:
-    """Parameters of a plugin in the blocks that the file gives it: ``scan`` of a layer's sources."""
-    blocks = {it.name.partition(".")[0] for it in section.given if "." in it.name}
-    inner = [it.removeprefix(ID) for it in paths if it.startswith(ID)]
-    yield from (f"{block}.{it}" for block in sorted(blocks) for it in inner if "<" not in it)
 
 
 def _is_known(section: Section, it: Setting) -> bool:

@@ -113,13 +113,9 @@ def _to_itself(section: Section, node: NodeFacts) -> Iterator[Finding]:
         frame = values.get(parent)
         if given and frame and frame == values.get(child) and holds(condition, values.get):
             message = f"{section.title}: {parent} and {child} are both {frame!r}"
-            hint = f"tf2 refuses a transform from a frame to itself; {_usual(node, parent, child)}"
+            usual = f"by default they are {defaults[parent]} and {defaults[child]}"
+            hint = f"tf2 refuses a transform from a frame to itself; {usual}"
             yield remark_at(given.node, message, hint)
-
-
-def _usual(node: NodeFacts, *parameters: str) -> str:
-    usual = {it.parameter: it.default for it in node.frames}
-    return "by default they are " + " and ".join(usual[it] for it in parameters)
 
 
 def _with(it: Demand) -> str:

@@ -83,12 +83,10 @@ def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[
         )
         return
     for key, below in pairs(node):
-        yield from _parameters(owner, below, (*path, _segment(key.value)))
-
-
-def _segment(word: str) -> str:
-    """``__map_joints`` stands for each of the names in the parameter ``joints``."""
-    return f"<{word.removeprefix(_MAP)}>" if word.startswith(_MAP) else word
+        word = key.value
+        # ``__map_joints`` stands for each of the names in the parameter ``joints``.
+        step = f"<{word.removeprefix(_MAP)}>" if word.startswith(_MAP) else word
+        yield from _parameters(owner, below, (*path, step))
 
 
 def _bounds(validation: object) -> str:

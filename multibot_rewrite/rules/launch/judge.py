@@ -87,10 +87,12 @@ def _source(node: str, sources: Mapping[str, str]) -> str:
 
 def placed(findings: Iterable[Finding], launched: Launched) -> Iterator[Finding]:
     """Yield findings about a system where the launch file starts the nodes that they are about."""
-    nodes = {node.full_name: node.place for node in launched.nodes}
+    system, nodes = launched.system, {it.full_name: it.place for it in launched.nodes}
     for it in findings:
         robots = [name for name in nodes if it.robot and it.robot in name.split("/")]
-        about = chain((it.node,), _ends(it, launched.system), robots)
+        ends = (end.node for end in system.ends if end.name in it.names)
+        edges = (edge.publishers for edge in system.edges if edge.child in it.names)
+        about = chain((it.node,), ends, *edges, robots)
         place = None if it.file else next((nodes[name] for name in about if name in nodes), None)
         if place is None or not place.file:
             yield it
@@ -98,13 +100,6 @@ def placed(findings: Iterable[Finding], launched: Launched) -> Iterator[Finding]
         hint = f"{it.hint}; started at {place}" if it.hint else f"started at {place}"
         line, column = place.line, place.column or 1
         yield it._replace(file=place.file, line=line, column=column, hint=hint)
-
-
-def _ends(it: Finding, system: System) -> Iterator[str]:
-    """The nodes that have a name of the finding."""
-    yield from (end.node for end in system.ends if end.name in it.names)
-    edges = (edge for edge in system.edges if edge.child in it.names)
-    yield from (node for edge in edges for node in edge.publishers)
 
 
 def judge_launch(launched: Launched) -> list[Finding]:

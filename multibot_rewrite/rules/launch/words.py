@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 from math import isclose, pi
 
@@ -47,7 +47,10 @@ def _faults(it: Run) -> Iterator[tuple[str, str]]:
     if parent and parent == child:
         yield f"sends a transform from {parent} to itself", "name two different frames"
     flags = {old: new for old, new in pairwise(it.arguments) if old.startswith("--")}
-    named = flags or _by_order(it.arguments)
+    # Without flags they go by their order: with yaw, pitch and roll, or with a quaternion.
+    turn = {8: ("--yaw", "--pitch", "--roll"), 9: _QUATERNION}.get(len(it.arguments), ())
+    places = ("--x", "--y", "--z", *turn) if turn else ()
+    named = flags or dict(zip(places, it.arguments, strict=False))
     for flag, word in named.items():
         value = _number(word)
         if flag in _ANGLES and value is not None and abs(value) > _TURN + 0.01:
@@ -62,13 +65,6 @@ def _faults(it: Run) -> Iterator[tuple[str, str]]:
         if not isclose(length, 1, abs_tol=0.1):
             words = " ".join(named[it] for it in _QUATERNION)
             yield f"the quaternion {words} is no rotation", "without a rotation write 0 0 0 1"
-
-
-def _by_order(words: Sequence[str]) -> dict[str, str]:
-    """The words of the form without flags: yaw, pitch and roll, or a quaternion."""
-    places = ("--x", "--y", "--z")
-    rest = {8: ("--yaw", "--pitch", "--roll"), 9: _QUATERNION}.get(len(words), ())
-    return dict(zip((*places, *rest), words, strict=False)) if rest else {}
 
 
 def _number(word: str) -> float | None:
