@@ -288,18 +288,13 @@ def as_decided(it: Evidence) -> None:
 def as_planned(it: Evidence) -> None:
     """The text is the source with the planned edits."""
     source, file, *_ = it.inventory.document
-    if b"".join(_planned(source, it.plan.edits, it.robot.encode())) != it.result.document.source:
-        raise ProofError(f"{file}: the text is not the source with the planned edits")
-
-
-def _planned(source: bytes, edits: list[Edit], robot: bytes) -> Iterator[bytes]:
-    last = 0
-    for start, end, before, after in edits:
-        yield source[last:start] + before
-        if after is not None:
-            yield robot + after
+    robot, last = it.robot.encode(), 0
+    pieces = []
+    for start, end, before, after in it.plan.edits:
+        pieces += [source[last:start], before, b"" if after is None else robot + after]
         last = end
-    yield source[last:]
+    if b"".join((*pieces, source[last:])) != it.result.document.source:
+        raise ProofError(f"{file}: the text is not the source with the planned edits")
 
 
 def a_slot_each(it: Evidence) -> None:

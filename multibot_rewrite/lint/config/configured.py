@@ -159,16 +159,14 @@ def with_options(it: Configured, **given: Any) -> Configured:
     own = {
         name: options.pop(name) for name in ("exclude", "baseline", "fail_on") if name in options
     }
-    settings = _added(_selected(it.settings, options.pop("select", ())), options)
+    settings, select = it.settings, tuple(options.pop("select", ()))
+    if select:
+        ignore = tuple(code for code in settings.ignore if code not in select)
+        levels = settings.levels.items()
+        left = {code: at for code, at in levels if at != OFF or code not in select}
+        settings = settings._replace(select=select, ignore=ignore, levels=left)
+    settings = _added(settings, options)
     return _named(it._replace(settings=settings, **own), naming_options)
-
-
-def _selected(settings: Settings, select: tuple[str, ...]) -> Settings:
-    if not select:
-        return settings
-    ignore = tuple(it for it in settings.ignore if it not in select)
-    levels = {it: at for it, at in settings.levels.items() if at != OFF or it not in select}
-    return settings._replace(select=tuple(select), ignore=ignore, levels=levels)
 
 
 def _added(settings: Settings, options: dict[str, Any]) -> Settings:
