@@ -150,7 +150,11 @@ def _of_python(
         return LaunchEdit(None, (_left(path, source),))
     given = "".join(f', " {name}:=", LaunchConfiguration("{name}")' for name in of_xacro)
     edits = [it.insert(it.end(words.elts[-1]), given) for words in commands]
-    edits.append(_declared(it, actions, every))
+    # Each argument is declared before the first action, as far from the next as that is.
+    first = it.begin(actions.elts[0])
+    gap = source[it.begin(actions) + 1 : first].decode() or " "
+    new = (f'DeclareLaunchArgument("{name}", default_value=""),{gap}' for name in every)
+    edits.append(it.insert(first, "".join(new)))
     edits += _spaced(it, space.name) if space else ()
     files = {name: found for name in parameters if (found := list(_given(tree, name)))}
     for one in chain.from_iterable(files.values()):
@@ -159,14 +163,6 @@ def _of_python(
     edits += _imports(it, [*_IMPORTS, *(["ParameterFile"] if files else [])])
     data = edited({path: source}, edits)[path]
     return LaunchEdit(data, (), tuple(files), space is not None)
-
-
-def _declared(it: _Text, actions: ast.List, arguments: Iterable[str]) -> SourceEdit:
-    """The arguments, declared before the first action, each as far from the next as that is."""
-    first = it.begin(actions.elts[0])
-    gap = it.source[it.begin(actions) + 1 : first].decode() or " "
-    every = (f'DeclareLaunchArgument("{name}", default_value=""),{gap}' for name in arguments)
-    return it.insert(first, "".join(every))
 
 
 def _spaced(it: _Text, space: str) -> Iterator[SourceEdit]:

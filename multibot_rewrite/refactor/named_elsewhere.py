@@ -43,7 +43,17 @@ def named_elsewhere(
             continue
         pattern = literal if path.endswith(_CODE) else word
         why = "its code names" if path.endswith(_CODE) else "it names"
-        yield from _lines(path, pattern, why)
+        try:
+            data = read_file(path)
+        except InputError:
+            continue
+        found: dict[int, str] = {}
+        for it in pattern.finditer(data):
+            found.setdefault(locate(data, it.start())[0], it[2].decode())
+        for line, name in list(found.items())[:_MOST]:
+            yield Left(f"{path}:{line}", f"{why} {name!r}, which a prefix does not reach")
+        if len(found) > _MOST:
+            yield Left(path, f"{why} such names in {len(found) - _MOST} lines more")
 
 
 def root_sections(paths: Collection[str]) -> Iterator[Left]:
@@ -70,20 +80,6 @@ def _controllers(data: bytes) -> Iterator[str]:
         for name, value in given.items() if isinstance(given, dict) else ():
             if isinstance(value, dict) and "type" in value:
                 yield str(name)
-
-
-def _lines(path: str, pattern: re.Pattern[bytes], why: str) -> Iterator[Left]:
-    try:
-        data = read_file(path)
-    except InputError:
-        return
-    found: dict[int, str] = {}
-    for it in pattern.finditer(data):
-        found.setdefault(locate(data, it.start())[0], it[2].decode())
-    for line, name in list(found.items())[:_MOST]:
-        yield Left(f"{path}:{line}", f"{why} {name!r}, which a prefix does not reach")
-    if len(found) > _MOST:
-        yield Left(path, f"{why} such names in {len(found) - _MOST} lines more")
 
 
 def files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:

@@ -9,7 +9,7 @@ in another one is never met. Robots are held against each other wherever they ar
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Rule
@@ -138,12 +138,11 @@ def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Fin
         return found
     told, mixed = time_by_node(graph), clocks.clocks_mixed.code
     sure = {it for it in found if it.code not in ABSENCE or (it.code == mixed and it.node in told)}
-    return [it if it in sure else _inconclusive(it) for it in found]
-
-
-def _inconclusive(finding: Finding) -> Finding:
     hint = "the view of the graph may be incomplete: the line `incomplete:` says why"
-    return finding._replace(level=INCONCLUSIVE, hint=hint, file="", line=0, remaps=())
+    return [
+        it if it in sure else it._replace(level=INCONCLUSIVE, hint=hint, file="", line=0, remaps=())
+        for it in found
+    ]
 
 
 _MISSING = frozenset((missing_node.code, missing_robot.code))
@@ -156,24 +155,23 @@ def check_view(plan: System, seen: System) -> list[Finding]:
 
 def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
     """What is other than planned in the domains that were looked at, and wrong there."""
-    parts = by_domain(plan)
+    parts, numbers = by_domain(plan), domain_of(plan)
+    own = {one.name: numbers[one.robot] for one in plan.nodes if numbers}
     found = [
         _told(it, number, plan, seen)
         for number, view in seen.items()
         for it in check(parts.get(number, plan), view)
-        if not _is_planned_elsewhere(it, number, plan)
+        # A node that is planned for another domain is told where it is missing.
+        if it.code != unplanned_node.code or own.get(it.node, number) == number
     ]
     if parts and len(seen) > 1:
-        found += _across(plan, seen, {name for it in found for name in it.names})
+        # In what robots of several domains differ. The copies that bridges send are left out: next
+        # to what they are copies of they would be a second sender.
+        told = {name for it in found for name in it.names}
+        whole, together = (_without_bridges(it, plan) for it in (plan, domains_together(seen)))
+        across = check(whole._replace(domains=()), together)
+        found += (it for it in across if it.code in COMPARED and told.isdisjoint(it.names))
     return sorted(found, key=lambda it: it.code)
-
-
-def _across(plan: System, seen: Mapping[int, System], told: Set[str]) -> Iterator[Finding]:
-    """In what robots of several domains differ. The copies that bridges send are left out: beside
-    what they are copies of they would be a second sender."""
-    whole, together = (_without_bridges(it, plan) for it in (plan, domains_together(seen)))
-    found = check(whole._replace(domains=()), together)
-    return (it for it in found if it.code in COMPARED and told.isdisjoint(it.names))
 
 
 def _without_bridges(system: System, plan: System) -> System:
@@ -222,10 +220,3 @@ def _of_bridge(it: Finding, plan: System) -> Finding:
     level = ERROR if it.level == WARNING else it.level
     hint = f"nothing crosses: does {DOMAIN_BRIDGE} run for the robot, with the file that was built?"
     return it._replace(level=level, hint=hint)
-
-
-def _is_planned_elsewhere(it: Finding, number: int, plan: System) -> bool:
-    """Is it a node that is planned, for another domain? It is told where it is missing."""
-    numbers = domain_of(plan)
-    own = {one.name: numbers[one.robot] for one in plan.nodes if numbers}
-    return it.code == unplanned_node.code and own.get(it.node, number) != number

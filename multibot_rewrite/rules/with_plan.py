@@ -154,15 +154,11 @@ def _is_meant(plan: Index, seen: Index, it: Finding, rule: Rule) -> bool:
     """Are all who do with its names what it is about planned to?"""
     key, memo = (it.code, it.names), seen.memo.setdefault(_is_meant, {})
     if key not in memo:
-        memo[key] = _are_meant(plan, seen, it, rule)
+        roles = rule.options["meant"]
+        ends = [end for name in it.names for end in ends_of(seen, name)] if roles else []
+        about = [end for end in ends if isinstance(roles, tuple) and end.role in roles]
+        memo[key] = bool(about) and all(_is_planned(plan, end) for end in about)
     return bool(memo[key])
-
-
-def _are_meant(plan: Index, seen: Index, it: Finding, rule: Rule) -> bool:
-    roles = rule.options["meant"]
-    ends = [end for name in it.names for end in ends_of(seen, name)] if roles else []
-    about = [end for end in ends if isinstance(roles, tuple) and end.role in roles]
-    return bool(about) and all(_is_planned(plan, end) for end in about)
 
 
 def _is_planned(plan: Index, end: End) -> bool:

@@ -11,7 +11,7 @@ Paths are relative to the file.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from multibot_rewrite.base.model import InputError, UsageError
@@ -119,7 +119,10 @@ def _part(item: YamlItem, folder: str) -> Part:
     given |= {key: [_path(it, folder) for it in words_of(keys, key)] for key in BESIDE}
     given["one_system"] = flag_of(keys, "one_system")
     given["at"] = {"parent": word_of(at, "parent"), "pose": pose}
-    given["arguments"] = dict(_arguments(table_of(keys, "arguments")))
+    given["arguments"] = {
+        name: it.value if isinstance(it.value, bool) else word(it, name)
+        for name, it in table_of(keys, "arguments").items()
+    }
     try:
         return part_of(given)
     except UsageError as error:
@@ -156,8 +159,3 @@ def _listed(value: str | Sequence[str]) -> Sequence[str]:
 
 def _path(path: str, folder: str) -> str:
     return os.path.normpath(os.path.join(folder, path)) if path else ""
-
-
-def _arguments(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | bool]]:
-    for name, it in keys.items():
-        yield name, it.value if isinstance(it.value, bool) else word(it, name)

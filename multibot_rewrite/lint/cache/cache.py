@@ -133,10 +133,9 @@ class Cache:
         if path not in self.shards:
             self.shards[path] = read_shard(path)
         entry = self.shards[path].get(key)
-        return entry.value if entry and self._holds(entry.asked) else None
-
-    def _holds(self, asked: Asked) -> bool:
-        return all(self._answer(question) == answer for question, answer in asked.items())
+        asked = entry.asked.items() if entry else ()
+        holds = all(self._answer(question) == answer for question, answer in asked)
+        return entry.value if entry and holds else None
 
     def _answer(self, question: Question) -> str:
         if question not in self.answers:
@@ -234,7 +233,10 @@ def identity(settings: Settings) -> str:
     where = (os.getcwd(), sys.version, os.uname().release, str(os.geteuid()))
     folders = filter(None, (_HERE, *map(_folder_of, LIBRARIES)))
     programs = sorted(it for folder in folders for it in _states(folder))
-    return digest(repr((__version__, where, programs, _vocabulary(settings), plain(settings))))
+    paths = [*(it.path for it in installed()), *settings.vocabulary]
+    # What is read beyond what is built in.
+    vocabulary = [(path, digest(read_bytes(path))) for path in paths]
+    return digest(repr((__version__, where, programs, vocabulary, plain(settings))))
 
 
 def plain(value: object) -> object:
@@ -246,12 +248,6 @@ def plain(value: object) -> object:
     if isinstance(value, (tuple, list)):
         return [plain(it) for it in value]
     return value
-
-
-def _vocabulary(settings: Settings) -> list[tuple[str, str]]:
-    """The files that are read beside those built in."""
-    paths = [*(it.path for it in installed()), *settings.vocabulary]
-    return [(path, digest(read_bytes(path))) for path in paths]
 
 
 def _folder_of(library: str) -> str:

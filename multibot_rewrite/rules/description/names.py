@@ -140,11 +140,8 @@ def named(subject: Subject) -> list[tuple[str, str, _Element]]:
         *[("link", it.name, it.element) for it in links],
         *[("joint", it.name, it.element) for it in joints],
     ]
-    return [it for it in every if SUBSTITUTION not in it[1] and _has_name(*it[1:])]
-
-
-def _has_name(name: str, element: _Element) -> bool:
-    return bool(name) or element.get("name") is not None
+    has_name = (it for it in every if it[1] or it[2].get("name") is not None)
+    return [it for it in has_name if SUBSTITUTION not in it[1]]
 
 
 def name_of_robot(subject: Subject) -> str | None:

@@ -44,10 +44,6 @@ def beyond(check: str, arguments: str, value: Any) -> str:
         name = name.removesuffix(_OR_NAN)
         if isinstance(value, float) and math.isnan(value):
             return ""
-    return _said(name, given, value)
-
-
-def _said(name: str, given: list[Any], value: Any) -> str:
     first: Any = given[0] if given else None
     if name in _NUMBERS and is_number(value) and is_number(first):
         holds, words = _NUMBERS[name]
@@ -55,9 +51,7 @@ def _said(name: str, given: list[Any], value: Any) -> str:
     if name in _SIZES and isinstance(value, str | list) and is_number(first):
         holds, words = _SIZES[name]
         return "" if holds(len(value), first) else f"{words} {first}"
-    if name in _SHAPES:
-        return _SHAPES[name](first, value)
-    return _of_many(name, given, value)
+    return _SHAPES[name](first, value) if name in _SHAPES else _of_many(name, given, value)
 
 
 def _of_many(name: str, given: list[Any], value: Any) -> str:

@@ -75,18 +75,13 @@ def placeholders(file: NamedFile) -> Iterator[Finding]:
     """The first placeholder of each name."""
     level = "" if file.is_certain else NOTE
     for site in file.names:
-        found = _placeholder(site)
+        if is_plain(site.text) or is_robot(site.text) or site.text == _FIXED:
+            continue
+        found = _IN_VALUE.search(site.text)
         if found:
-            message = f"the placeholder {found} stays; a launch file must replace it"
+            message = f"the placeholder {found[0]} stays; a launch file must replace it"
             hint = "if it stands for the robot's name, write the value without it"
             yield remark(site, message, hint, level)
-
-
-def _placeholder(site: Site) -> str:
-    if is_plain(site.text) or is_robot(site.text) or site.text == _FIXED:
-        return ""
-    found = _IN_VALUE.search(site.text)
-    return found[0] if found else ""
 
 
 def slashes(file: NamedFile) -> Iterator[Finding]:

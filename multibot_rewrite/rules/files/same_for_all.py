@@ -68,20 +68,16 @@ def not_renamed(file: NamedFile) -> Iterator[Finding]:
         if sure and site.text not in _OPEN_PATTERNS:
             message = f"names in {site.key} {site.text!r} are not rewritten"
             yield remark(site, message, "check that it works for each robot")
-    for one in file.shown:
-        yield from (it for place in one.places for it in _in_display(file, one, place))
+    for one, place in ((item, site) for item in file.shown for site in item.places):
+        why = _why_not(file.context, one, place) if place.slot.value else None
+        if why:
+            message, hint = why
+            yield remark(place, f"{place.key.rstrip('.*')} {place.slot.value!r} {message}", hint)
 
 
 def _mentions(context: Context, value: str) -> bool:
     words = "".join(c if c.isalnum() or c in "_-/" else " " for c in value).split()
     return any(is_declared(context.names, kind, it) for it in words for kind in ("link", "joint"))
-
-
-def _in_display(file: NamedFile, one: RvizItem, place: Site) -> Iterator[Finding]:
-    there = _why_not(file.context, one, place) if place.slot.value else None
-    if there:
-        message, hint = there
-        yield remark(place, f"{place.key.rstrip('.*')} {place.slot.value!r} {message}", hint)
 
 
 def _why_not(context: Context, one: RvizItem, place: Site) -> tuple[str, str] | None:
@@ -181,30 +177,24 @@ def one_device(file: NamedFile) -> Iterator[Finding]:
 @robots_rule("MB883", "section-of-one-robot", ERROR, PARAMS)
 def section_of_one_robot(file: NamedFile) -> Iterator[Finding]:
     """A namespace in a section's name: that of one robot, or one below each robot's."""
-    for section, _ in file.pages:
-        if not section.shared:
-            yield from _namespace(section, file.context)
-
-
-def _namespace(section: ParamSection, context: Context) -> Iterator[Finding]:
-    tokens = section.path.split("/")
-    key = section.keys[0]
-    if section.path in context.nodes or tokens[0] == "**" or section.full == section.path:
-        return
-    if section.path != "/".join(it.value.strip("/") for it in section.keys):
-        return  # what is below the robot's own namespace is meant to be there
-    tails = ["/".join(tokens[at:]) for at in range(1, len(tokens))]
-    stack = next((tail for tail in tails if tail in context.nodes), "")
-    if stack or (tokens[-1] in ANY and tokens[0] not in ANY):
-        message = f"section {section.path} is for one robot only: its name includes a namespace"
-        hint = f"write {stack or '/**'}: instead; the build adds each robot's namespace"
-        yield remark_at(key, message, hint)
-    elif tails and not section.wild and not tokens[-1].startswith(tokens[0]):
-        message = (
-            f"section {section.path} has a namespace; it is placed below each robot's namespace"
-        )
-        hint = f"if {tokens[0]} is the name of a robot, write {tails[0]}: instead"
-        yield remark_at(key, message, hint, WARNING)
+    context = file.context
+    for section in (it for it, _ in file.pages if not it.shared):
+        tokens = section.path.split("/")
+        key = section.keys[0]
+        if section.path in context.nodes or tokens[0] == "**" or section.full == section.path:
+            continue
+        if section.path != "/".join(it.value.strip("/") for it in section.keys):
+            continue  # what is below the robot's own namespace is meant to be there
+        tails = ["/".join(tokens[at:]) for at in range(1, len(tokens))]
+        stack = next((tail for tail in tails if tail in context.nodes), "")
+        if stack or (tokens[-1] in ANY and tokens[0] not in ANY):
+            message = f"section {section.path} is for one robot only: its name includes a namespace"
+            hint = f"write {stack or '/**'}: instead; the build adds each robot's namespace"
+            yield remark_at(key, message, hint)
+        elif tails and not section.wild and not tokens[-1].startswith(tokens[0]):
+            what = "has a namespace; it is placed below each robot's namespace"
+            hint = f"if {tokens[0]} is the name of a robot, write {tails[0]}: instead"
+            yield remark_at(key, f"section {section.path} {what}", hint, WARNING)
 
 
 @rule(

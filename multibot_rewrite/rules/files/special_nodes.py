@@ -70,7 +70,7 @@ def _faults(values: _Values) -> Iterator[tuple[str, str]]:
     parts = kind.split("/")
     if kind and (len(parts) != 3 or parts[1] != middle):
         yield f"has the interface_type {kind!r}", f"write PACKAGE/{middle}/{parts[-1]}"
-    if not any(_is_filled(values, it) for it in starts):
+    if not any(it in values and values[it].value not in (None, []) for it in starts):
         yield "is started by nothing", f"add {starts[0]}, or {' or '.join(starts[1:])}"
     if type_ == "topic":
         yield from _of_topic(values, kind)
@@ -102,10 +102,6 @@ def _of_topic(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
 def _text(values: _Values, name: str) -> str:
     value = values[name].value if name in values else None
     return value if isinstance(value, str) else ""
-
-
-def _is_filled(values: _Values, name: str) -> bool:
-    return name in values and values[name].value not in (None, [])
 
 
 _PACKAGE = "laser_filters"

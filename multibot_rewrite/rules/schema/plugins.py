@@ -79,22 +79,18 @@ def _parameter(
         hint = f"that of {', '.join(releases_with(row.releases))} does"
         yield fault("later", child, None, message, hint)
     elif text and "$" not in text:
-        yield from _value(child, row, text, section)
-
-
-def _value(child: _Element, row: Value, text: str, section: Values) -> Iterator[Problem]:
-    where = f"{row.name} {shortened(text)!r}"
-    wrong = misread(row.type, text)
-    if not wrong:
-        yield from _measure(child, row, text, where)
-    if wrong:
-        instead = f", and counts as {'false' if row.type == 'boolean' else 0}" * wrong.fails
-        yield fault("value", child, "", f"{where} {wrong.problem}{instead}", "", WARNING)
-    elif row.words and text not in row.words:
-        near = nearest(text, row.words)
-        if near:
-            message = f"{where} is not a word that {title(section)} knows"
-            yield fault("word", child, "", message, f"did you mean {near!r}?", WARNING)
+        where = f"{row.name} {shortened(text)!r}"
+        wrong = misread(row.type, text)
+        if not wrong:
+            yield from _measure(child, row, text, where)
+        if wrong:
+            instead = f", and counts as {'false' if row.type == 'boolean' else 0}" * wrong.fails
+            yield fault("value", child, "", f"{where} {wrong.problem}{instead}", "", WARNING)
+        elif row.words and text not in row.words:
+            near = nearest(text, row.words)
+            if near:
+                message = f"{where} is not a word that {title(section)} knows"
+                yield fault("word", child, "", message, f"did you mean {near!r}?", WARNING)
 
 
 def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Problem]:

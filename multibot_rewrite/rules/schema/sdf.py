@@ -69,8 +69,7 @@ def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tupl
     """Every fault in these ``<gazebo>`` elements."""
     version, taken = version_of_release(release), described("urdf")
     assert taken
-    filled = (it for it in blocks if len(it))
-    found = tuple(it for block in filled for it in _block(block, robot, version, taken))
+    found = tuple(it for block in blocks for it in _block(block, robot, version, taken))
     return _by_reader(found, blocks[0].getroottree().getroot(), release)
 
 
@@ -164,21 +163,21 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Prob
             row = _of_version(rows, version)
             yield from _value(element, key, row, text, known, version)
         elif is_own(key):
-            yield from _unknown_attribute(element, key, known)
-    yield from _missing(element, known, version)
-    if "*" in known.rows or not len(element):
-        return
-    for child in element.iterchildren("*"):
-        yield from _child(child, str(element.tag), known, version, {})
-
-
-def _missing(element: _Element, known: SdfPart, version: Version) -> Iterator[Problem]:
-    """Attributes without which sdformat refuses the model; those of plugins depend on the release."""
+            free = [it[1:] for it in known.rows if it[0] == "@" and it[1:] not in element.attrib]
+            near = nearest(key, free)
+            if near:
+                message = f"Gazebo reads no attribute {key!r} of <{element.tag}>"
+                yield fault("misspelt", element, key, message, f"did you mean {near!r}?")
+    # Attributes without which sdformat refuses the model; those of plugins depend on the release.
     for name in known.needed:
         if name[0] == "@" and not element.get(name[1:], "").strip():
             row = _of_version(known.rows[name], version)
             if row.required and row.first <= version and element.tag != "plugin":
                 yield fault("missing", element, None, f"<{element.tag}> has no {name[1:]!r}")
+    if "*" in known.rows or not len(element):
+        return
+    for child in element.iterchildren("*"):
+        yield from _child(child, str(element.tag), known, version, {})
 
 
 def _of_version(rows: tuple[SdfRow, ...], version: Version) -> SdfRow:
@@ -239,14 +238,10 @@ def _range(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Probl
         yield fault("range", element, at, f"{_where(element, at, text)} {message}")
     elif row.high is not None and value > row.high:
         message = f"is above {row.high:.10g}, the most that SDF allows"
-        hint = _in_radians(row, value)
+        # The hint for an angle that was written in degrees.
+        is_angle = ("fov" in row.name or "angle" in row.name) and value > tau
+        hint = f"{value:g} degrees are {radians(value):.4g} radians" if is_angle else ""
         yield fault("range", element, at, f"{_where(element, at, text)} {message}", hint)
-
-
-def _in_radians(row: SdfRow, value: float) -> str:
-    """The hint for an angle that was written in degrees."""
-    is_angle = ("fov" in row.name or "angle" in row.name) and value > tau
-    return f"{value:g} degrees are {radians(value):.4g} radians" if is_angle else ""
 
 
 def _word(element: _Element, at: str, name: str, text: str, version: Version) -> Iterator[Problem]:
@@ -321,14 +316,6 @@ def _homes(tag: str) -> tuple[str, ...]:
         if f"\n{tag} " in part and not part.startswith((WORDS, "urdf"))
     }
     return tuple(sorted(found)) if 0 < len(found) <= 3 else ()
-
-
-def _unknown_attribute(element: _Element, key: str, known: SdfPart) -> Iterator[Problem]:
-    free = [it[1:] for it in known.rows if it[0] == "@" and it[1:] not in element.attrib]
-    near = nearest(key, free)
-    if near:
-        message = f"Gazebo reads no attribute {key!r} of <{element.tag}>"
-        yield fault("misspelt", element, key, message, f"did you mean {near!r}?")
 
 
 def _text(version: Version) -> str:

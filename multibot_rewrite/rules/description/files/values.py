@@ -67,7 +67,18 @@ def missing(subject: Subject) -> Iterator[Problem]:
     for it in faults("missing", subject):
         # What includes a part of a robot may have its name.
         yield from lacking(subject, [it]) if it.element is root else [it]
-    yield from plugins_without_library(subject)
+    # Plugins below ``<gazebo>`` or in an SDF; the attribute that SDF requires in this release;
+    # hardware without a class, for which ros2_control throws.
+    for system in subject.elements.tops("ros2_control"):
+        for empty in (it for it in system.iterfind("hardware/plugin") if not text_of(it)):
+            yield Problem(empty, "<plugin> of the hardware is empty", None, "write its class")
+    named = subject.settings.distro in NAMED
+    for plugin in simulator_plugins(subject):
+        if not plugin.get("filename", "").strip():
+            hint = "name the library that it loads"
+            yield Problem(plugin, "<plugin> has no 'filename'", None, hint)
+        elif named and "name" not in plugin.attrib:
+            yield Problem(plugin, "<plugin> has no 'name'", None, "SDF requires one before 1.10")
 
 
 repeated_element = rule("MB116", "repeated-element", WARNING)(partial(faults, "repeated"))
@@ -130,7 +141,10 @@ def sees_nothing(subject: Subject) -> Iterator[Problem]:
             yield from _none_of(inner, _ABOVE_0["camera"])
         for inner in sensor.iterchildren(*_LIDAR) if type_ in LIDARS else ():
             yield from _none_of(inner, _ABOVE_0["lidar"])
-            yield from _in_millimetres(inner)
+            near, far = number_at(inner, "range/min"), number_at(inner, "range/max")
+            if near is not None and far is not None and near >= BLIND and far >= FAR:
+                hint = "divide by 1000: are these millimetres?"
+                yield _problem(inner, "range/max", "is a length in metres", hint)
 
 
 def unusable_numbers(subject: Subject) -> Iterator[Problem]:
@@ -144,20 +158,16 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
         if number(text_of(element)) == 0:
             yield Problem(element, f"{element.tag} is 0, by which is divided", level=WARNING)
     for plugin in every("plugin"):
-        yield from _inverted(plugin)
+        for least in plugin.iterchildren("*"):
+            tag = str(least.tag)
+            low = number(text_of(least)) if tag.startswith("min_") else None
+            high = number_at(plugin, f"max_{tag.removeprefix('min_')}") if low is not None else None
+            if low is not None and high is not None and low > high:
+                message = f"{tag} is {low:g}, above max_{tag.removeprefix('min_')} ({high:g})"
+                yield Problem(least, message, "", "swap the two, or correct one", level=WARNING)
 
 
 _REDUCTIONS = ("mechanicalReduction", "mechanical_reduction")
-
-
-def _inverted(plugin: _Element) -> Iterator[Problem]:
-    for least in plugin.iterchildren("*"):
-        tag = str(least.tag)
-        low = number(text_of(least)) if tag.startswith("min_") else None
-        high = number_at(plugin, f"max_{tag.removeprefix('min_')}") if low is not None else None
-        if low is not None and high is not None and low > high:
-            message = f"{tag} is {low:g}, above max_{tag.removeprefix('min_')} ({high:g})"
-            yield Problem(least, message, "", "swap the two, or correct one", level=WARNING)
 
 
 def _none_of(inner: _Element, paths: tuple[str, ...]) -> Iterator[Problem]:
@@ -165,14 +175,6 @@ def _none_of(inner: _Element, paths: tuple[str, ...]) -> Iterator[Problem]:
         value = number_at(inner, path)
         if value is not None and value <= 0:
             yield _problem(inner, path, "has to be above 0")
-
-
-def _in_millimetres(lidar: _Element) -> Iterator[Problem]:
-    near, far = number_at(lidar, "range/min"), number_at(lidar, "range/max")
-    if near is not None and far is not None and near >= BLIND and far >= FAR:
-        yield _problem(
-            lidar, "range/max", "is a length in metres", "divide by 1000: are these millimetres?"
-        )
 
 
 def _problem(above: _Element, path: str, words: str, hint: str = "") -> Problem:
@@ -189,20 +191,6 @@ _IGNITION = "ignition-gazebo"
 NAMED = ("humble",)
 # How the libraries of a family begin and end.
 FAMILIES = (("gz-sim-", "-system"), ("gazebo_ros_", ""))
-
-
-def plugins_without_library(subject: Subject) -> Iterator[Problem]:
-    """Plugins below ``<gazebo>`` or in an SDF; the attribute that SDF requires in this release;
-    hardware without a class, for which ros2_control throws."""
-    for system in subject.elements.tops("ros2_control"):
-        for empty in (it for it in system.iterfind("hardware/plugin") if not text_of(it)):
-            yield Problem(empty, "<plugin> of the hardware is empty", None, "write its class")
-    named = subject.settings.distro in NAMED
-    for it in simulator_plugins(subject):
-        if not it.get("filename", "").strip():
-            yield Problem(it, "<plugin> has no 'filename'", None, "name the library that it loads")
-        elif named and "name" not in it.attrib:
-            yield Problem(it, "<plugin> has no 'name'", None, "SDF requires one before 1.10")
 
 
 @rule("MB160", "class-not-in-library", ERROR)

@@ -48,15 +48,10 @@ def declared_twice(subject: Subject) -> Iterator[Problem]:
         are = "are" if len(more) > 1 else "is"
         also = f", and so {are} {len(more)} more from the same call" if more else ""
         hint = "give each call its own prefix" if more else "rename one"
-        message = text + _first_at(subject, first.start) + also
+        # Lines of an expanded document are in no file.
+        line, _ = locate(subject.document.source, first.start)
+        message = text + ("" if subject.origins else f", first at line {line}") + also
         yield Problem(claim.element, message, claim.attribute, hint)
-
-
-def _first_at(subject: Subject, start: int) -> str:
-    """Where the first of two is; empty in an expanded document, whose lines are in no file."""
-    if subject.origins:
-        return ""
-    return f", first at line {locate(subject.document.source, start)[0]}"
 
 
 def _cause(subject: Subject, claim: Claim, first: Claim) -> object:

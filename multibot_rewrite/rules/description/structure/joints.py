@@ -132,7 +132,7 @@ def limit_missing(subject: Subject) -> Iterator[Problem]:
 @rule("MB511", "limits-inverted", ERROR)
 def limits_inverted(subject: Subject) -> Iterator[Problem]:
     """Lower limits above the upper one; in URDF 1.2 of any joint."""
-    types = TYPES if _is_strict(subject) else BOUNDED
+    types = TYPES if version_of(subject.document.root) >= STRICT else BOUNDED
     for joint, limit, lower, upper in _bounds(subject):
         if lower > upper and joint.type in types:
             message = f"joint {joint.name!r}: lower {lower:g} is above upper {upper:g}"
@@ -226,10 +226,6 @@ def _turned(rpy: str) -> float | None:
 def _is_degrees(angle: float) -> bool:
     size = abs(angle)
     return DEGREES[0] < size <= DEGREES[1] and size % 0.5 == 0 and size not in ENDLESS
-
-
-def _is_strict(subject: Subject) -> bool:
-    return version_of(subject.document.root) >= STRICT
 
 
 @memoized
