@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import islice
 from typing import NamedTuple
 
@@ -78,7 +77,8 @@ def member(
     shared = tuple(it for it in source.findings if it.code in SHARED_CODES)
     unread = tuple(it for it in source.findings if it.code == UNREAD)
     job = source.prepared.job
-    handed_on = () if real else tuple(_handed_on(source.template.inventory))
+    wide = (it for it, section in source.template.inventory.served if section.process_wide)
+    handed_on = () if real else tuple(rule for it in wide for rule in rules_of(it))
     words = (shared, unread, job.read.files, job.own.plain, handed_on)
     if not described:
         return Member(
@@ -97,12 +97,6 @@ def with_text(it: Member, data: bytes) -> Member:
     described = written if it.described is it.inventory else it.described
     reading = read(data, file, it.vocabulary)
     return it._replace(described=described, inventory=written, reading=reading)
-
-
-def _handed_on(inventory: Inventory) -> Iterator[RemapRule]:
-    for element, section in inventory.served:
-        if section.process_wide:
-            yield from rules_of(element)
 
 
 def without_simulator(data: bytes, file: str) -> bytes:
