@@ -652,6 +652,55 @@ def test_topics_of_the_bridges_of_a_launch_file_are_bridged_for_each_robot(tmp_p
     ]
 
 
+NAMED = """
+        Node(package='ros_gz_bridge', executable='parameter_bridge', name='sensors',
+            arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock',
+                '/cmd_vel@geometry_msgs/msg/Twist@gz.msgs.Twist@/model/bot/drive',
+                '/world/w/create@ros_gz_interfaces/srv/SpawnEntity',
+                '/world/w/set@ros_gz_interfaces/srv/ControlWorld@gz.msgs.A@gz.msgs.B']),
+        Node(package='ros_gz_bridge', executable='bridge_node', name='more', namespace='head',
+            parameters=[{'config_file': 'FOLDER/more.yaml'}]),
+        Node(package='ros_gz_image', executable='image_bridge', name='eye', arguments=['/image']),
+"""
+MORE = """\
+- ros_topic_name: imu
+  gz_topic_name: /model/bot/imu
+  ros_type_name: sensor_msgs/msg/Imu
+  gz_type_name: gz.msgs.IMU
+  direction: GZ_TO_ROS
+"""
+
+
+@pytest.mark.parametrize("layout", AFFIX)
+def test_the_plan_has_what_bridges_with_names_carry_and_not_the_bridges(
+    layout: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The bridges of the build stand for them: whoever compares a plan misses no other ones."""
+    (tmp_path / "more.yaml").write_text(MORE)
+    body = NAMED.replace("FOLDER", str(tmp_path))
+    found = actions(tmp_path, body, more="simulator: gazebo", layout=layout, given={"robots": "2"})
+    bridges = [it.values for it in found if _word(it) == "parameter_bridge"]
+    services = [
+        "/world/w/create@ros_gz_interfaces/srv/SpawnEntity",
+        "/world/w/set@ros_gz_interfaces/srv/ControlWorld@gz.msgs.A@gz.msgs.B",
+    ]
+    assert [it.get("arguments", []) for it in bridges] == [services, [], []]
+    plan = yaml.safe_load((tmp_path / "out/plan.yaml").read_text())
+    topics = {it["name"]: it["bridge"] for it in plan["topics"] if "bridge" in it}
+    mine = "{}/robot1".format if layout == "postfix" else "/robot1{}".format
+    for name in ("/image", "/head/imu"):
+        assert topics[mine(name)] == ["publishes"]
+    assert topics[mine("/cmd_vel")] == ["publishes", "subscribes"]
+    assert [topics[it] for it in ("/world/w/create", "/world/w/set")] == [["serves"]] * 2
+    rows = yaml.safe_load((tmp_path / "out/robot1/bridge.yaml").read_text())
+    inside = {it.get("gz_topic_name", it.get("topic_name")) for it in rows}
+    assert {"/model/robot1/drive", "/model/robot1/imu"} <= inside
+    capsys.readouterr()
+    words = ["check-launch", str(tmp_path / "out/fleet.launch.py"), "--plan"]
+    main([*words, str(tmp_path / "out/plan.yaml")])
+    assert "MG101" not in "".join(capsys.readouterr())
+
+
 GZ = """
         IncludeLaunchDescription([FindPackageShare('ros_gz_sim'), '/launch/gz_sim.launch.py'],
             launch_arguments={'gz_args': 'ARGS'}.items()),

@@ -47,7 +47,7 @@ from multibot_rewrite.knowledge.programs import (
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
-from multibot_rewrite.producers.launch.bridges import is_of_images
+from multibot_rewrite.producers.launch.bridges import services_in
 from multibot_rewrite.producers.launch.handed_on import (
     DESCRIPTION,
     SEMANTIC,
@@ -168,8 +168,6 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
     something else."""
     naming, file = given.plan.fleet.naming, given.plan.file
     relayed = {it.run.node for it in relays(given.robot.spec.namespace, naming, file)}
-    handed = given.plan.evidence_of(given.robot).handed_on
-    relayed |= {name for name, it in handed.items() if is_of_images(it.program)}
     for name in given.names.started:
         it = given.facts.get(name)
         if name in relayed or not {name, it.kind if it else ""}.isdisjoint(_BY_HAND):
@@ -511,7 +509,8 @@ def of_all(
     shared = (*_shared(plan, names, known, values), *_processes_of_all(plan))
     if BRIDGE_FILE not in files:
         return shared
-    bridge = Start(*_BRIDGE, parameters=({"config_file": File(BRIDGE_FILE)},))
+    rows, served = ({"config_file": File(BRIDGE_FILE)},), services_in(plan.launched_words)
+    bridge = Start(*_BRIDGE, parameters=rows, arguments=tuple(served))
     # It is of no use without the simulator.
     return (bridge._replace(condition=SIMULATOR), *shared) if simulators else (*shared, bridge)
 

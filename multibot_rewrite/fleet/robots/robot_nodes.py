@@ -58,6 +58,7 @@ from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing, for_a
 from multibot_rewrite.producers.launch.of_robot import (
     NOTHING,
     Launched,
+    without_bridges,
     without_robot,
 )
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
@@ -128,6 +129,7 @@ def robot_nodes(
         stack = (*stack, *_manager_in_plugin(stack, own, member, file.distro))
     known = known_here(known, spec.launch, spec.words[0], file.distro)
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
+    launched = without_bridges(launched) if launched else None
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
     without, findings = nodes_with(launched, stack, given, known | _started_here(file.distro))

@@ -21,7 +21,7 @@ from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.evidence.nodes import MANAGER, remapped
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.launch.bridges import bridge_rows
+from multibot_rewrite.producers.launch.bridges import bridge_rows, passes_topics_on
 from multibot_rewrite.producers.launch.describe import SIMULATOR, SIMULATORS
 from multibot_rewrite.producers.launch.findings import (
     launch_findings,
@@ -245,6 +245,18 @@ def _under_manager(
         manager = _stripped(it.manager.strip("/"), words)
         rules = (*wide.get(manager, ()), *it.rules)
         yield _stripped(it.full_name.strip("/"), words), it._replace(rules=rules)
+
+
+def without_bridges(launched: Launched) -> Launched:
+    """Return the same without the bridges to a simulator: those of a build carry what they carry."""
+    gone = {
+        name for name, it in launched.started.items() if passes_topics_on(it.package, it.executable)
+    }
+    return launched._replace(
+        nodes=tuple(it for it in launched.nodes if it.name not in gone),
+        given=tuple(it for it in launched.given if it.node not in gone),
+        handed_on={name: it for name, it in launched.handed_on.items() if name not in gone},
+    )
 
 
 def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[NodeFacts]:
