@@ -759,3 +759,32 @@ def test_spawners_start_when_the_robot_is_in_its_simulator(simulator: str, tmp_p
     waits = ["OnProcessExit of create", *inside, "end", "create"]
     started = [it for it in found if it in waits]
     assert started == (waits if simulator == "true" else inside)
+
+
+@pytest.mark.parametrize("words", ["'--param', 'robot_description'", ""])
+def test_a_vendors_own_spawner_is_the_only_one(words: str, tmp_path: Path) -> None:
+    """A second spawner would put the robot into the simulator twice; each robot has its own place."""
+    given = "" if words else "parameters=[{'robot_description': 'x'}],"
+    body = f"""
+        IncludeLaunchDescription([FindPackageShare('ros_gz_sim'), '/launch/gz_sim.launch.py']),
+        Node(package='acme', executable='spawn_it', {given}
+            arguments=[{words}{", " if words else ""}'--x', '1.5', '--Y', '0.3', '--keep']),
+    """
+    more = "simulator: gazebo"
+    text = FLEET.replace("robot2,", "robot2, pose: {{x: 4, y: 1, yaw: 2}},")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setitem(globals(), "FLEET", text)
+        found = actions(tmp_path, body, more=more)
+    assert "create" not in told(found)
+    assert of(found, "spawn_it")["arguments"][-5:] == ["--x", "4.0", "--Y", "2.0", "--keep"]
+    assert told(found).count("spawn_it") == 1
+
+
+def test_a_program_without_the_description_is_no_spawner_of_the_robot(tmp_path: Path) -> None:
+    body = """
+        IncludeLaunchDescription([FindPackageShare('ros_gz_sim'), '/launch/gz_sim.launch.py']),
+        here('spawn_boxes', arguments=['--x', '1.5']),
+    """
+    found = actions(tmp_path, body, more="simulator: gazebo")
+    assert "create" in told(found)
+    assert of(found, "spawn_boxes")["arguments"] == ["--x", "1.5"]

@@ -215,6 +215,9 @@ def _started(given: _Given, name: str) -> Start:
     words = made.arguments
     if facts.kind == STATIC:
         words = with_frames([path_of(it) for it in words], own)
+    placing = given.plan.evidence_of(given.robot).placing
+    if placing is not None and spawn.is_of_vendor(placing) and made.number == placing.number:
+        words = tuple(spawn.placed_at(words, given.robot.spec.pose))
     return made._replace(
         arguments=(*words, *_options(given, facts)),
         components=tuple(_components(given, name)),
@@ -480,10 +483,10 @@ def _spawned(given: _Given) -> Iterator[Start]:
         return
     (it,) = spawn.in_folder(given.plan)
     made, own = spawn.spawner(it, spawn.is_classic(robot)), given.plan.evidence_of(robot).placing
-    if own is not None:
+    if own is not None and not spawn.is_of_vendor(own):
         delay = own.process.delay if not own.process.event else 0.0
         made = made._replace(number=own.number, process=made.process._replace(delay=delay))
-    yield made
+    yield from [] if spawn.is_of_vendor(own) else [made]
     path = gz_bridge_path(robot)
     if path in given.files:
         spaces = {it.namespace for it in given.names.nodes.values()}

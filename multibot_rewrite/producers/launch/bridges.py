@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a bridge to Gazebo, or a domain_bridge, is told -> its topics, services and nodes in ROS.
 
-Source: ros_gz jazzy 739cb42, ros_gz_bridge/src/parameter_bridge.cpp (``TOPIC@TYPE[GZ_TYPE@GZ_TOPIC``, with
-``[`` from Gazebo, ``]`` to Gazebo, ``@`` both, the last part may be left out; ``SERVICE@TYPE``), bridge_config.cpp (the keys of its file),
+Source: ros_gz jazzy 739cb42, ros_gz_bridge/src/parameter_bridge.cpp (``TOPIC@TYPE[GZ_TYPE``, with ``[``
+from Gazebo, ``]`` to Gazebo, ``@`` both, and ``@GZ_TOPIC`` behind it where that is called otherwise;
+``SERVICE@TYPE``), bridge_config.cpp (the keys of its file),
 ros_gz_image/src/image_bridge.cpp. ros2/domain_bridge c2523e1, process_cmd_line_arguments.hpp (options,
 then files; ``--from`` and ``--to`` hold for all topics), parse_domain_bridge_yaml_config.cpp (the keys
 of a file), domain_bridge.cpp (``get_node_for_domain``, ``bridge_topic``, ``add_bridges``).

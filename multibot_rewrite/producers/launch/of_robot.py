@@ -68,6 +68,7 @@ _WORDS_OF_BUILD = (
 # Packages of launch files alone, and how those of their nodes begin.
 _FAMILIES = {"nav2_bringup": "nav2_"}
 # What is built gives these their descriptions anyway.
+_DESCRIPTION = "robot_description"
 _DESCRIBED = ("robot_state_publisher", "move_group", "servo_node")
 NO_NAME = "the launch file gives it no name"
 NOTHING: Mapping[str, HandedOn] = {}
@@ -147,8 +148,16 @@ def with_launched(
         handed,
         passing,
         graph.environment,
-        next((it for it in numbered if program_of(it) in programs().spawners), None),
+        next((it for it in numbered if program_of(it) in programs().spawners), None)
+        or next((numbered[it.number] for it in pairs if _may_spawn(it, handed, release)), None),
     )
+
+
+def _may_spawn(it: _Pair, handed: Mapping[str, HandedOn], release: str) -> bool:
+    """Is a program of the vendor's own called a spawner, and given the robot's description?"""
+    own = handed[it.facts.name]
+    called = "spawn" in it.node.executable.lower() and _is_own(it, release)
+    return called and _DESCRIPTION in (*own.texts, *own.arguments)
 
 
 def _lasting(graph: LaunchGraph) -> LaunchGraph:
