@@ -788,3 +788,49 @@ def test_a_program_without_the_description_is_no_spawner_of_the_robot(tmp_path: 
     found = actions(tmp_path, body, more="simulator: gazebo")
     assert "create" in told(found)
     assert of(found, "spawn_boxes")["arguments"] == ["--x", "1.5"]
+
+
+CONDITIONS = """
+        DeclareLaunchArgument('joy', default_value='false'),
+        DeclareLaunchArgument('mode', default_value='real'),
+        here('yes', condition=UnlessCondition(joy)),
+        here('stick', condition=IfCondition(joy)),
+        GroupAction([here('a'), here('b')], condition=LaunchConfigurationEquals('mode', 'sim')),
+        IncludeLaunchDescription([FindPackageShare('acme'), '/launch/more.launch.py'],
+            condition=IfCondition(PythonExpression(["'", joy, "' == '1' or '", mode, "' == 'sim'"]))),
+        ExecuteProcess(cmd=['/usr/bin/thing'], condition=IfCondition(joy)),
+        TimerAction(period=1.0, actions=[here('late')], condition=IfCondition(joy)),
+        OpaqueFunction(function=lambda context: [here('made', condition=IfCondition(joy))]),
+"""
+
+
+def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The conditions count with the arguments of the fleet file; others start what they kept out."""
+    setup = """from launch.conditions import LaunchConfigurationEquals, UnlessCondition
+    from launch.substitutions import PythonExpression
+    joy, mode = LaunchConfiguration('joy'), LaunchConfiguration('mode')"""
+    assert told(actions(tmp_path, CONDITIONS, setup)) == ["yes"]
+    text = (tmp_path / "out/fleet.launch.py").read_text()
+    comments = " ".join(it.strip("# ") for it in text.splitlines() if it.strip()[:1] == "#")
+    left = dict(it.split(" (", 1) for it in comments.split("Not started: ")[1:])
+    assert {name: why.split(" has ")[1].split(";")[0] for name, why in left.items()} == {
+        "acme stick": "joy:=false",
+        "acme a, acme b": "mode:=real",
+        "more.launch.py": "joy:=false, mode:=real",
+        "thing": "joy:=false",
+        "acme late": "joy:=false",
+        "acme made": "joy:=false",
+    }
+    capsys.readouterr()
+    words = ["init", str(tmp_path), "--launch", str(tmp_path / "up.launch.py"), "-o", "-", "--yes"]
+    main(words)
+    assert "#   acme a, acme b: mode:=real" in capsys.readouterr().out.splitlines()
+    fleet = (tmp_path / "fleet.yaml").read_text()
+    (tmp_path / "fleet.yaml").write_text(
+        fleet.replace("up.launch.py", "up.launch.py joy:=true mode:=sim")
+    )
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "other")]) == 0
+    text = (tmp_path / "other/fleet.launch.py").read_text()
+    assert "Not started: acme yes" in text and text.count("Not started") == 1

@@ -81,6 +81,7 @@ _BY_HAND = (*BY_HAND, "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
 _DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/stacks.md)"
 _NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
+_OTHERWISE = "give it another value behind its file under `launch:`, and build again"
 _NO_NAME = "unnamed"
 # What of MoveIt's parameters has names of joints, links and controllers.
 _NAMED = ("robot_description", "moveit_simple_controller_manager", "moveit_ros_control_interface")
@@ -120,10 +121,19 @@ def of_robot(
         _where(names),
         params_paths(robot, files),
         starts,
-        tuple(given.left.items()),
+        (*given.left.items(), *_idle(one, robot)),
         not_bridged(robot.spec.name) if any(it.needs for it in relayed) else "",
         tuple(_nodes(given)),
     )
+
+
+def _idle(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
+    """What launch files do not start with the arguments that they are given, each with these."""
+    for it in plan.evidence_of(robot).idle:
+        yield (
+            it.what,
+            f"{it.place.file.rpartition('/')[2]}:{it.place.line} has {it.why}; {_OTHERWISE}",
+        )
 
 
 class _Given(NamedTuple):

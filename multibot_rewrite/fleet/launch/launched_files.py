@@ -97,7 +97,8 @@ def _bridged(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
             text = found.get(it.place.file, "")
             gap = "\n" * max(it.place.line - 1 - text.count("\n"), 0)
             found[it.place.file] = f"{text}{gap}{rows}"
-    return found, tuple(dict.fromkeys(file for it in nodes for file in files_in(it)))
+    files = dict.fromkeys(file for it in nodes for file in files_in(it))
+    return found, tuple(filter(os.path.isfile, files))
 
 
 def _with_bridges(spec: RobotSpec, found: Mapping[str, str], files: Sequence[str]) -> RobotSpec:

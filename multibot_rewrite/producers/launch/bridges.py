@@ -75,13 +75,13 @@ def passes_topics_on(package: str, program: str) -> bool:
 
 
 def files_in(node: LaunchedNode) -> Iterator[str]:
-    """Return the files that a bridge of a launch file is told, as far as they are here."""
+    """Return the files that a bridge of a launch file is told; they need not be here."""
     if passes_topics_on(node.package, node.executable):
         values = (load_yaml(it.text, it.file or node.place.file) for it in node.parameters)
         sections = (one for it in values if isinstance(it, dict) for one in it.values())
         given = [one.get("ros__parameters") for one in sections if isinstance(one, dict)]
-        paths = [str(it.get("config_file", "")) for it in given if isinstance(it, dict)]
-        yield from (it for it in paths if os.path.isfile(it))
+        paths = (str(it.get("config_file") or "") for it in given if isinstance(it, dict))
+        yield from filter(None, paths)
 
 
 def is_bridge(it: Run) -> bool:

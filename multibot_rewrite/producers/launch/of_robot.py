@@ -48,6 +48,7 @@ from multibot_rewrite.producers.launch.known_node import (
 )
 from multibot_rewrite.producers.launch.programs import once_for_all, passes, program_of, programs
 from multibot_rewrite.producers.launch.records import (
+    IdleAction,
     LaunchedNode,
     LaunchGraph,
     LaunchNote,
@@ -92,6 +93,7 @@ class Launched(NamedTuple):
     processes: tuple[Passing, ...] = ()
     environment: tuple[tuple[str, str], ...] = ()
     placing: LaunchedNode | None = None
+    idle: tuple[IdleAction, ...] = ()
 
 
 class _Pair(NamedTuple):
@@ -150,6 +152,7 @@ def with_launched(
         graph.environment,
         next((it for it in numbered if program_of(it) in programs().spawners), None)
         or next((numbered[it.number] for it in pairs if _may_spawn(it, handed, release)), None),
+        graph.idle,
     )
 
 
