@@ -834,3 +834,26 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "other")]) == 0
     text = (tmp_path / "other/fleet.launch.py").read_text()
     assert "Not started: acme yes" in text and text.count("Not started") == 1
+
+
+@pytest.mark.parametrize("layout", AFFIX)
+def test_a_bridge_has_topics_of_a_model_as_the_description_gives_them(
+    layout: str, tmp_path: Path
+) -> None:
+    """A topic that a system is told in full is no default: it has not the name of the spawned model."""
+    system = """<gazebo>
+      <plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
+      <odom_topic>/model/bot/odometry</odom_topic><odom_frame>odom</odom_frame>
+      <robot_base_frame>base_link</robot_base_frame></plugin></gazebo></robot>"""
+    row = "/model/bot/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry"
+    body = f"Node(package='ros_gz_bridge', executable='parameter_bridge', arguments=['{row}']),"
+    text = DESCRIPTION.replace("</robot>", system)
+    text = text.replace(text[text.index("<robot") : text.index(">") + 1], '<robot name="bot">')
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setitem(globals(), "DESCRIPTION", text)
+        actions(tmp_path, body, more="simulator: gazebo", layout=layout)
+    written = (tmp_path / "out/robot1/robot.urdf").read_text()
+    told = written.split("<odom_topic>")[1].split("</odom_topic>")[0]
+    rows = yaml.safe_load((tmp_path / "out/robot1/bridge.yaml").read_text())
+    inside = [it.get("gz_topic_name", it.get("topic_name")) for it in rows]
+    assert told in inside and "/model/robot1/odometry" not in inside
