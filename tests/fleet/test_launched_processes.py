@@ -857,3 +857,20 @@ def test_a_bridge_has_topics_of_a_model_as_the_description_gives_them(
     rows = yaml.safe_load((tmp_path / "out/robot1/bridge.yaml").read_text())
     inside = [it.get("gz_topic_name", it.get("topic_name")) for it in rows]
     assert told in inside and "/model/robot1/odometry" not in inside
+
+
+def test_move_group_has_what_its_launch_file_and_its_files_say_of_pipelines(tmp_path: Path) -> None:
+    """What a build makes of MoveIt's files comes before them; the last value counts (rcl)."""
+    mine = "move_group:\n  ros__parameters:\n    ompl: {request_adapters: [mine/One]}\n"
+    (tmp_path / "pipes.yaml").write_text(mine)
+    srdf = '<robot name="r"><group name="g"><link name="wheel"/></group></robot>'
+    (tmp_path / "arm.srdf").write_text(srdf)
+    (tmp_path / "kinematics.yaml").write_text("g: {kinematics_solver: k/K}\n")
+    body = f"""Node(package='moveit_ros_move_group', executable='move_group', name='move_group',
+        parameters=['{tmp_path}/pipes.yaml', {{'ompl.planning_plugin': 'mine/Two'}}]),"""
+    more = "simulator: none\nsrdf: arm.srdf\ncompanions: {moveit: [kinematics.yaml]}"
+    told = of(actions(tmp_path, body, more=more), "move_group")["parameters"]
+    files = [Path(it).name for it in told if isinstance(it, str)]
+    assert files.index("moveit_parameters.yaml") < files.index("pipes.yaml")
+    rows = [at for at, it in enumerate(told) if "ompl.planning_plugin" in it]
+    assert rows[-1] > max(at for at, it in enumerate(told) if isinstance(it, str))

@@ -83,6 +83,7 @@ _DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/stacks.md)"
 _NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
 _OTHERWISE = "give it another value behind its file under `launch:`, and build again"
 _NO_NAME = "unnamed"
+_OF_MOVEIT = ("move_group", "servo_node")
 # What of MoveIt's parameters has names of joints, links and controllers.
 _NAMED = ("robot_description", "moveit_simple_controller_manager", "moveit_ros_control_interface")
 # The words of ros2 behind which nodes stand, and those with topics, services and actions.
@@ -375,8 +376,11 @@ def _is_listed(given: _Given, name: str) -> bool:
 def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     """Its robot's parameter files, and what no file says of it."""
     robot, facts = given.robot, given.facts[name]
-    found: list[Parameters] = [File(it) for it in _files(given, name)]
-    known = facts.kind
+    files = [File(it) for it in _files(given, name)]
+    known, made = facts.kind, File(path_for(robot, moveit_parameters.FILE))
+    is_launched = name in given.plan.evidence_of(robot).handed_on
+    later = files if is_launched and known in _OF_MOVEIT and made.path in given.files else []
+    found: list[Parameters] = [] if later else [*files]
     if facts.usual:
         found.append(dict(facts.usual))
     values = given.values.get((robot.spec.name, name))
@@ -389,15 +393,15 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     if known == STATE:
         prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
         found.append({"robot_description": Text(_description(robot)), **prefix})
-    if known in ("move_group", "servo_node"):
+    if known in _OF_MOVEIT:
         found.append({"robot_description": Text(_description(robot))})
-        made = File(path_for(robot, moveit_parameters.FILE))
         if made.path in given.files:
             found.append(made)
         elif robot.spec.srdf:
             srdf = Text(path_for(robot, expanded_name(robot.spec.srdf)))
             found.append({moveit_parameters.SEMANTIC: srdf})
-        # Of names those of the files count, of all else what the launch file says.
+        # Of names those of the files count, of all else what the launch file and its files say.
+        found += later
         own = {key: it for key, it in (values or {}).items() if not key.startswith(_NAMED)}
         found += [own] if own and made.path in given.files else []
     if known == LIFECYCLE_MANAGER:
