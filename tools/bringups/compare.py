@@ -50,6 +50,8 @@ OWN: dict[str, dict[str, str]] = {
 }
 
 
+# What starts gz-sim: the program, or the launch file that starts it with the same options.
+GZ_SIM = {"gz", "ign", "gz_sim.launch.py", "ign_gazebo.launch.py"}
 # Static transforms for the poses in the fleet file.
 POSES = {"start_pose"}
 
@@ -137,6 +139,8 @@ def _key(process: Process, robot: str) -> tuple[str, ...]:
     """Return what two processes that do one thing have in common."""
     if process.program == "spawner":
         return ("spawner", bare(process.words[0], robot) if process.words else "")
+    if os.path.basename(process.program) in GZ_SIM:
+        return ("gz_sim",)
     if process.program in STATIC:
         return ("static", *(bare(it, robot) for it in frames(process)))
     if not process.package:
@@ -244,7 +248,7 @@ def differences(process: Process, other: Process, robot: str) -> Iterator[str]:
         yield f"namespace {process.namespace!r}: {other.namespace!r}"
     yield from _rules(process, other, robot)
     yield from _parameters(process, other, robot)
-    if process.program not in STATIC:
+    if process.program not in STATIC and process.kind == other.kind:
         yield from _words(process, other, robot)
         yield from _files(process, other, robot)
     for name, it in process.facts.items():
