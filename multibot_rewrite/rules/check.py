@@ -113,22 +113,31 @@ def _part(seen: Index, absent: bool) -> list[Finding]:
     return [it for it in found if (it.code in ABSENCE) is absent]
 
 
-def check(plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> list[Finding]:
+def check(
+    plan: System,
+    graph: System,
+    messages: Mapping[str, int] = NO_COUNTS,
+    before: System | None = None,
+) -> list[Finding]:
     """What is wrong with a system, and other than planned; empty for a fleet as planned. ``messages``
-    counts those of each topic, where they were counted."""
-    _, seen = side_by_side(plan, graph, messages)
+    counts those of each topic, where they were counted; ``before`` is the earlier look that the plan
+    was made of, if it was."""
+    _, seen = side_by_side(plan, graph, messages, before)
     found = sorted(judge(seen), key=lambda it: it.code)
     return inconclusive_where_in_doubt(found, graph)
 
 
 def side_by_side(
-    plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS
+    plan: System,
+    graph: System,
+    messages: Mapping[str, int] = NO_COUNTS,
+    before: System | None = None,
 ) -> tuple[Index, Index]:
     """The look-ups of a plan and a system, with the same words for what is made at run time."""
     fitting, there = fitted(plan, graph)
     by_plan = index(fitting, whose_by_plan(fitting))
     edges = without_bridged(fitting, there.edges)
-    return by_plan, beside(by_plan, there._replace(edges=edges), messages)
+    return by_plan, beside(by_plan, there._replace(edges=edges), messages, before)
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:

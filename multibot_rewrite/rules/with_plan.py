@@ -14,6 +14,7 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
 from multibot_rewrite.base.wording import shorten, unique
+from multibot_rewrite.rules.system.changed import untold
 from multibot_rewrite.rules.system.differing import COMPARED, unexplained
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_frames import frame_without_robot_name
@@ -61,8 +62,7 @@ def one_for_a_cause(
     # Nothing sends it by the plan either, whatever another robot has.
     return [
         it._replace(level=NOTE) if it.code == nothing_known_sends.code else it
-        for it in (*kept, *others)
-        if it in every
+        for it in untold(it for it in (*kept, *others) if it in every)
     ]
 
 
