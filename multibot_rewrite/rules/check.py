@@ -18,7 +18,7 @@ from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.system import clocks, differing, frame_ids, likes, localized
 from multibot_rewrite.rules.system.commands import command_to_nobody
-from multibot_rewrite.rules.system.differing import COMPARED
+from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS
 from multibot_rewrite.rules.system.names import topic_names_miss
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
@@ -108,7 +108,7 @@ def absences(seen: Index) -> list[Finding]:
 def _part(seen: Index, absent: bool) -> list[Finding]:
     found = _judged(seen, (it for it in _rules(planned=False) if (it.code in ABSENCE) is absent))
     # What is found of robots held against each other is left to any other finding.
-    if any(it.code in differing.COMPARED for it in found):
+    if any(it.code in differing.BETWEEN_ROBOTS for it in found):
         found = judge(seen)
     return [it for it in found if (it.code in ABSENCE) is absent]
 
@@ -182,7 +182,7 @@ def _across(plan: System, seen: Mapping[int, System], told: Set[str]) -> Iterato
     what they are copies of they would be a second sender."""
     whole, together = (_without_bridges(it, plan) for it in (plan, domains_together(seen)))
     found = check(whole._replace(domains=()), together)
-    return (it for it in found if it.code in COMPARED and told.isdisjoint(it.names))
+    return (it for it in found if it.code in BETWEEN_ROBOTS and told.isdisjoint(it.names))
 
 
 def _without_bridges(system: System, plan: System) -> System:

@@ -15,7 +15,7 @@ from fnmatch import fnmatchcase
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
 from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.system.changed import untold
-from multibot_rewrite.rules.system.differing import COMPARED, unexplained
+from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS, unexplained
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_frames import frame_without_robot_name
 from multibot_rewrite.rules.system.planned_nodes import sender_not_planned, unplanned_node
@@ -71,7 +71,7 @@ def _is_absence(it: Finding, rules: Mapping[str, Rule]) -> bool:
 
 
 def _abouts(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
-    if it.code in COMPARED:
+    if it.code in BETWEEN_ROBOTS:
         return
     yield it.node, ""
     # What is missing at one robot is no cause of what another one lacks.

@@ -42,7 +42,7 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
     """Whether or not anybody sends at the moment."""
     orders = seen.orders
     for (kind, name), ends in seen.by_name.items():
-        joystick = ends.type == words.JOYSTICK and not seen.robot(name)
+        joystick = ends.type == words.JOYSTICK
         if kind != TOPIC or not (joystick or name in orders):
             continue
         nodes = nodes_of(at_work(ends.subscribers))
@@ -50,10 +50,11 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
         if len(robots) > 1:
             message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
             cause = own_names(seen, ends, robots)
-            if joystick:
+            nobodys = joystick and not seen.robot(name)
+            if nobodys:
                 cause = cause._replace(hint=f"{cause.hint}; or give each its own enable_button")
             yield command_for_several_robots.finding(
-                message, level=WARNING if joystick else ERROR, node=nodes[0], names=(name,),
+                message, level=WARNING if nobodys else ERROR, node=nodes[0], names=(name,),
                 **cause._asdict(),
             )  # fmt: skip
 
