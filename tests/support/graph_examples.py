@@ -2,7 +2,8 @@
 """Small plans and graphs as lines of text, in which the examples of graph rules are written.
 
 Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in the graph) or
-``as planned:`` (it is in both). Behind it comes one of:
+``as planned:`` (it is in both); of a graph and an earlier look at it with ``earlier:``, ``running:`` or
+``as before:``. Behind it comes one of:
 
     NODE                                a node; a second such line is a second node of that name
     NODE ROLE NAME [TYPE] [as CODE_NAME] [QOS ...]     the node publishes, subscribes, serves or calls
@@ -116,6 +117,17 @@ def read_example(text: str) -> tuple[System, System]:
     for line in (*planned, *running):
         assert _is_known(line), f"not in the language of examples: {line}"
     return read_plan(planned), read_graph(running)
+
+
+def read_looks(text: str) -> tuple[System, System]:
+    """The earlier look and the graph of an example."""
+    pairs = [line.split(": ", 1) for line in text.splitlines()]
+    assert {where for where, _ in pairs} <= {"earlier", "running", "as before"}, text
+    before, after = (
+        [rest for where, rest in pairs if where in (own, "as before")]
+        for own in ("earlier", "running")
+    )
+    return read_graph(before), read_graph(after)
 
 
 def read_system(text: str) -> Index:

@@ -11,11 +11,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, SENT_FRAMES, chooses
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import TF, Index, at_work, ends_of, nodes_of, once
+from multibot_rewrite.system.index import TF, Ends, Index, at_work, ends_of, nodes_of, once
 from multibot_rewrite.system.records import (
     CALLS,
     PUBLISHES,
@@ -282,3 +282,54 @@ def _silent(seen: Index) -> Iterator[Finding]:
                 yield less_than_another_robot.finding(
                     message, "see its log", robot=robot, node=node, names=(name,)
                 )
+
+
+@system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="missing")
+def driver_missing(seen: Index) -> Iterator[Finding]:
+    """By its readers, and by another robot that has it, however much the two differ: all that one node
+    of the other robot does is one finding."""
+    lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
+    for ends in seen.topics if len(seen.robots) > 1 else ():
+        robot = seen.robot(ends.name)
+        role = _missed_side(seen, ends) if robot else ""
+        if role and (node := _who_does(seen, ends, role)):
+            lost[robot, node].append(ends)
+    for (robot, node), missed in lost.items():
+        names, plain = tuple(it.name for it in missed), seen.plain(node)
+        ends_ = (end for it in missed for end in at_work((*it.subscribers, *it.publishers)))
+        vain = f"{shorten(nodes_of(ends_), SEVERAL)} in vain"
+        there = nodes_of_each(seen)[robot].get(plain, "")
+        what = (
+            f"{robot} has no {plain.strip('/')}, as {seen.robot(node)} has ({node});"
+            f" {shorten(names, SEVERAL)} is used by {vain}"
+        )
+        hint = "start it for this robot too"
+        if there:
+            what = f"lacks {shorten(names, SEVERAL)}, which {node} has; it is used by {vain}"
+            hint = "see its log; a remap rule, a parameter or a version of its own?"
+        yield driver_missing.finding(what, hint, robot=robot, node=there, names=names)
+
+
+def _who_does(seen: Index, ends: Ends, role: str) -> str:
+    """The node of another robot that does this with its own topic of that name; empty for none."""
+    robot, plain = seen.robot(ends.name), seen.plain(ends.name)
+    for other in (it for it in seen.robots if it != robot):
+        there = seen.of_robot(other, TOPIC, plain)
+        if there and there.type == ends.type:
+            own = at_work(there.publishers if role == PUBLISHES else there.subscribers)
+            if node := next((it.node for it in own if seen.robot(it.node) == other), ""):
+                return node
+    return ""
+
+
+def _missed_side(seen: Index, ends: Ends) -> str:
+    """What nobody does with a topic of a robot, and a node of this robot waits for: sends what its body
+    measures, or obeys its velocities; else empty."""
+    kind, own = words.kind_of_data(ends.name, ends.type), seen.robot(ends.name)
+    if not kind:
+        return ""
+    if words.moves(seen.plain(ends.name), ends.type):
+        sent = any(seen.robot(it.node) == own for it in at_work(ends.publishers))
+        return SUBSCRIBES if sent and not at_work(ends.subscribers) else ""
+    read = any(seen.robot(it.node) == own and it.sure == RUNS for it in at_work(ends.subscribers))
+    return PUBLISHES if read and not ends.publishers else ""
