@@ -141,8 +141,9 @@ def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
         several = any(frame.several for frame in same)
         transform = next((frame.transform for frame in same if frame.transform), ())
         rate = max(frame.rate for frame in same)
+        age = min((frame.age for frame in same), key=abs)
         senders = tuple(sorted(publishers))
-        yield Edge(child, parent, topic, static, senders, several, transform, rate)
+        yield Edge(child, parent, topic, static, senders, several, transform, rate, age=age)
 
 
 def _environment(

@@ -208,7 +208,7 @@ class Edge(NamedTuple):
     nodes that may have sent it. A tf message does not say which node sent it; ``several`` is whether
     more than one did. ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w;
     empty if not known, or if several static ones differ; inf for NaN. ``rate`` is how often it came a
-    second, 0 if not known. ``OFF``: a parameter forbids it.
+    second, 0 if not known, ``age`` as in ``Heard``. ``OFF``: a parameter forbids it.
     """
 
     child: str
@@ -221,6 +221,7 @@ class Edge(NamedTuple):
     rate: float = 0.0
     sure: Sure = RUNS
     place: Place = NOWHERE
+    age: float = 0.0
 
 
 def edge_of(parent: str, child: str, static: bool = False) -> Edge:
