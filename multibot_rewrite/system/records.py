@@ -249,6 +249,15 @@ class Heard(NamedTuple):
     place: Place = NOWHERE
 
 
+class Description(NamedTuple):
+    """The description that came on ``topic``: its links, and its joints that are not fixed; neither of
+    an empty one, or of a text that is no URDF."""
+
+    topic: FullName
+    links: tuple[str, ...] = ()
+    joints: tuple[str, ...] = ()
+
+
 class Lookup(NamedTuple):
     """A transform that ``node`` needs: from ``parent``, empty for any frame, to ``frame``."""
 
@@ -354,7 +363,8 @@ class Domain(NamedTuple):
 class System(NamedTuple):
     """What runs, or would run, on some robots; what no source says is empty.
 
-    ``heard`` are frames that messages name, one message a topic, ``lookups`` what nodes ask of tf,
+    ``heard`` are frames that messages name, one message a topic, ``descriptions`` what latched ones
+    name, ``lookups`` what nodes ask of tf,
     ``addresses`` what only one of them can have.
     ``parameters`` and ``controllers`` are what nodes answered, or what files set. A plan has a
     ``layout``; ``topics`` say more of some of its topics, ``ignored_nodes`` are patterns of nodes that
@@ -383,6 +393,7 @@ class System(NamedTuple):
     lookups: tuple[Lookup, ...] = ()
     addresses: tuple[Address, ...] = ()
     domains: tuple[Domain, ...] = ()
+    descriptions: tuple[Description, ...] = ()
 
 
 def surely(system: System) -> System:

@@ -321,6 +321,7 @@ def _snapshot(
         tuple(_frames(ears.tf, placed)),
         around,
         ears.headers.heard(),
+        descriptions=ears.descriptions.found(),
     )
 
 
