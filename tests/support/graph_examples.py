@@ -18,6 +18,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     transform PARENT -> CHILD on TOPIC [at X Y Z] [by NODES] [twice]    a transform, who publishes
                                                      there, and whether several of them send it
     frame_id FRAME on TOPIC [NUMBER s old]     the frame that a message on the topic names, and its age
+    description on TOPIC: no links, or links NAMES; joints NAMES     what a latched description names
     joints NAME on TOPIC                the joint that a message on the topic names
     /clock runs, /clock goes back NUMBER s     the time on it
     NODE is STATE, NODE has PARAMETER VALUE          what it answers when it is asked for its state
@@ -54,6 +55,7 @@ from multibot_rewrite.system.records import (
     SUBSCRIBES,
     TOPIC,
     Address,
+    Description,
     Edge,
     End,
     Heard,
@@ -92,6 +94,7 @@ LOOKS_UP = re.compile(r"(/\S+) looks up (\S+)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
 CAME = re.compile(r"(/\S+) came (\d+) times")
 JOINTS = re.compile(r"joints (\S+) on (/\S+)")
+DESCRIBED = re.compile(r"description on (/\S+): (?:no links|links ([^;]+)(?:; joints (.+))?)")
 CLOCK_TIME = re.compile(r"(/clock) (?:runs|goes back ([\d.]+) s)")
 FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)(?: ([\d.]+) s old)?")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
@@ -189,6 +192,7 @@ def _is_known(line: str) -> bool:
         FRAME_ID,
         JOINTS,
         CLOCK_TIME,
+        DESCRIBED,
         INTERFACE,
         HOLDS,
         LOOKS_UP,
@@ -288,6 +292,10 @@ def read_graph(lines: list[str]) -> System:
             Address(kind, name, value, node) for node, kind, name, value in _words(HOLDS, lines)
         ),
         lookups=tuple(Lookup(node, frame) for node, frame in _words(LOOKS_UP, lines)),
+        descriptions=tuple(
+            Description(topic, *(tuple(filter(None, it.split(", "))) for it in named))
+            for topic, *named in _words(DESCRIBED, lines)
+        ),
     )
     return with_answers(seen, read_states(lines))
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -255,17 +256,26 @@ def numbers_of(transform: Any) -> tuple[float, ...]:
     return tuple(round(it, _DIGITS) if abs(it) < FARTHEST else math.inf for it in numbers)
 
 
+def age_of(stamp: float | None) -> float:
+    """How old a message is by this machine's clock; what is less than a second is the network's."""
+    if stamp is None:
+        return 0.0
+    age = round(time.time() - stamp, 1)
+    return math.inf if not stamp else age if abs(age) >= 1.0 else 0.0
+
+
 def frames(
     received: Iterable[ReceivedTransform],
     endpoints: Iterable[End],
     of_several: Collection[ReceivedTransform] = (),
     last: Mapping[ReceivedTransform, tuple[float, ...]] = NO_TRANSFORMS,
     rates: Mapping[ReceivedTransform, float] = NO_RATES,
+    ages: Mapping[ReceivedTransform, float] = NO_RATES,
 ) -> Iterator[Edge]:
     """The transforms received, each once a topic; static if it came from a latched subscription.
 
     ``of_several`` are those that more than one publisher sends, ``last`` what each was at last,
-    ``rates`` how often it came.
+    ``rates`` how often it came, ``ages`` how old it was.
     """
     publishers = defaultdict(set)
     for end in endpoints:
@@ -278,9 +288,10 @@ def frames(
     several = {(it.topic, it.parent, it.child) for it in of_several}
     numbers = {(it.topic, it.parent, it.child): own for it, own in last.items()}
     often = {(it.topic, it.parent, it.child): own for it, own in rates.items()}
+    old = {(it.topic, it.parent, it.child): own for it, own in ages.items()}
     for edge, static in sorted(latched.items()):
         topic, parent, child = edge
         senders = tuple(sorted(publishers[topic]))
         transform = numbers.get(edge, ())
-        rate = often.get(edge, 0.0)
-        yield Edge(child, parent, topic, static, senders, edge in several, transform, rate)
+        rate, age = often.get(edge, 0.0), old.get(edge, 0.0)
+        yield Edge(child, parent, topic, static, senders, edge in several, transform, rate, age=age)

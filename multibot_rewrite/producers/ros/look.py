@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from multibot_rewrite.producers.ros import assemble, queries, ros
+from multibot_rewrite.producers.ros.described import DescriptionSamples
 from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, HeaderSamples, Receive
 from multibot_rewrite.producers.ros.participants import make_room
 from multibot_rewrite.producers.ros.request import Request
@@ -163,12 +164,14 @@ class Ears:
         self._request = session.request
         self.tf = TfSubscriptions(partial(_subscribe, session))
         self.headers = HeaderSamples(partial(_subscribe_to_headers, session))
+        self.descriptions = DescriptionSamples(partial(_subscribe_to_last, session))
 
     def update(self, endpoints: Sequence[End]) -> None:
         """Subscribe to what is published now."""
         self.tf.update(endpoints, self._request.substitutes)
         if self._request.headers:
             self.headers.update(endpoints)
+            self.descriptions.update(endpoints)
 
     def silent(self) -> list[str]:
         """The topics on which nothing has come."""
@@ -203,6 +206,12 @@ def _subscribe_to_headers(
     """Subscribe to the last message only, since there may be large images; None without a header."""
     if type_ != CLOCK_TYPE and not ros.begins_with_header(type_):
         return None
+    return _subscribe_to_last(session, topic, type_, latched, callback)
+
+
+def _subscribe_to_last(
+    session: GraphSession, topic: str, type_: str, latched: bool, callback: Receive
+) -> Callable[[], None] | None:
     class_, _ = ros.raw_message_class(type_)
     # Of the clock all are wanted: it may go back at any.
     depth = 0 if type_ == CLOCK_TYPE else 1

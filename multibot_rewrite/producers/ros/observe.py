@@ -329,11 +329,12 @@ def _snapshot(
         tuple(_frames(ears.tf, placed)),
         around,
         ears.headers.heard(),
+        descriptions=ears.descriptions.found(),
     )
 
 
 def _frames(tf: TfSubscriptions, placed: Iterable[End]) -> Iterator[Edge]:
-    return assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates())
+    return assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates(), tf.ages)
 
 
 # States and parameters change without the graph: nodes are asked for them again after so long.

@@ -182,6 +182,8 @@ def _is_needy(end: End) -> bool:
 
 # Topics of one robot and of another are as often, unless something is wrong: so many times.
 RATIO = 3.0
+# Of what a body measures, in messages a second.
+_SELDOM = 1.0
 # Where there were too many topics to listen to all.
 _NOT_ALL = "headers-not-read"
 # Fewer messages say nothing of a rate.
@@ -225,7 +227,7 @@ def _slow(seen: Index) -> Iterator[Finding]:
         robot = seen.robot(it.name)
         if robot and it.name in rates and words.kind_of_data(it.name, it.type):
             there[seen.plain(it.name), it.type][robot] = it.name
-    for own in there.values():
+    for (_, type_), own in there.items():
         best = max(own.values(), key=lambda it: rates[it])
         for robot, name in own.items():
             if rates[name] * RATIO <= rates[best]:
@@ -233,8 +235,12 @@ def _slow(seen: Index) -> Iterator[Finding]:
                 message = (
                     f"publishes {name} at {rates[name]:.1f} Hz, {best} comes at {rates[best]:.1f}"
                 )
+                # So seldom a scan is as good as none.
+                read = bool(at_work(seen.by_name[TOPIC, name].subscribers))
+                dead = read and rates[name] < _SELDOM and words.is_of_a_body(type_)
                 yield less_than_another_robot.finding(
                     f"{message} Hz", "see its log, and the processor time that it has",
+                    level=ERROR if dead else WARNING,
                     robot=robot, node=node, names=(name,),
                 )  # fmt: skip
 
@@ -273,15 +279,17 @@ def _silent(seen: Index) -> Iterator[Finding]:
         robot = seen.robot(it.name)
         if robot and words.kind_of_data(it.name, it.type) and at_work(it.publishers):
             there[seen.plain(it.name), it.type][robot] = it.name
-    for own in there.values():
+    for (_, type_), own in there.items():
         loud = next((name for name in own.values() if name in heard), "")
         for robot, name in own.items() if loud else ():
             if name not in heard and robot in there_at_all:
                 node = nodes_of(at_work(seen.by_name[TOPIC, name].publishers))[0]
                 message = f"publishes {name}, on which no message came; {loud} has some"
+                dead = words.is_of_a_body(type_) and at_work(seen.by_name[TOPIC, name].subscribers)
                 yield less_than_another_robot.finding(
-                    message, "see its log", robot=robot, node=node, names=(name,)
-                )
+                    message, "see its log", level=ERROR if dead else WARNING,
+                    robot=robot, node=node, names=(name,),
+                )  # fmt: skip
 
 
 @system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="missing")
