@@ -896,3 +896,15 @@ def test_move_group_has_what_its_launch_file_and_its_files_say_of_pipelines(tmp_
     assert files.index("moveit_parameters.yaml") < files.index("pipes.yaml")
     rows = [at for at, it in enumerate(told) if "ompl.planning_plugin" in it]
     assert rows[-1] > max(at for at, it in enumerate(told) if isinstance(it, str))
+
+
+@pytest.mark.parametrize(
+    "file", ["ros_gz_sim/launch/gz_sim.launch.py", "ros_ign_gazebo/launch/ign_gazebo.launch.py"]
+)
+def test_a_simulator_is_started_once_by_its_launch_file(file: str, tmp_path: Path) -> None:
+    """No package has a program gzserver but gazebo_ros: ros2 launch would end."""
+    package, _, path = file.partition("/")
+    body = f"IncludeLaunchDescription([FindPackageShare('{package}'), '/{path}']),"
+    found = actions(tmp_path, body, more="simulator: gazebo")
+    assert [it.kind for it in found].count("IncludeLaunchDescription") == 1
+    assert "gzserver" not in told(found)
