@@ -846,9 +846,9 @@ ODOMETRY = """<gazebo>
 def test_transforms_of_a_system_are_bridged_where_no_node_sends_them(
     is_bridged: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The vendor's bridge has other topics, and his filter places the robot: it would be placed twice."""
+    """The vendor's bridge has other topics, and his filter places the robot: two would do so."""
     values = "{'world_frame': 'odom', 'base_link_frame': 'base_link', 'publish_tf': True}"
-    body = f"""Node(package='ros_gz_bridge', executable='parameter_bridge',
+    body = """Node(package='ros_gz_bridge', executable='parameter_bridge',
             arguments=['/model/bot/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry']),"""
     if not is_bridged:
         body += "Node(package='robot_localization', executable='ekf_node', name='ekf_filter_node',"
