@@ -169,7 +169,13 @@ def _of_costmap(file: NamedFile, section: Section) -> Iterator[Finding]:
         message = f"{section.title}: {what}"
         yield remark_at(radius.given.node, message, f"leave out {_ROBOT_RADIUS}")
     yield from _inflation(section, size)
-    reach = _reach(file)
+    # How far the one description of the package reaches; 0 where that is not known.
+    robots = file.memo.get(Robots)
+    reach = (
+        0.0
+        if not isinstance(robots, Robots) or len(robots.subjects) != 1
+        else reach_of(robots.subjects[0].document.root)
+    )
     if reach and size.inscribed > _FAR * reach:
         message = f"{section.title}: {size.given.name} reaches {size.inscribed:g} m from the middle"
         hint = f"the description reaches {reach:.3g} m; write metres"
@@ -225,11 +231,3 @@ def _inflation(section: Section, size: Size) -> Iterator[Finding]:
             message = f"{section.title}: {name} is {value:g} m, {least}"
             hint = f"the robot is as large as {size.given.name} says; inflate further than that"
             yield remark_at(given.node, message, hint)
-
-
-def _reach(file: NamedFile) -> float:
-    """How far the one description of the package reaches; 0 where that is not known."""
-    robots = file.memo.get(Robots)
-    if not isinstance(robots, Robots) or len(robots.subjects) != 1:
-        return 0.0
-    return reach_of(robots.subjects[0].document.root)
