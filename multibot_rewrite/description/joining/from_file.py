@@ -40,7 +40,6 @@ BESIDE = ("controllers", "moveit")
 SAMPLES = "samples"
 _KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "rviz", "one_system", *BESIDE)
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
-_AT = ("parent", "pose")
 _EXAMPLE = "join: [{description: arm.urdf}, {description: hand.urdf, at: {parent: tool0}}]"
 
 
@@ -106,7 +105,7 @@ def _part(item: YamlItem, folder: str) -> Part:
     keys = table(item, "a part", _KEYS)
     at = table_of(keys, "at")
     for key, value in at.items():
-        if key not in _AT:
+        if key not in ("parent", "pose"):
             wrong(value, f"at has {key!r}; it takes parent and pose")
     if not word_of(keys, "description"):
         wrong(item, "a part has no description; name a URDF or xacro")

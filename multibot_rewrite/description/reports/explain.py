@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 
 
 _PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
-_NAMED = ("param", "parameter")
 
 
 def tag_path(element: _Element, attribute: str) -> str:
@@ -47,7 +46,7 @@ def _step(element: _Element) -> str:
     tag = short_name(str(element.tag), element.prefix)
     if tag == "plugin":
         return f"{tag}[{plugin_name(element)}]"
-    name = element.get("name") if tag in _NAMED else None
+    name = element.get("name") if tag in ("param", "parameter") else None
     return f"{tag}[{name}]" if name else tag
 
 

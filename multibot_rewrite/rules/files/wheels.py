@@ -41,14 +41,13 @@ from multibot_rewrite.rules.subject import Robots, Subject, subject_of
 
 CONTROLLER = "diff_drive_controller"
 LEFT, _RIGHT = "left_wheel_names", "right_wheel_names"
-_LIMITS = "joint_limits"
 _SEPARATION, _RADIUS = "wheel_separation", "wheel_radius"
 _Values = Mapping[str, Setting]
 
 
 def with_description(file: NamedFile, description: Document) -> NamedFile:
     """The file beside the one description that it is for, which is read for wheels and limits."""
-    if LEFT not in file.text and not (file.kind == MOVEIT and _LIMITS in file.text):
+    if LEFT not in file.text and not (file.kind == MOVEIT and "joint_limits" in file.text):
         return file
     release = file.context.distro
     tree = builtin_tree((), release)
@@ -136,7 +135,6 @@ def _ways(node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]) -> Ite
 
 _INFLATION = "nav2_costmap_2d::InflationLayer"
 _ROBOT_RADIUS, _FOOTPRINT = "robot_radius", "footprint"
-_COSTMAP = "nav2_costmap_2d"
 # A radius that is so many times the robot's reach is in other units, or of another robot.
 _FAR = 3.0
 # An arm may reach as many times as far as its base.
@@ -155,7 +153,7 @@ class Size(NamedTuple):
 def robot_size(file: NamedFile) -> Iterator[Finding]:
     """Each costmap of a file."""
     for section in sections(file):
-        if section.node is not None and section.node.package == _COSTMAP:
+        if section.node is not None and section.node.package == "nav2_costmap_2d":
             yield from _of_costmap(file, section)
 
 

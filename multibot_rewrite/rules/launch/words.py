@@ -108,7 +108,7 @@ def not_there(launched: Launched) -> Iterator[Finding]:
     named = [
         (it.full_name, it.place, str(it.values[parameter].value))
         for it in launched.nodes
-        for parameter in _NAMED
+        for parameter in ("config_file", "yaml_filename")
         if parameter in it.values
     ]
     for node in launched.graph.nodes:
@@ -134,7 +134,6 @@ def argument_not_read(launched: Launched) -> Iterator[Finding]:
 
 
 _PATH = "correct the path, or install the file"
-_NAMED = ("config_file", "yaml_filename")
 # Programs write there what others read.
 _TEMPORARY = ("/tmp", "/var/tmp", "/dev/shm")
 

@@ -49,13 +49,11 @@ READ_BESIDES = frozenset({"gz_frame_id", "ignition_frame_id"})
 ANGLES = frozenset({"min_angle", "max_angle"})
 # What Gazebo Classic takes besides: gazebo-classic gazebo/rendering/Camera.cc, GetOgrePixelFormat.
 OGRE_FORMATS = frozenset({"FLOAT32", "FLOAT16"})
-_CLASSICS = "gazebo_ros_"
 Version = tuple[int, ...]
 # How bad is for Gazebo Classic what its successor refuses.
 _MILD = {"range": NOTE, "value": WARNING, "word": WARNING}
 # What the last release with Gazebo Classic reads.
 CLASSIC = (1, 9)
-SENSOR_TYPE = "sensor/@type"
 
 
 def version_of_release(release: str) -> Version:
@@ -252,7 +250,7 @@ def _word(element: _Element, at: str, name: str, text: str, version: Version) ->
     if text in OGRE_FORMATS and _is_for_classic(element):
         return
     near = nearest(text, known)
-    if not near and version <= CLASSIC and name == SENSOR_TYPE:
+    if not near and version <= CLASSIC and name == "sensor/@type":
         return  # Gazebo Classic lets plugins add types of sensors
     hint = f"did you mean {near!r}?" if near else ""
     message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
@@ -263,7 +261,7 @@ def _is_for_classic(element: _Element) -> bool:
     """Has the sensor of a value a plugin of Gazebo Classic?"""
     sensor = next(element.iterancestors("sensor"), None)
     plugins = sensor.iterchildren("plugin") if sensor is not None else ()
-    return any(_CLASSICS in it.get("filename", "") for it in plugins)
+    return any("gazebo_ros_" in it.get("filename", "") for it in plugins)
 
 
 @lru_cache

@@ -121,7 +121,6 @@ def angle_in_degrees(subject: Subject) -> Iterator[Problem]:
     yield from limits_in_degrees(subject)
 
 
-_LIDAR = ("lidar", "ray")
 # No lidar sees as far, in metres, and none is blind for as long.
 FAR, BLIND = 2000.0, 20.0
 _ABOVE_0 = {
@@ -139,7 +138,7 @@ def sees_nothing(subject: Subject) -> Iterator[Problem]:
             yield _problem(sensor, "update_rate", "is below 0")
         for inner in sensor.iterchildren("camera") if type_ in CAMERAS else ():
             yield from _none_of(inner, _ABOVE_0["camera"])
-        for inner in sensor.iterchildren(*_LIDAR) if type_ in LIDARS else ():
+        for inner in sensor.iterchildren("lidar", "ray") if type_ in LIDARS else ():
             yield from _none_of(inner, _ABOVE_0["lidar"])
             near, far = number_at(inner, "range/min"), number_at(inner, "range/max")
             if near is not None and far is not None and near >= BLIND and far >= FAR:
@@ -154,7 +153,9 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
         above = physics.getparent()
         if above is not None and above.tag == "world":
             yield from _none_of(physics, ("max_step_size",))
-    for element in (it for tag in _REDUCTIONS for it in every(tag)):
+    for element in (
+        it for tag in ("mechanicalReduction", "mechanical_reduction") for it in every(tag)
+    ):
         if number(text_of(element)) == 0:
             yield Problem(element, f"{element.tag} is 0, by which is divided", level=WARNING)
     for plugin in every("plugin"):
@@ -165,9 +166,6 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
             if low is not None and high is not None and low > high:
                 message = f"{tag} is {low:g}, above max_{tag.removeprefix('min_')} ({high:g})"
                 yield Problem(least, message, "", "swap the two, or correct one", level=WARNING)
-
-
-_REDUCTIONS = ("mechanicalReduction", "mechanical_reduction")
 
 
 def _none_of(inner: _Element, paths: tuple[str, ...]) -> Iterator[Problem]:
@@ -186,7 +184,6 @@ def _problem(above: _Element, path: str, words: str, hint: str = "") -> Problem:
 
 # gz-sim10_10.4.0 src/SystemLoader.cc no longer takes ignition-gazebo for gz-sim; 9_9.5.0:125 does.
 WITHOUT_IGNITION = ("lyrical", "rolling")
-_IGNITION = "ignition-gazebo"
 # Where SDF requires the name: before 1.10 (plugin.sdf).
 NAMED = ("humble",)
 # How the libraries of a family begin and end.
@@ -272,7 +269,7 @@ def library_of_ignition(subject: Subject) -> Iterator[Problem]:
     release = subject.settings.distro
     if release not in WITHOUT_IGNITION:
         return
-    found = [it for it in simulator_plugins(subject) if _IGNITION in it.get("filename", "")]
+    found = [it for it in simulator_plugins(subject) if "ignition-gazebo" in it.get("filename", "")]
     if found:
         first = library_of(found[0])
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""

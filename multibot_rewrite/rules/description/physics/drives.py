@@ -117,9 +117,6 @@ def _fault_of(joint: Joint) -> str:
     return f"turns from {lower:g} to {upper:g} radians only"
 
 
-_FRICTION = ("mu1", "mu", "mu2")
-
-
 @rule("MB636", "wheel-without-grip", WARNING)
 def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
     """Blocks of links on a continuous joint that something drives, if nothing else moves the robot."""
@@ -131,7 +128,7 @@ def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
     for block in blocks:
         name = block.get("reference", "")
         # A wheel with rollers has grip one way alone, along <fdir1> or across it.
-        for tag in _FRICTION if name in wheels and block.find("fdir1") is None else ():
+        for tag in ("mu1", "mu", "mu2") if name in wheels and block.find("fdir1") is None else ():
             value, element = number_at(block, tag), block.find(tag)
             if value is not None and value <= 0 and element is not None:
                 message = f"{tag} of driven wheel {name!r} is {value:g}: it has no grip"

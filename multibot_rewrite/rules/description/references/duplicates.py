@@ -167,7 +167,6 @@ def _repeated(found: Iterable[tuple[object, _Element]]) -> Iterator[_Element]:
         seen.add(key)
 
 
-_OF_JOINTS = ("force_torque", "wrench")
 # The values of a <gazebo> block of which a link has one each (libsdformat parser_urdf.cc); some have
 # two tags, as max_vel and maxVel.
 _SINGLE = (
@@ -225,7 +224,7 @@ def sensors_of_joints(subject: Subject) -> Iterator[Problem]:
         name = block_.get("reference", "")
         if name in subject.robot.joint and name not in subject.robot.link:
             for it in block_.iterchildren("sensor"):
-                if it.get("type") not in _OF_JOINTS:
+                if it.get("type") not in ("force_torque", "wrench"):
                     message = f"sensor {it.get('name')!r} is in the block of joint {name!r}"
                     child = subject.robot.joint[name].child
                     yield Problem(it, message, None, f"refer to a link: {child!r}?")

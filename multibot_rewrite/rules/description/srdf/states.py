@@ -22,7 +22,6 @@ from multibot_rewrite.rules.description.srdf.names import of_moveit, srdf_rule
 from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
 from multibot_rewrite.rules.subject import Subject
 
-LIMITED = ("revolute", "prismatic")
 # State values are written with a few digits.
 ROUNDING = 1e-4
 
@@ -66,7 +65,7 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
     for it, _, name in _states(subject.document.root) if robot else ():
         assert robot is not None
         joint, values = robot.joint.get(name), numbers_in(it.get("value", ""))
-        limits = _limits(joint) if joint and joint.type in LIMITED else None
+        limits = _limits(joint) if joint and joint.type in ("revolute", "prismatic") else None
         if limits is None or not values or len(values) > 1:
             continue
         lower, upper = limits
