@@ -294,12 +294,10 @@ def _slip(name: str, known: Iterable[str]) -> str:
     """The known name that was meant; one that is a part of the other is a name of its own."""
     near = slip_of(name, known)
     part = near in name or name in near
-    own = _has_own_word(name, near) or (part and near.casefold() != name.casefold())
-    return "" if own else near
-
-
-def _has_own_word(name: str, other: str) -> bool:
-    """Is a word in place of another one without a letter of it, as ``my`` of ``uuv``?"""
-    words, others = name.casefold().split("_"), other.casefold().split("_")
+    # Is a word in place of another one without a letter of it, as ``my`` of ``uuv``?
+    words, others = name.casefold().split("_"), near.casefold().split("_")
     pairs = zip(words, others, strict=False) if len(words) == len(others) else ()
-    return any(one and two and not set(one) & set(two) for one, two in pairs)
+    own = any(one and two and not set(one) & set(two) for one, two in pairs) or (
+        part and near.casefold() != name.casefold()
+    )
+    return "" if own else near
