@@ -181,10 +181,8 @@ def too_weak_for_gravity(subject: Subject) -> Iterator[Problem]:
 
 def _most(subject: Subject, joint: Joint) -> float:
     """More than gravity can do at a joint whatever its axis: one quick look, enough for most."""
-    pose, weight = (
-        link_poses(subject).get(joint.child),
-        carried(subject).get(joint.child, NO_WEIGHT),
-    )
+    pose = link_poses(subject).get(joint.child)
+    weight = carried(subject).get(joint.child, NO_WEIGHT)
     if pose is None or not weight.mass:
         return 0.0
     arm = 1.0 if joint.type == "prismatic" else dist(weight.centre, pose.at)
