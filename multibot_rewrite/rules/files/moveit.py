@@ -173,6 +173,5 @@ def one_controller_manager(file: NamedFile) -> Iterator[Finding]:
     slots = [slot_of(key)] if key else []
     for slot in (*slots, *(it.slot for it in file.names if it.kind == "namespace")):
         message = "MoveIt looks for /controller_manager, but each robot's has a different name"
-        yield remark(
-            slot, message, "use moveit_simple_controller_manager or a layout with namespaces"
-        )
+        hint = "use moveit_simple_controller_manager or a layout with namespaces"
+        yield remark(slot, message, hint)

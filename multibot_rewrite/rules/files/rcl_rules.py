@@ -141,9 +141,8 @@ def mixed_clocks(file: NamedFile) -> Iterator[Finding]:
     first = next(path for path, _, value in found if value == most)
     names = shorten(path for path, _ in others)
     message = f"{_TIME} is {_word(not most)} for {names}, and {_word(most)} for {first}"
-    yield remark_at(
-        others[0][1], message, "set it alike in all nodes of a robot: tf compares times"
-    )
+    hint = "set it alike in all nodes of a robot: tf compares times"
+    yield remark_at(others[0][1], message, hint)
 
 
 def _is_left_out(section: ParamSection) -> bool:

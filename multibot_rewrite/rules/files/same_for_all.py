@@ -49,9 +49,8 @@ def _exclusive(file: NamedFile) -> Iterator[Finding]:
                 hint = f"fine if each robot has a computer of its own; else {_OWN_VALUE}"
                 yield remark_at(value, _same(key.value, text), hint, NOTE)
             elif kind:
-                yield remark_at(
-                    value, _same(key.value, text), f"one device has one driver: {_OWN_VALUE}"
-                )
+                hint = f"one device has one driver: {_OWN_VALUE}"
+                yield remark_at(value, _same(key.value, text), hint)
 
 
 def _same(key: str, text: str) -> str:

@@ -128,9 +128,8 @@ def _ways(node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]) -> Ite
     way = are_swapped(one, other)
     if way:
         message = f"left wheel {one.joint.name!r} is {way:.3g} m right of {other.joint.name!r}"
-        yield remark_at(
-            node, message, "swap left and right, or turn the axes of both joints around"
-        )
+        hint = "swap left and right, or turn the axes of both joints around"
+        yield remark_at(node, message, hint)
 
 
 _INFLATION = "nav2_costmap_2d::InflationLayer"

@@ -48,9 +48,8 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
         other = first.setdefault(it.name, it)
         if other is not it and it.words.get("-allow_renaming") not in ("true", "1"):
             message = f"spawns a second model {it.name}"
-            yield at(
-                name_twice, it.place, message, f"give it a -name of its own; see {other.place}"
-            )
+            hint = f"give it a -name of its own; see {other.place}"
+            yield at(name_twice, it.place, message, hint)
 
 
 @launch_rule("MG702", "robots-in-each-other")

@@ -185,9 +185,8 @@ def _missing(
     for name, row in section.rows.items():
         if row.required and name not in given and has_release(row.releases, release):
             message = f"{title(section)} needs {name!r}"
-            yield fault(
-                "missing", element, None, message, f"without it, it is not loaded{_in(row.place)}"
-            )
+            hint = f"without it, it is not loaded{_in(row.place)}"
+            yield fault("missing", element, None, message, hint)
 
 
 def _in(place: str) -> str:

@@ -207,9 +207,8 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
         classes = [known for known in section.names if "::" in known] if section else []
         if classes and name not in classes:
             message = f"{it.get('name', '').strip()!r} is no class of {library}"
-            yield Problem(
-                it, message, "name", f"did you mean {nearest(name, classes, 0) or classes[0]!r}?"
-            )
+            hint = f"did you mean {nearest(name, classes, 0) or classes[0]!r}?"
+            yield Problem(it, message, "name", hint)
 
 
 def _misspelt_library(

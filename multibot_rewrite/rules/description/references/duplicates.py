@@ -115,9 +115,8 @@ def duplicate_material(subject: Subject) -> Iterator[Problem]:
     materials = subject.elements.tops("material")
     for it in _repeated((it.get("name"), it) for it in materials if it.get("name")):
         message = f"material {it.get('name')!r} is defined twice"
-        yield Problem(
-            it, message, "name", "delete one: urdfdom rejects both even if they are alike"
-        )
+        hint = "delete one: urdfdom rejects both even if they are alike"
+        yield Problem(it, message, "name", hint)
 
 
 def one_node_twice(subject: Subject) -> Iterator[Problem]:

@@ -34,9 +34,8 @@ def duplicate_state(subject: Subject) -> Iterator[Problem]:
     for it in subject.document.root.iterchildren("group_state"):
         key = text_of(it), text_of(it, "group")
         if key in seen:
-            yield Problem(
-                it, f"group {key[1]!r} has another state {key[0]!r}", "name", "rename one"
-            )
+            message = f"group {key[1]!r} has another state {key[0]!r}"
+            yield Problem(it, message, "name", "rename one")
         seen.add(key)
 
 
