@@ -62,8 +62,7 @@ def root_sections(paths: Collection[str]) -> Iterator[Left]:
     own = {*OF_ROBOT, *chain.from_iterable(map(_controllers, texts.values()))}
     for path, data in texts.items():
         every = [(locate(data, it.start())[0], it[1].decode()) for it in _SECTION.finditer(data)]
-        found = [(line, name) for line, name in every if name in own]
-        if found:
+        if found := [(line, name) for line, name in every if name in own]:
             line, name = found[0]
             more = f", and {plural(len(found) - 1, 'section')} more" if len(found) > 1 else ""
             why = f"{name!r} is for no node in a namespace{more}; write /**/{name}"

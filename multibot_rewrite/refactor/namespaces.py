@@ -194,8 +194,7 @@ def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
         assert read is not None
         needs = _needs(it.template)
         for number, element in enumerate(document.elements):
-            origin = read.origins.of(number)
-            if origin:
+            if origin := read.origins.of(number):
                 spot = os.path.realpath(origin.file), origin.start
                 found[spot].add(needs.get(element, _Added()))
                 wanted |= {spot} if element in needs else set()

@@ -234,8 +234,7 @@ def _files_with(
             continue
         with suppress(MultibotError):
             file = names_in_file(data, path, described)
-            starts = set(starts_of(file, (name,), kinds))
-            if starts:
+            if starts := set(starts_of(file, (name,), kinds)):
                 yield path, data, file, starts
 
 

@@ -236,8 +236,7 @@ def _pose(holder: _Element) -> Pose | None:
 def _cylinder(text: Spanned, shape: _Element) -> Iterator[Edit]:
     start = text.starts[shape] + 1
     yield Edit(start, start + len(CAPSULE), CYLINDER, None)
-    closed = _CLOSED.match(text.source, tag_end(text.source, start - 1))
-    if closed:
+    if closed := _CLOSED.match(text.source, tag_end(text.source, start - 1)):
         yield Edit(closed.start(1), closed.end(1), CYLINDER, None)
 
 

@@ -87,8 +87,7 @@ def plain_texts(parts: Sequence[Part], trust: bool) -> tuple[list[GivenPart], tu
 
 def plain_text(made: JoinedText, place: str) -> bytes:
     """The joined text without comments of the join; raises InputError where a name has no prefix."""
-    missed = next((it for it in made.findings if it.code in MISSED), None)
-    if missed:
+    if missed := next((it for it in made.findings if it.code in MISSED), None):
         what = f"{place}: a name has no prefix: {missed.file}:{missed.line}: {missed.message}"
         raise InputError(f"{what}; make the description with multibot join, and correct it")
     return without_marks(made.data)

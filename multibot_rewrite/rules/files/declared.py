@@ -128,8 +128,7 @@ def wrong_types(file: NamedFile) -> Iterator[Finding]:
     where no release takes the value."""
     for section in sections(file):
         for it, known in section.known:
-            type_ = _wrong_type(it, of_parameter(known, file.context.distro))
-            if type_:
+            if type_ := _wrong_type(it, of_parameter(known, file.context.distro)):
                 given = _type_of(it.value) if it.value is not None else ""
                 message = f"{section.title}: {it.name} is {_article(given)}, not {_article(type_)}"
                 level = ERROR if _is_refused(file, section, it, known) else ""

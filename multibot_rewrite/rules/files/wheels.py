@@ -125,8 +125,7 @@ def _ways(node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]) -> Ite
     if are_opposite(one, other):
         message = f"the axes of wheels {names} point in opposite directions"
         yield remark_at(node, message, "turn one of them around: the robot would turn on the spot")
-    way = are_swapped(one, other)
-    if way:
+    if way := are_swapped(one, other):
         message = f"left wheel {one.joint.name!r} is {way:.3g} m right of {other.joint.name!r}"
         hint = "swap left and right, or turn the axes of both joints around"
         yield remark_at(node, message, hint)

@@ -119,8 +119,7 @@ def _with_odd_values(
     found: dict[etree._Element, None] = {}
     for at, kind in typed:
         values = set(columns[at]).difference(kind.choices)
-        odd = {value for value in values if not is_fine(kind.type, value)}
-        if odd:
+        if odd := {value for value in values if not is_fine(kind.type, value)}:
             pairs = zip(alike, columns[at], strict=True)
             found |= {element: None for element, value in pairs if value in odd}
     return found

@@ -120,8 +120,7 @@ def _unread(
         return
     parent = child.getparent()
     there = (it for it in blocks if it and parent is not None and parent.find(it) is not None)
-    beside = next(there, "")
-    if beside:
+    if beside := next(there, ""):
         message = f"{title(section)} reads {name!r} in <{beside}>, not beside it"
         yield fault("misplaced", child, None, message, f"move it into <{beside}>")
 

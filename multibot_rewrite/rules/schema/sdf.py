@@ -113,8 +113,7 @@ def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
         hint = f"it is read in that of a {' or '.join(belongs)}: name it with reference="
         yield fault("misplaced", child, None, message, hint)
         return
-    wrong = misread(row.type, text)
-    if wrong:
+    if wrong := misread(row.type, text):
         level = ERROR if row.type == "double" and wrong.fails else WARNING
         message = f"{row.name} {shortened(text)!r} {wrong.problem}"
         yield fault("value", child, at, message, "", level)
@@ -162,8 +161,7 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Prob
             yield from _value(element, key, row, text, known, version)
         elif is_own(key):
             free = [it[1:] for it in known.rows if it[0] == "@" and it[1:] not in element.attrib]
-            near = nearest(key, free)
-            if near:
+            if near := nearest(key, free):
                 message = f"Gazebo reads no attribute {key!r} of <{element.tag}>"
                 yield fault("misspelt", element, key, message, f"did you mean {near!r}?")
     # Attributes without which sdformat refuses the model; those of plugins depend on the release.
@@ -197,8 +195,7 @@ def _value(
         yield from _word(element, at, f"{known.name}/{row.name}", text, version)
         return
     turned = row.type == "pose" and element.get("rotation_format") == QUATERNION
-    wrong = misread(QUATERNION if turned else row.type, text)
-    if wrong:
+    if wrong := misread(QUATERNION if turned else row.type, text):
         level = ERROR if wrong.fails else WARNING
         yield fault("value", element, at, f"{_where(element, at, text)} {wrong.problem}", "", level)
     elif row.low is not None or row.high is not None:

@@ -234,8 +234,7 @@ def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
         if host.element.tag != "plugin" or not section or not is_unknown(section) or not name:
             continue
         key = library_key(name.rpartition("/")[2])
-        near = _slip_of_library(key, subject.tree.vocabulary.names("plugin"))
-        if near:
+        if near := _slip_of_library(key, subject.tree.vocabulary.names("plugin")):
             message = f"no known plugin is called {name!r}"
             level = "" if key.startswith(tuple(start for start, _ in FAMILIES)) else NOTE
             yield Problem(host.element, message, "filename", f"did you mean {near!r}?", level=level)

@@ -166,8 +166,7 @@ def _elsewhere(subject: Subject, it: MeshFile) -> str:
     above = [here, *(here[: len(root) + at] for at in steps)]
     places = [*((folder, tail) for folder in above), (root, f"meshes/{os.path.basename(tail)}")]
     for folder, path in places:
-        found = find_in(folder, path)
-        if found:
+        if found := find_in(folder, path):
             return f"package://{package}/{os.path.relpath(os.path.join(folder, found), root)}"
     return ""
 

@@ -97,8 +97,7 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
 def wheel_cannot_turn(subject: Subject) -> Iterator[Problem]:
     """Each such joint that a drive names."""
     for element, joint in wheel_joints(subject):
-        fault = _fault_of(joint)
-        if fault:
+        if fault := _fault_of(joint):
             yield Problem(element, f"wheel joint {joint.name!r} {fault}", "", "make it continuous")
 
 

@@ -123,8 +123,7 @@ def limit_missing(subject: Subject) -> Iterator[Problem]:
         there = limit.keys()
         bounds = ENDS if is_bounded else ()
         for needed, level in ((motor, ""), (bounds, "" if strict else WARNING)):
-            missing = [it for it in needed if it not in there]
-            if missing:
+            if missing := [it for it in needed if it not in there]:
                 message = f"<limit> of joint {joint.name!r} has no {' and no '.join(missing)}"
                 yield Problem(limit, message, level=level)
 
