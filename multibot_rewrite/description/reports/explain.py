@@ -271,13 +271,11 @@ def _made_on(it: _Line, document: Document, explain: OnLine) -> Iterator[Explana
         if written is None and all(it.begins(one) is None for one in every):
             continue
         for found in explain(locate(document.source, document.starts[number])[0]):
-            # The pieces of a value of an element.
             attribute = found.path.rpartition("@")[2] if "@" in found.path else ""
             pieces = it.read.pieces.of(number, attribute, found.value)
             at = it.begins(pieces) if written is None else written
             if at is not None:
                 line, column = locate(it.read.sources[it.file], at)
-                # The pieces in words; () for a value that stands in the element as it is.
                 plain = len(pieces) < 2 and all(one.kind == LITERAL for one in pieces)
                 made_of = () if plain else tuple(_words(it.read, pieces))
                 yield found._replace(line=line, column=column, made_of=made_of)

@@ -84,7 +84,6 @@ def contradictions(file: NamedFile) -> Iterator[Finding]:
             message = f"{it.section.title}: {it.given.name} {said}"
             # What is 0 is mostly the default that was written down.
             level = "" if it.given.value != 0 or it.check != "with" else NOTE
-            # Does a node not come up, whatever another file says?
             known = it.check != "period" or it.words[0] in it.section.whole
             level = ERROR if (it.check in _STOPS and not it.releases and known) else level
             yield remark_at(it.given.node, message, f"see {it.source}", level)

@@ -210,8 +210,7 @@ _DIGITS = str.maketrans("", "", "0123456789")
 def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
     """Each list of each node."""
     for node in given_in(file):
-        # Below each parameter the names that have parameters of their own, with the place of the
-        # first.
+        # Below each parameter the names with parameters of their own, each at its first place.
         bodies: dict[str, dict[str, Place]] = {}
         for name, given in node.values.items():
             parts = name.split(".")

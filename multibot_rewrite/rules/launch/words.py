@@ -147,7 +147,6 @@ def _is_ours(path: str) -> bool:
 @launch_rule("MG714", "program-misspelt")
 def misspelt(launched: Launched) -> Iterator[Finding]:
     """By what is known of a package's programs."""
-    # The programs of each package that are known.
     known: dict[str, set[str]] = defaultdict(set)
     for node in built_in(launched.release).nodes.values():
         for path in node.programs or (node.kind,):

@@ -201,7 +201,6 @@ def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Ite
         if other is not None:
             message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
             yield fault("repeated", other, None, message)
-    # Shapes after the first one of a geometry.
     either = [tag for tag, child in section.children.items() if child.times == "either"]
     shapes = list(element.iterchildren(*either)) if either else []
     if len(shapes) > 1:

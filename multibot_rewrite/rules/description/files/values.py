@@ -67,8 +67,6 @@ def missing(subject: Subject) -> Iterator[Problem]:
     for it in faults("missing", subject):
         # What includes a part of a robot may have its name.
         yield from lacking(subject, [it]) if it.element is root else [it]
-    # Plugins below ``<gazebo>`` or in an SDF; the attribute that SDF requires in this release;
-    # hardware without a class, for which ros2_control throws.
     for system in subject.elements.tops("ros2_control"):
         for empty in (it for it in system.iterfind("hardware/plugin") if not text_of(it)):
             yield Problem(empty, "<plugin> of the hardware is empty", None, "write its class")
