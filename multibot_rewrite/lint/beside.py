@@ -27,7 +27,6 @@ from multibot_rewrite.rules.subject import NO_ROBOTS, Robots, Subject
 
 # How many descriptions are read.
 _TRIED = 6
-_DESCRIPTION = "_description"
 _KINDS = ("link", "frame", "joint", "sensor", "gpio", "hardware")
 _AS_WRITTEN = make_naming("tf-per-robot")
 # Kinds of names for which a file's robots have to be known.
@@ -42,7 +41,7 @@ def robots_of(file: str, settings: Settings) -> Robots:
     paths = _descriptions(folder)
     if not paths and own:
         above = os.path.dirname(folder)
-        others = sorted(it for it in entries(above) if it.endswith(_DESCRIPTION))
+        others = sorted(it for it in entries(above) if it.endswith("_description"))
         paths = [path for it in others for path in _descriptions(os.path.join(above, it))]
     paths = paths or [path for _, path in settings.urdfs]
     if not paths:

@@ -45,7 +45,6 @@ HOMES = (
     "spelling.table_checks",
     "spelling.way_checks",
 )
-_OF_LINT = "MB"
 
 
 @cache
@@ -71,5 +70,5 @@ def declared() -> tuple[Rule, ...]:
     modules = [import_module(f"multibot_rewrite.{name}") for name in HOMES]
     found = [it for one in modules for it in vars(one).values() if isinstance(it, Rule)]
     every = (*judge.RULES, *check.RULES.values(), *found)
-    own = (it for it in every if it.code not in RULES or not it.code.startswith(_OF_LINT))
+    own = (it for it in every if it.code not in RULES or not it.code.startswith("MB"))
     return tuple(sorted({it.code: it for it in own}.values(), key=lambda it: it.code))

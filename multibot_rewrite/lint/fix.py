@@ -76,8 +76,7 @@ def _prove(
     alike = same and all(_same(old, new, there) for old, new, there in pairs)
     if not alike and not same_meaning(before.root, after.root):
         raise ProofError(f"{path}: a fix would change more than it may")
-    more = _said(new[1]) - _said(old[1])
-    if more:
+    if more := _said(new[1]) - _said(old[1]):
         raise ProofError(f"{path}: a fix would cause a new finding: {min(more)}")
 
 

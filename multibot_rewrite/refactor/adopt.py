@@ -180,8 +180,7 @@ def _made(
     wrong = {at: _fault(it, its, after, argument, how) for at, (it, its) in enumerate(every)}
     wrong = {at: why for at, why in wrong.items() if why}
     lacking = {at for at, its in enumerate(asked) if len(its) > len(made.changes[at])}
-    # The descriptions without a configuration that is ``wrong`` or ``lacking`` the prefix of a
-    # name. Raises InputError where each has a wrong one.
+    # Proved is a description none of whose configurations is wrong or lacks a prefix.
     paths = dict.fromkeys(it.path for it in found)
     if len({found[at].path for at in wrong}) == len(paths):
         at, why = next(iter(wrong.items()))

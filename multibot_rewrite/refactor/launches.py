@@ -242,8 +242,7 @@ def fillable(
             continue
         with suppress(MultibotError):
             file = names_in_file(data, path, urdfs[0])
-            starts = set(starts_of(file, names, PREFIXED))
-            if starts:
+            if starts := set(starts_of(file, names, PREFIXED)):
                 words = (f"$(var {argument})", tried)
                 texts = (respelled(file, data, starts, 0, it) for it in words)
                 found[name] = Filled(path, data, *texts)

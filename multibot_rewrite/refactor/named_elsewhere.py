@@ -23,7 +23,6 @@ from multibot_rewrite.refactor.launch_argument import OF_ROBOT
 from multibot_rewrite.refactor.placing import Left
 
 _CODE = (".py", ".cpp", ".hpp", ".cc", ".hh", ".h", ".c", ".lua")
-_DATA = (".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz")
 _SECTION = re.compile(rb"^([A-Za-z]\w*):[^\n]*\n(?:\s*#[^\n]*\n)*\s+ros__parameters:", re.MULTILINE)
 # Of one file so many lines are listed.
 _MOST = 20
@@ -38,7 +37,7 @@ def named_elsewhere(
     some = "|".join(re.escape(it) for it in sorted(names, key=len, reverse=True))
     literal = re.compile(rf"([\"'])({some})\1".encode())
     word = re.compile(rf"(?<![\w./$-])()({some})(?![\w./-])".encode())
-    for path in files_below(folder, (*_CODE, *_DATA)):
+    for path in files_below(folder, (*_CODE, ".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz")):
         if os.path.realpath(path) in without:
             continue
         pattern = literal if path.endswith(_CODE) else word
@@ -63,8 +62,7 @@ def root_sections(paths: Collection[str]) -> Iterator[Left]:
     own = {*OF_ROBOT, *chain.from_iterable(map(_controllers, texts.values()))}
     for path, data in texts.items():
         every = [(locate(data, it.start())[0], it[1].decode()) for it in _SECTION.finditer(data)]
-        found = [(line, name) for line, name in every if name in own]
-        if found:
+        if found := [(line, name) for line, name in every if name in own]:
             line, name = found[0]
             more = f", and {plural(len(found) - 1, 'section')} more" if len(found) > 1 else ""
             why = f"{name!r} is for no node in a namespace{more}; write /**/{name}"

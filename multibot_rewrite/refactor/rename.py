@@ -138,7 +138,6 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
     _check_free(symbol, package, changes)
     edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
     after = edited(texts_of(package.descriptions), edits)
-    # Every description is what it was but for the name; raises InputError for one that is not.
     for it in package.descriptions:
         wanted = expected(it.inventory.document, changes[it.path])
         data, _ = read_text(it.path, how, after)
@@ -234,8 +233,7 @@ def _files_with(
             continue
         with suppress(MultibotError):
             file = names_in_file(data, path, described)
-            starts = set(starts_of(file, (name,), kinds))
-            if starts:
+            if starts := set(starts_of(file, (name,), kinds)):
                 yield path, data, file, starts
 
 

@@ -177,7 +177,6 @@ def _one(edit: Edit | None) -> tuple[Edit, ...]:
 
 
 CAPSULE, CYLINDER = b"capsule", b"cylinder"
-HOLDERS = ("visual", "collision")
 # What a sphere may do without.
 _PLAIN = frozenset(("origin", "geometry", "material", "verbose"))
 _CLOSED = lazy_compile(rb"\s*</(capsule)\s*>")
@@ -186,7 +185,7 @@ _CLOSED = lazy_compile(rb"\s*</(capsule)\s*>")
 def capsules(link: _Element) -> list[tuple[_Element, _Element]]:
     """The capsules that are read of a link, each with its visual or collision."""
     found = []
-    for holder in link.iterchildren(*HOLDERS):
+    for holder in link.iterchildren("visual", "collision"):
         geometry = next(holder.iterchildren("geometry"), None)
         shape = None if geometry is None else next(geometry.iterchildren("*"), None)
         if shape is not None and shape.tag == "capsule":
@@ -237,8 +236,7 @@ def _pose(holder: _Element) -> Pose | None:
 def _cylinder(text: Spanned, shape: _Element) -> Iterator[Edit]:
     start = text.starts[shape] + 1
     yield Edit(start, start + len(CAPSULE), CYLINDER, None)
-    closed = _CLOSED.match(text.source, tag_end(text.source, start - 1))
-    if closed:
+    if closed := _CLOSED.match(text.source, tag_end(text.source, start - 1)):
         yield Edit(closed.start(1), closed.end(1), CYLINDER, None)
 
 

@@ -836,18 +836,40 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
     assert "Not started: acme yes" in text and text.count("Not started") == 1
 
 
+ODOMETRY = """<gazebo>
+      <plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
+      <odom_topic>/model/bot/odometry</odom_topic><odom_frame>odom</odom_frame>
+      <robot_base_frame>base_link</robot_base_frame></plugin></gazebo></robot>"""
+
+
+@pytest.mark.parametrize("is_bridged", [True, False])
+def test_transforms_of_a_system_are_bridged_where_no_node_sends_them(
+    is_bridged: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The vendor's bridge has other topics, and his filter places the robot: two would do so."""
+    values = "{'world_frame': 'odom', 'base_link_frame': 'base_link', 'publish_tf': True}"
+    body = """Node(package='ros_gz_bridge', executable='parameter_bridge',
+            arguments=['/model/bot/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry']),"""
+    if not is_bridged:
+        body += "Node(package='robot_localization', executable='ekf_node', name='ekf_filter_node',"
+        body += f"parameters=[{values}]),"
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setitem(globals(), "DESCRIPTION", DESCRIPTION.replace("</robot>", ODOMETRY))
+        actions(tmp_path, body, more="simulator: gazebo")
+    rows = yaml.safe_load((tmp_path / "out/robot1/bridge.yaml").read_text())
+    types = {it["ros_type_name"] for it in rows}
+    assert ("tf2_msgs/msg/TFMessage" in types) is is_bridged
+    assert "MG408" not in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("layout", AFFIX)
 def test_a_bridge_has_topics_of_a_model_as_the_description_gives_them(
     layout: str, tmp_path: Path
 ) -> None:
     """A topic that a system is told in full is no default: it has not the name of the spawned model."""
-    system = """<gazebo>
-      <plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
-      <odom_topic>/model/bot/odometry</odom_topic><odom_frame>odom</odom_frame>
-      <robot_base_frame>base_link</robot_base_frame></plugin></gazebo></robot>"""
     row = "/model/bot/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry"
     body = f"Node(package='ros_gz_bridge', executable='parameter_bridge', arguments=['{row}']),"
-    text = DESCRIPTION.replace("</robot>", system)
+    text = DESCRIPTION.replace("</robot>", ODOMETRY)
     text = text.replace(text[text.index("<robot") : text.index(">") + 1], '<robot name="bot">')
     with pytest.MonkeyPatch.context() as patched:
         patched.setitem(globals(), "DESCRIPTION", text)
@@ -874,3 +896,15 @@ def test_move_group_has_what_its_launch_file_and_its_files_say_of_pipelines(tmp_
     assert files.index("moveit_parameters.yaml") < files.index("pipes.yaml")
     rows = [at for at, it in enumerate(told) if "ompl.planning_plugin" in it]
     assert rows[-1] > max(at for at, it in enumerate(told) if isinstance(it, str))
+
+
+@pytest.mark.parametrize(
+    "file", ["ros_gz_sim/launch/gz_sim.launch.py", "ros_ign_gazebo/launch/ign_gazebo.launch.py"]
+)
+def test_a_simulator_is_started_once_by_its_launch_file(file: str, tmp_path: Path) -> None:
+    """No package has a program gzserver but gazebo_ros: ros2 launch would end."""
+    package, _, path = file.partition("/")
+    body = f"IncludeLaunchDescription([FindPackageShare('{package}'), '/{path}']),"
+    found = actions(tmp_path, body, more="simulator: gazebo")
+    assert [it.kind for it in found].count("IncludeLaunchDescription") == 1
+    assert "gzserver" not in told(found)

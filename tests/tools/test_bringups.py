@@ -63,6 +63,11 @@ def test_a_simulator_is_there_by_its_launch_file() -> None:
     assert (where(found), found.extra) == (["once"], ())
     assert found.matches[0].differs == ("include in place of program",)
     assert where(compare([Process("", "gazebo", words=("-r",))], fleet, ROBOTS)) == ["missing"]
+    classic = [Process("gazebo_ros", "launch/gazebo.launch.py", kind="include")]
+    server = Process("gazebo_ros", "launch/gzserver.launch.py", kind="include")
+    assert where(compare([server, program], classic, ROBOTS)) == ["once", "missing"]
+    old, new = Process("ros_ign_gazebo", "create"), Process("ros_gz_sim", "create")
+    assert where(compare([old], of_each(new), ROBOTS)) == ["each"]
 
 
 def test_installed_packages_are_copies_with_their_modules(tmp_path: Path) -> None:

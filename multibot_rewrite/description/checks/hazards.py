@@ -263,8 +263,7 @@ def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         if section.model_namespace and has_release(section.model_namespace, release)
     ]
     for model in models:
-        count = sum(model in plugin.iterancestors() for plugin in below)
-        if count:
+        if count := sum(model in plugin.iterancestors() for plugin in below):
             puts = f"{plural(count, 'plugin')} {'puts' if count == 1 else 'put'}"
             what = f"the namespace {namespace_of(model)!r} of {_named(model)}"
             message = f"{puts} {what} in front of relative topics, if Gazebo was built with that"

@@ -139,7 +139,6 @@ def _changed(
     if b":=" not in document.source and not images and not _alike(reading, robot):
         return
     before = read_tree(document.root, vocabulary)
-    # Rules of the file that match no name any more.
     for lost in lost_rules(before, reading):
         if lost.name.strip("/") not in naming.shared_topics:
             plugin = next(islice(document.root.iter("plugin"), lost.number, None), document.root)

@@ -78,8 +78,7 @@ def _said(part: ActivePart, vocabulary: Vocabulary, guesses: Guesses) -> tuple[s
         return f"{who} is known by its parameters alone: what it opens is not known", SAY_IT
     kind = "hardware" if part.kind == HARDWARE else "plugin" if part.kind == PLUGIN else "sensor"
     name = library_key(part.name) if part.kind == PLUGIN else part.name
-    others = vocabulary.releases_elsewhere(kind, name)
-    if others:
+    if others := vocabulary.releases_elsewhere(kind, name):
         where = not_here(vocabulary, others)
         return f"{who} {where}: its own parameters are not renamed", ANOTHER_RELEASE
     near = guesses.hint(name, vocabulary.names(kind), SLIP)

@@ -99,8 +99,7 @@ def _more_files(before: Spans, plugin: _Element, other: _Element, spans: Spans) 
     """The parameter files of a plugin that is left out, put into the one that stays."""
     known = {text_of(it) for it in _files(plugin)}
     texts = [spans.text_of(it) for it in _files(other) if text_of(it) not in known]
-    last = _inside(plugin)[-1:]
-    if last:
+    if last := _inside(plugin)[-1:]:
         at = before.end_of(last[0])
         yield from (was(at, at, b"", b"\n      " + text) for text in texts)
     elif texts:

@@ -40,7 +40,6 @@ BESIDE = ("controllers", "moveit")
 SAMPLES = "samples"
 _KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "rviz", "one_system", *BESIDE)
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
-_AT = ("parent", "pose")
 _EXAMPLE = "join: [{description: arm.urdf}, {description: hand.urdf, at: {parent: tool0}}]"
 
 
@@ -88,8 +87,7 @@ def plain_texts(parts: Sequence[Part], trust: bool) -> tuple[list[GivenPart], tu
 
 def plain_text(made: JoinedText, place: str) -> bytes:
     """The joined text without comments of the join; raises InputError where a name has no prefix."""
-    missed = next((it for it in made.findings if it.code in MISSED), None)
-    if missed:
+    if missed := next((it for it in made.findings if it.code in MISSED), None):
         what = f"{place}: a name has no prefix: {missed.file}:{missed.line}: {missed.message}"
         raise InputError(f"{what}; make the description with multibot join, and correct it")
     return without_marks(made.data)
@@ -106,7 +104,7 @@ def _part(item: YamlItem, folder: str) -> Part:
     keys = table(item, "a part", _KEYS)
     at = table_of(keys, "at")
     for key, value in at.items():
-        if key not in _AT:
+        if key not in ("parent", "pose"):
             wrong(value, f"at has {key!r}; it takes parent and pose")
     if not word_of(keys, "description"):
         wrong(item, "a part has no description; name a URDF or xacro")

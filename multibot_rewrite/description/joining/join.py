@@ -60,7 +60,6 @@ from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document, read_document, tag_end, value_slot
 from multibot_rewrite.description.steps.spans import Spans
 
-_FREE = ("floating", "planar")
 _MOUNT = """
   <joint name="{name}" type="fixed">
     {origin}
@@ -94,7 +93,7 @@ def fixed(part: ReadPart, spec: Part, spans: Spans) -> Fixed:
     if len(link) or not joints:
         what = "has shapes of its own" if len(link) else "is all it has"
         raise InputError(f"{part.file}: its link {WORLD!r} {what}; give that another name")
-    free = next((it for it in joints if it.type in _FREE), None)
+    free = next((it for it in joints if it.type in ("floating", "planar")), None)
     if free is not None:
         raise InputError(f"{part.file}: joint {free.name!r} is {free.type}: nothing fixes the part")
     blocks = [it for it in root.iterchildren("gazebo") if it.get("reference") == WORLD]

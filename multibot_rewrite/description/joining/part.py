@@ -46,7 +46,6 @@ MISSED = ("MB901", "MB428")
 # The same, and plugins and hardware classes that are not known.
 TOLD = (*MISSED, "MB902", "MB903")
 _PREFIX = lazy_compile(r"(?:[A-Za-z]\w*)?", re.ASCII)
-_ENDINGS = (".xacro", ".urdf", ".xml")
 
 
 class Part(NamedTuple):
@@ -120,7 +119,7 @@ def name_of(part: Part, file: str, robot: str) -> str:
     """What a part is called; one that is no file has the name of its ``robot``."""
     last = re.split(r"[/\\]", file.removesuffix(" (expanded)"))[-1]
     stem = robot if file.startswith("<") else last
-    for ending in _ENDINGS:
+    for ending in (".xacro", ".urdf", ".xml"):
         stem = stem.removesuffix(ending)
     found = part.name or part.prefix.strip("_") or stem
     return re.sub(r"\W+", "_", found, flags=re.ASCII).strip("_") or "part"

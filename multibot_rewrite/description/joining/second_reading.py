@@ -26,7 +26,6 @@ from multibot_rewrite.description.readback.xml import plain, read_xml
 from multibot_rewrite.description.rewriters.text import end_of
 from multibot_rewrite.description.rewriters.tree import Tree
 
-_KINDS = ("link", "joint")
 # Metres, and entries of a matrix.
 _ROUNDED = 1e-9
 
@@ -77,7 +76,7 @@ def check_read(root: _Element, parts: Sequence[Mounted]) -> None:
 
 
 def _names(root: _Element) -> Iterator[tuple[str, str]]:
-    return ((str(it.tag), it.get("name", "")) for it in root.iterchildren(*_KINDS))
+    return ((str(it.tag), it.get("name", "")) for it in root.iterchildren("link", "joint"))
 
 
 def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:

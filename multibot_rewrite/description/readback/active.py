@@ -155,8 +155,7 @@ def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]
 def hardware_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
     """The hardware classes of a description."""
     for system in root.iter("ros2_control"):
-        class_ = hardware_class(system)
-        if class_:
+        if class_ := hardware_class(system):
             yield ActivePart(HARDWARE, system, class_, hardware_section(system, vocabulary))
 
 

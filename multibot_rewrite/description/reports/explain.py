@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 
 
 _PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
-_NAMED = ("param", "parameter")
 
 
 def tag_path(element: _Element, attribute: str) -> str:
@@ -47,7 +46,7 @@ def _step(element: _Element) -> str:
     tag = short_name(str(element.tag), element.prefix)
     if tag == "plugin":
         return f"{tag}[{plugin_name(element)}]"
-    name = element.get("name") if tag in _NAMED else None
+    name = element.get("name") if tag in ("param", "parameter") else None
     return f"{tag}[{name}]" if name else tag
 
 
@@ -272,13 +271,11 @@ def _made_on(it: _Line, document: Document, explain: OnLine) -> Iterator[Explana
         if written is None and all(it.begins(one) is None for one in every):
             continue
         for found in explain(locate(document.source, document.starts[number])[0]):
-            # The pieces of a value of an element.
             attribute = found.path.rpartition("@")[2] if "@" in found.path else ""
             pieces = it.read.pieces.of(number, attribute, found.value)
             at = it.begins(pieces) if written is None else written
             if at is not None:
                 line, column = locate(it.read.sources[it.file], at)
-                # The pieces in words; () for a value that stands in the element as it is.
                 plain = len(pieces) < 2 and all(one.kind == LITERAL for one in pieces)
                 made_of = () if plain else tuple(_words(it.read, pieces))
                 yield found._replace(line=line, column=column, made_of=made_of)

@@ -226,8 +226,7 @@ def _by_value(value: str, declared: Declared) -> Guess | None:
         return Guess(("topic",), "remap", f"{shown(value)} is a remap rule")
     for form, names in _readings(value):
         found = {kind: next((n for n in names if n in declared[kind]), "") for kind in MENTIONED}
-        named = [(kind, name) for kind, name in found.items() if name]
-        if named:
+        if named := [(kind, name) for kind, name in found.items() if name]:
             return Guess(tuple(kind for kind, _ in named), form, _why(value, named))
     if value.startswith("/") and value[1:] in declared["link"]:
         return Guess(("frame",), "whole", f"{shown(value)} is a link here, but for the slash")

@@ -33,7 +33,6 @@ _SPACE = lazy_compile(r"(robot_?)?(namespace|ns)", re.IGNORECASE)
 _MARK = MARKS[0]
 PARTS = ("link", "joint")
 _SEPARATORS = "/_-."
-_ARGUMENT = "{*}arg"
 
 
 class Use(NamedTuple):
@@ -183,7 +182,7 @@ def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
     """The ``<xacro:arg>`` of all files with their defaults: the first one counts, as for xacro."""
     found: dict[str, str] = {}
     for file, data in sources.items():
-        for element in read_document(data, file).root.iter(_ARGUMENT):
+        for element in read_document(data, file).root.iter("{*}arg"):
             if "xacro}" in str(element.tag):
                 found.setdefault(element.get("name", ""), element.get("default", ""))
     return found

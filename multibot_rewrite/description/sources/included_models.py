@@ -166,8 +166,7 @@ def model_file(uri: str, folder: str) -> str:
     beside = (folder, above, os.path.join(above, "models"))
     paths = os.pathsep.join(variable(name) or "" for name in VARIABLES)
     for home in (*[it for it in paths.split(os.pathsep) if it], *beside):
-        found = _in_folder(os.path.join(home, name))
-        if found:
+        if found := _in_folder(os.path.join(home, name)):
             return found
     return ""
 

@@ -51,8 +51,7 @@ def filled(arguments: Arguments, robot: str = "") -> dict[str, str]:
     """
     for name, text in arguments.items():
         found = _PLACEHOLDER.findall(text)
-        unknown = [it for it in found if it != ROBOT or not robot]
-        if unknown:
+        if unknown := [it for it in found if it != ROBOT or not robot]:
             hint = f"only {ROBOT} is filled in" if robot else "no robot is named to fill it in for"
             raise UsageError(f"{name}:={text}: unknown placeholder {unknown[0]}, {hint}")
     return {name: _PLACEHOLDER.sub(robot, text) for name, text in arguments.items()}

@@ -177,8 +177,7 @@ def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dic
         site = claim.site
         if site.role != "declares" or site.kinds[0] not in declared:
             continue
-        name = claim.value.strip()
-        if name:
+        if name := claim.value.strip():
             declared[site.kinds[0]].setdefault(name, claim)
     return declared
 

@@ -134,9 +134,8 @@ def _refuse_tree(document: Document) -> None:
     source, file, root, *_ = document
     info = root.getroottree().docinfo
     if info.internalDTD is not None:
-        raise InputError(
-            f"{file}: DOCTYPE and entities are not accepted; expand them first", REFUSED
-        )
+        what = f"{file}: DOCTYPE and entities are not accepted; expand them first"
+        raise InputError(what, REFUSED)
     encoding = (info.encoding or "UTF-8").upper()
     if encoding not in ("UTF-8", "UTF8", "ASCII", "US-ASCII") and not source.isascii():
         raise InputError(

@@ -28,6 +28,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 from multibot_rewrite.fleet.outputs.output_file import params_of
 from multibot_rewrite.fleet.robots.fitting.fitted import described, fitted, free_nodes
 from multibot_rewrite.fleet.robots.fitting.transforms import (
+    brings_transforms,
     changed_frames,
     fitting_frames,
     is_led_elsewhere,
@@ -170,7 +171,7 @@ def robot_nodes(
     said = (*notes, *findings, *shared, *processes_not_known(of_launch[1] if of_launch else ()))
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    placing = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
+    placing = not brings_transforms(spec) and sends_too(nodes, free, has.sent)
     is_placed = placing or is_led_elsewhere(member, spec)
     more = unsimulated, arguments, frames, has.sent, is_placed, *of_launch
     return RobotEvidence(given, known, marked, said, spawned, *more)

@@ -224,7 +224,6 @@ def among_from(value: Any, settings: Settings) -> Settings | None:
 
 # What reads descriptions; xacro may be that of a sourced ROS.
 LIBRARIES = ("lxml", "xacro", "yaml")
-_COMPILED = "__pycache__"
 _HERE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 
@@ -261,5 +260,5 @@ def _states(folder: str) -> Iterator[tuple[str, int, int]]:
             if not it.is_dir(follow_symlinks=False):
                 of = it.stat()
                 yield it.path, of.st_mtime_ns, of.st_size
-            elif it.name != _COMPILED:
+            elif it.name != "__pycache__":
                 yield from _states(it.path)

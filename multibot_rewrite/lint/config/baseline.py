@@ -43,30 +43,28 @@ def read_baseline(path: str) -> Baseline:
     """The baseline in a file; raises UsageError for any other file."""
     try:
         content = load_json(read(path))
-        return Baseline(_counts(content))
+        if not isinstance(content, dict) or content.get(FORMAT) != VERSION:
+            raise ValueError(f'"{FORMAT}": {VERSION} is not in it')
+        listed = content.get("findings")
+        if not isinstance(listed, list):
+            raise ValueError('"findings" is not a list')
+        counts: Counter[Key] = Counter()
+        for number, entry in enumerate(listed, 1):
+            if not isinstance(entry, dict) or set(entry) != set(FIELDS):
+                raise ValueError(f"finding {number} does not have just {', '.join(FIELDS)}")
+            wrong = next(
+                (name for name, kind in FIELDS.items() if type(entry[name]) is not kind), None
+            )
+            if wrong is not None:
+                raise ValueError(f"{wrong!r} of finding {number} is {entry[wrong]!r}")
+            if entry["count"] < 1:
+                raise ValueError(f"'count' of finding {number} is {entry['count']}")
+            counts[Key(entry["code"], entry["file"], entry["message"])] += entry["count"]
+        return Baseline(counts)
     except ValueError as error:
         reason = " ".join(str(error).split())
         hint = f"write one with --write-baseline {path}"
         raise UsageError(f"{path}: not a baseline of urdf-lint: {reason}; {hint}") from None
-
-
-def _counts(content: object) -> Counter[Key]:
-    if not isinstance(content, dict) or content.get(FORMAT) != VERSION:
-        raise ValueError(f'"{FORMAT}": {VERSION} is not in it')
-    listed = content.get("findings")
-    if not isinstance(listed, list):
-        raise ValueError('"findings" is not a list')
-    counts: Counter[Key] = Counter()
-    for number, entry in enumerate(listed, 1):
-        if not isinstance(entry, dict) or set(entry) != set(FIELDS):
-            raise ValueError(f"finding {number} does not have just {', '.join(FIELDS)}")
-        wrong = next((name for name, kind in FIELDS.items() if type(entry[name]) is not kind), None)
-        if wrong is not None:
-            raise ValueError(f"{wrong!r} of finding {number} is {entry[wrong]!r}")
-        if entry["count"] < 1:
-            raise ValueError(f"'count' of finding {number} is {entry['count']}")
-        counts[Key(entry["code"], entry["file"], entry["message"])] += entry["count"]
-    return counts
 
 
 def beyond(

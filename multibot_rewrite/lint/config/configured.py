@@ -165,15 +165,11 @@ def with_options(it: Configured, **given: Any) -> Configured:
         levels = settings.levels.items()
         left = {code: at for code, at in levels if at != OFF or code not in select}
         settings = settings._replace(select=select, ignore=ignore, levels=left)
-    settings = _added(settings, options)
-    return _named(it._replace(settings=settings, **own), naming_options)
-
-
-def _added(settings: Settings, options: dict[str, Any]) -> Settings:
     if "arguments" in options:
         options["arguments"] = (ArgumentSet(EVERY_FILE, tuple(options["arguments"])),)
     options["readable"] = options.get("roots", ())
     for name in ("ignore", "vocabulary", "roots", "readable", "arguments"):
         if name in options:
             options[name] = (*getattr(settings, name), *options[name])
-    return settings._replace(**options)
+    settings = settings._replace(**options)
+    return _named(it._replace(settings=settings, **own), naming_options)

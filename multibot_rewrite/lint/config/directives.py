@@ -159,8 +159,7 @@ def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[CodeName], lis
     faults: list[DirectiveFault] = []
     for found in _WORD.finditer(source, comment.start(3), end):
         text = found[0].decode("utf-8", "replace")
-        fault = _fault(text, found.start())
-        if fault:
+        if fault := _fault(text, found.start()):
             faults.append(fault)
         else:
             codes.append(CodeName(text, *found.span()))

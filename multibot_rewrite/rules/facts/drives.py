@@ -281,20 +281,16 @@ def radii(robot: Robot, wheel: Wheel) -> list[float]:
     return []
 
 
-def _parts(robot: Robot, wheel: Wheel) -> list[tuple[str, Pose]]:
-    """The links fixed to a wheel, itself first, with their poses in the root."""
+def _shapes(robot: Robot, wheel: Wheel, tag: str) -> Iterator[tuple[_Element, Pose]]:
+    """The shapes of all that turns with a wheel, each at its place."""
+    # The links fixed to a wheel, itself first, with their poses in the root.
     found = [(wheel.joint.child, wheel.pose)]
     for name, pose in found:  # grows
         for joint in robot.below.get(name, ()):
             own = origin_of(joint.element) if joint.type == "fixed" else None
             if own is not None and len(found) < len(robot.links):
                 found.append((joint.child, placed(pose, own)))
-    return found
-
-
-def _shapes(robot: Robot, wheel: Wheel, tag: str) -> Iterator[tuple[_Element, Pose]]:
-    """The shapes of all that turns with a wheel, each at its place."""
-    for name, pose in _parts(robot, wheel):
+    for name, pose in found:
         link = robot.link.get(name)
         for element, shape in shapes_of(link.element, tag) if link else ():
             own = origin_of(element)

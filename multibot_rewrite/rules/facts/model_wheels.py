@@ -19,7 +19,6 @@ from multibot_rewrite.description.checks.poses import Pose, turned
 from multibot_rewrite.description.checks.sdf_frames import Frames, Named, ends_of, named_in
 
 _Z: Vector = (0.0, 0.0, 1.0)
-_SIZES = ("size", "radius", "length")
 
 
 class ModelWheels(NamedTuple):
@@ -72,6 +71,6 @@ def _link(link: Named) -> _Element:
         etree.SubElement(element, "origin", xyz=at, rpy=turn)
         geometry = etree.SubElement(element, "geometry")
         for shape in written.iterfind("geometry/*"):
-            sizes = {it: (shape.findtext(it) or "").strip() for it in _SIZES}
+            sizes = {it: (shape.findtext(it) or "").strip() for it in ("size", "radius", "length")}
             etree.SubElement(geometry, str(shape.tag), {k: v for k, v in sizes.items() if v})
     return made

@@ -56,7 +56,7 @@ def beyond(check: str, arguments: str, value: Any) -> str:
 
 def _of_many(name: str, given: list[Any], value: Any) -> str:
     first: Any = given[0] if given else None
-    if name in _EACH and isinstance(value, list) and is_number(first):
+    if name in ("lower_bounds", "upper_bounds") and isinstance(value, list) and is_number(first):
         holds, words = _NUMBERS[name]
         every = all(holds(it, first) for it in value if is_number(it))
         return "" if every else f"{words} {first} in each place"
@@ -134,7 +134,6 @@ def _stem(endings: Any, value: Any) -> str:
     return f"without {' or '.join(endings)}, which its reader adds" if ended else ""
 
 
-_EACH = ("lower_bounds", "upper_bounds")
 _SHAPES: dict[str, Callable[[Any, Any], str]] = {
     "limits": _limits,
     "square": _square,

@@ -35,7 +35,6 @@ _CAPITALS = lazy_compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
 ID = "<id>."
 _NUMBERS = frozenset(("double", "int", "bool"))
 _SURE = frozenset((YAML, DEMANDED))
-_COSTMAPS = "nav2_costmap_2d"
 _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
@@ -129,8 +128,7 @@ def wrong_types(file: NamedFile) -> Iterator[Finding]:
     where no release takes the value."""
     for section in sections(file):
         for it, known in section.known:
-            type_ = _wrong_type(it, of_parameter(known, file.context.distro))
-            if type_:
+            if type_ := _wrong_type(it, of_parameter(known, file.context.distro)):
                 given = _type_of(it.value) if it.value is not None else ""
                 message = f"{section.title}: {it.name} is {_article(given)}, not {_article(type_)}"
                 level = ERROR if _is_refused(file, section, it, known) else ""
@@ -142,7 +140,7 @@ def _is_refused(file: NamedFile, section: Section, it: Setting, known: Sequence[
     is for a release before Humble is another matter, and what no node gets: a costmap's parameters
     without the namespace that its code gives it."""
     package, around = section.node.package if section.node else "", sources_around(file.file)
-    reached = package != _COSTMAPS or "/" in section.title.partition(":")[0]
+    reached = package != "nav2_costmap_2d" or "/" in section.title.partition(":")[0]
     if any(older_nodes(file)) or not reached:
         return False
     if package and around and package in packages_below((around,)):

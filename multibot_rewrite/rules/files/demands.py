@@ -80,12 +80,10 @@ def value_of(section: Section, name: str) -> Value | None:
 def contradictions(file: NamedFile) -> Iterator[Finding]:
     """Every demand of one parameter on another that is no order."""
     for it in demands(file, *_PAIRS):
-        said = _PAIRS[it.check](it)
-        if said:
+        if said := _PAIRS[it.check](it):
             message = f"{it.section.title}: {it.given.name} {said}"
             # What is 0 is mostly the default that was written down.
             level = "" if it.given.value != 0 or it.check != "with" else NOTE
-            # Does a node not come up, whatever another file says?
             known = it.check != "period" or it.words[0] in it.section.whole
             level = ERROR if (it.check in _STOPS and not it.releases and known) else level
             yield remark_at(it.given.node, message, f"see {it.source}", level)

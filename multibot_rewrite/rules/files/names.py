@@ -178,8 +178,7 @@ def _guessed(file: NamedFile) -> Iterator[Finding]:
         taken = [it for it in names.sites if _is_taken(file, it)]
         doubt = in_doubt(file.context, section, names)
         left = [it for it in taken if it.kind in doubt]
-        guessed = [it for it in taken if not it.is_sure and it not in left]
-        if guessed:
+        if guessed := [it for it in taken if not it.is_sure and it not in left]:
             told = f"parameters that hold names are guessed: {_keys(guessed)}"
             yield _unknown(guessed[0], section.path, told)
         if left:

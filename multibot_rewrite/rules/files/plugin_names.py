@@ -116,8 +116,7 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
     """What is wrong with a class that the release has not, what is to do, and how bad it is; nothing
     where a package that is not known may have it."""
     there = [it for it, words in known.classes.items() if has_release(words, release)]
-    alike = next((it for it in there if canonical(it) == canonical(name)), "")
-    if alike:
+    if alike := next((it for it in there if canonical(it) == canonical(name)), ""):
         return f"which is written with other signs in {release}", f"write {alike}", WARNING
     if name in known.older:
         level = WARNING if name in known.ended else ERROR

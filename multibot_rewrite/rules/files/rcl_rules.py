@@ -141,9 +141,8 @@ def mixed_clocks(file: NamedFile) -> Iterator[Finding]:
     first = next(path for path, _, value in found if value == most)
     names = shorten(path for path, _ in others)
     message = f"{_TIME} is {_word(not most)} for {names}, and {_word(most)} for {first}"
-    yield remark_at(
-        others[0][1], message, "set it alike in all nodes of a robot: tf compares times"
-    )
+    hint = "set it alike in all nodes of a robot: tf compares times"
+    yield remark_at(others[0][1], message, hint)
 
 
 def _is_left_out(section: ParamSection) -> bool:
@@ -211,8 +210,7 @@ _DIGITS = str.maketrans("", "", "0123456789")
 def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
     """Each list of each node."""
     for node in given_in(file):
-        # Below each parameter the names that have parameters of their own, with the place of the
-        # first.
+        # Below each parameter the names with parameters of their own, each at its first place.
         bodies: dict[str, dict[str, Place]] = {}
         for name, given in node.values.items():
             parts = name.split(".")

@@ -21,7 +21,6 @@ _FORWARD = "forward_command_controller/ForwardCommandController"
 _BROADCASTER = "joint_state_broadcaster"
 # What sensor_msgs/JointState has a field for.
 _IN_JOINT_STATES = frozenset(("position", "velocity", "effort"))
-_GONE_SINCE = "lyrical+"
 
 
 @rule("MB869", "deprecated-in-release", NOTE, formats=(PARAMS,), options={"distro": "lyrical"})
@@ -52,7 +51,7 @@ def deprecated(file: NamedFile) -> Iterator[Finding]:
 )
 def not_sent(file: NamedFile) -> Iterator[Finding]:
     """Interfaces of joint_state_broadcaster that no topic holds."""
-    if not has_release(_GONE_SINCE, file.context.distro):
+    if not has_release("lyrical+", file.context.distro):
         return
     nodes = ((section.node, section.body) for section, _ in file.pages)
     for body in (it for node, it in nodes if node is not None and node.name == _BROADCASTER):

@@ -77,8 +77,7 @@ def placeholders(file: NamedFile) -> Iterator[Finding]:
     for site in file.names:
         if is_plain(site.text) or is_robot(site.text) or site.text == _FIXED:
             continue
-        found = _IN_VALUE.search(site.text)
-        if found:
+        if found := _IN_VALUE.search(site.text):
             message = f"the placeholder {found[0]} stays; a launch file must replace it"
             hint = "if it stands for the robot's name, write the value without it"
             yield remark(site, message, hint, level)
@@ -145,8 +144,7 @@ def in_description(
     known = declared_names(declared)
     for element in root.iter("*") if words else ():
         for attribute, text in (*element.items(), ("", (element.text or "").strip())):
-            found = in_value(str(text), words, known)
-            if found:
+            if found := in_value(str(text), words, known):
                 message, hint = of_one_robot(*found)
                 yield Problem(element, message, str(attribute), hint, (), robot_in_name.code)
                 return

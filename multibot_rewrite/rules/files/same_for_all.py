@@ -27,7 +27,6 @@ from multibot_rewrite.system.records import COMPUTER
 
 # Patterns that match everything or nothing hold no robot's name.
 _OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})
-_OFF = ("false", "no", "off")
 _OWN_VALUE = "set it for each robot, in a parameter file that is loaded after this one"
 
 
@@ -39,7 +38,7 @@ def _exclusive(file: NamedFile) -> Iterator[Finding]:
     # Of a fleet each robot gets a number of its own.
     kinds = ("exclusive",) if file.is_certain else ("exclusive", PORT)
     for site in file.names:
-        if site.kind in kinds and site.text and site.text.lower() not in _OFF:
+        if site.kind in kinds and site.text and site.text.lower() not in ("false", "no", "off"):
             yield remark(site, _same(site.key, site.text), _OWN_VALUE)
     known = {site.slot.start for site in file.names if site.kind in OWN_KINDS}
     for section, _ in file.pages:
@@ -50,9 +49,8 @@ def _exclusive(file: NamedFile) -> Iterator[Finding]:
                 hint = f"fine if each robot has a computer of its own; else {_OWN_VALUE}"
                 yield remark_at(value, _same(key.value, text), hint, NOTE)
             elif kind:
-                yield remark_at(
-                    value, _same(key.value, text), f"one device has one driver: {_OWN_VALUE}"
-                )
+                hint = f"one device has one driver: {_OWN_VALUE}"
+                yield remark_at(value, _same(key.value, text), hint)
 
 
 def _same(key: str, text: str) -> str:
@@ -148,7 +146,6 @@ def _prefix_only(name: str, at: Finding) -> Finding:
 
 # The second one: camera_aravis, spinnaker_camera_driver.
 _URLS = frozenset({"camera_info_url", "camerainfo_url"})
-_OF_THE_COMPUTER = "${ROS_HOME}"
 _SCHEMES = ("file://", "package://")
 
 
@@ -160,7 +157,7 @@ def _calibrations(file: NamedFile) -> Iterator[Finding]:
     sections = () if file.is_for_one else (it for it, _ in file.pages if not it.shared)
     for key, url in (it for section in sections for it in scalars(section.body)):
         text = str(url.value)
-        own = filled(text, "") != text or _OF_THE_COMPUTER in text
+        own = filled(text, "") != text or "${ROS_HOME}" in text
         is_url = key.value.rpartition(".")[2] in _URLS and text.lower().startswith(_SCHEMES)
         if is_url and not own:
             message = f"every robot reads the calibration {text!r}; real cameras have one each"

@@ -19,7 +19,6 @@ from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.plugins import FILTER
 from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
 
-_NODE = "joy_teleop"
 # Type of a command -> the middle of its interface's type, what names it, and what starts it.
 _TYPES = {
     "topic": ("msg", "topic_name", ("deadman_buttons", "deadman_axes", "deadman_axes_negative")),
@@ -27,7 +26,6 @@ _TYPES = {
     "action": ("action", "action_name", ("buttons", "axes", "axes_negative")),
 }
 _MAPPINGS, _VALUE = "axis_mappings", "message_value"
-_INPUTS = ("axis", "button", "value")
 # The first fields of messages that are driven with.
 _FIELDS = {
     "geometry_msgs/msg/Twist": ("linear", "angular"),
@@ -42,7 +40,7 @@ _Values = Mapping[str, Setting]
 def broken_commands(file: NamedFile) -> Iterator[Finding]:
     """Of each command, at its first parameter."""
     for section in sections(file):
-        if section.node is None or section.node.name != _NODE:
+        if section.node is None or section.node.name != "joy_teleop":
             continue
         commands: dict[str, dict[str, Setting]] = {}
         for it in section.given:
@@ -86,7 +84,7 @@ def _of_topic(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
     below = [it.removeprefix(f"{_MAPPINGS}.") for it in values if it.startswith(f"{_MAPPINGS}.")]
     for field in dict.fromkeys(it.rpartition(".")[0] for it in below):
         words = {it.rpartition(".")[2] for it in below if it.rpartition(".")[0] == field}
-        if words.isdisjoint(_INPUTS):
+        if words.isdisjoint(("axis", "button", "value")):
             yield f"has no axis, button or value for {field}", "add one of them"
         missing = [it for it in ("scale", "offset") if it not in words] if "axis" in words else []
         if missing:
@@ -104,8 +102,6 @@ def _text(values: _Values, name: str) -> str:
     return value if isinstance(value, str) else ""
 
 
-_PACKAGE = "laser_filters"
-_NEEDED = ("name", "type")
 # The number of a filter, or none, with its parts.
 _Filters = Mapping[str, Mapping[str, Setting]]
 
@@ -114,7 +110,7 @@ _Filters = Mapping[str, Mapping[str, Setting]]
 def broken_chains(file: NamedFile) -> Iterator[Finding]:
     """Of every chain of a node of laser_filters."""
     for section in sections(file):
-        if section.node and section.node.package == _PACKAGE:
+        if section.node and section.node.package == "laser_filters":
             for filters in _chains(section).values():
                 yield from _not_loaded(section, filters)
                 yield from _incomplete(section, filters)
@@ -142,7 +138,7 @@ def _incomplete(section: Section, filters: _Filters) -> Iterator[Finding]:
     names: dict[str, str] = {}
     for number, parts in filters.items():
         first = next(iter(parts.values()))
-        for word in (it for it in _NEEDED if it not in parts):
+        for word in (it for it in ("name", "type") if it not in parts):
             message = f"{section.title}: filter{number} has no {word}"
             yield remark_at(first.key, message, "the chain is not configured without", ERROR)
         name = str(parts["name"].value) if "name" in parts else ""

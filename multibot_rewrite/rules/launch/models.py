@@ -37,7 +37,6 @@ from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 _POSE = ("-x", "-y", "-z")
 # Two that stand nearer than this are in each other, whatever they are.
 _NEAR = 0.01
-_RENAMES = "-allow_renaming"
 _INTO_GAZEBO = DIRECTIONS["out"]
 
 
@@ -47,11 +46,10 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
     first: dict[str, InSimulator] = {}
     for it in launched.simulated:
         other = first.setdefault(it.name, it)
-        if other is not it and it.words.get(_RENAMES) not in ("true", "1"):
+        if other is not it and it.words.get("-allow_renaming") not in ("true", "1"):
             message = f"spawns a second model {it.name}"
-            yield at(
-                name_twice, it.place, message, f"give it a -name of its own; see {other.place}"
-            )
+            hint = f"give it a -name of its own; see {other.place}"
+            yield at(name_twice, it.place, message, hint)
 
 
 @launch_rule("MG702", "robots-in-each-other")

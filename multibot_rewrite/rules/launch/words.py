@@ -108,7 +108,7 @@ def not_there(launched: Launched) -> Iterator[Finding]:
     named = [
         (it.full_name, it.place, str(it.values[parameter].value))
         for it in launched.nodes
-        for parameter in _NAMED
+        for parameter in ("config_file", "yaml_filename")
         if parameter in it.values
     ]
     for node in launched.graph.nodes:
@@ -134,7 +134,6 @@ def argument_not_read(launched: Launched) -> Iterator[Finding]:
 
 
 _PATH = "correct the path, or install the file"
-_NAMED = ("config_file", "yaml_filename")
 # Programs write there what others read.
 _TEMPORARY = ("/tmp", "/var/tmp", "/dev/shm")
 
@@ -148,7 +147,6 @@ def _is_ours(path: str) -> bool:
 @launch_rule("MG714", "program-misspelt")
 def misspelt(launched: Launched) -> Iterator[Finding]:
     """By what is known of a package's programs."""
-    # The programs of each package that are known.
     known: dict[str, set[str]] = defaultdict(set)
     for node in built_in(launched.release).nodes.values():
         for path in node.programs or (node.kind,):

@@ -119,8 +119,7 @@ def _with_odd_values(
     found: dict[etree._Element, None] = {}
     for at, kind in typed:
         values = set(columns[at]).difference(kind.choices)
-        odd = {value for value in values if not is_fine(kind.type, value)}
-        if odd:
+        if odd := {value for value in values if not is_fine(kind.type, value)}:
             pairs = zip(alike, columns[at], strict=True)
             found |= {element: None for element, value in pairs if value in odd}
     return found
@@ -202,7 +201,6 @@ def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Ite
         if other is not None:
             message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
             yield fault("repeated", other, None, message)
-    # Shapes after the first one of a geometry.
     either = [tag for tag, child in section.children.items() if child.times == "either"]
     shapes = list(element.iterchildren(*either)) if either else []
     if len(shapes) > 1:

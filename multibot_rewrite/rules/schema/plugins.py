@@ -120,8 +120,7 @@ def _unread(
         return
     parent = child.getparent()
     there = (it for it in blocks if it and parent is not None and parent.find(it) is not None)
-    beside = next(there, "")
-    if beside:
+    if beside := next(there, ""):
         message = f"{title(section)} reads {name!r} in <{beside}>, not beside it"
         yield fault("misplaced", child, None, message, f"move it into <{beside}>")
 
@@ -185,9 +184,8 @@ def _missing(
     for name, row in section.rows.items():
         if row.required and name not in given and has_release(row.releases, release):
             message = f"{title(section)} needs {name!r}"
-            yield fault(
-                "missing", element, None, message, f"without it, it is not loaded{_in(row.place)}"
-            )
+            hint = f"without it, it is not loaded{_in(row.place)}"
+            yield fault("missing", element, None, message, hint)
 
 
 def _in(place: str) -> str:

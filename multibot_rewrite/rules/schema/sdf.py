@@ -49,13 +49,11 @@ READ_BESIDES = frozenset({"gz_frame_id", "ignition_frame_id"})
 ANGLES = frozenset({"min_angle", "max_angle"})
 # What Gazebo Classic takes besides: gazebo-classic gazebo/rendering/Camera.cc, GetOgrePixelFormat.
 OGRE_FORMATS = frozenset({"FLOAT32", "FLOAT16"})
-_CLASSICS = "gazebo_ros_"
 Version = tuple[int, ...]
 # How bad is for Gazebo Classic what its successor refuses.
 _MILD = {"range": NOTE, "value": WARNING, "word": WARNING}
 # What the last release with Gazebo Classic reads.
 CLASSIC = (1, 9)
-SENSOR_TYPE = "sensor/@type"
 
 
 def version_of_release(release: str) -> Version:
@@ -115,8 +113,7 @@ def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
         hint = f"it is read in that of a {' or '.join(belongs)}: name it with reference="
         yield fault("misplaced", child, None, message, hint)
         return
-    wrong = misread(row.type, text)
-    if wrong:
+    if wrong := misread(row.type, text):
         level = ERROR if row.type == "double" and wrong.fails else WARNING
         message = f"{row.name} {shortened(text)!r} {wrong.problem}"
         yield fault("value", child, at, message, "", level)
@@ -164,8 +161,7 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Prob
             yield from _value(element, key, row, text, known, version)
         elif is_own(key):
             free = [it[1:] for it in known.rows if it[0] == "@" and it[1:] not in element.attrib]
-            near = nearest(key, free)
-            if near:
+            if near := nearest(key, free):
                 message = f"Gazebo reads no attribute {key!r} of <{element.tag}>"
                 yield fault("misspelt", element, key, message, f"did you mean {near!r}?")
     # Attributes without which sdformat refuses the model; those of plugins depend on the release.
@@ -199,8 +195,7 @@ def _value(
         yield from _word(element, at, f"{known.name}/{row.name}", text, version)
         return
     turned = row.type == "pose" and element.get("rotation_format") == QUATERNION
-    wrong = misread(QUATERNION if turned else row.type, text)
-    if wrong:
+    if wrong := misread(QUATERNION if turned else row.type, text):
         level = ERROR if wrong.fails else WARNING
         yield fault("value", element, at, f"{_where(element, at, text)} {wrong.problem}", "", level)
     elif row.low is not None or row.high is not None:
@@ -252,7 +247,7 @@ def _word(element: _Element, at: str, name: str, text: str, version: Version) ->
     if text in OGRE_FORMATS and _is_for_classic(element):
         return
     near = nearest(text, known)
-    if not near and version <= CLASSIC and name == SENSOR_TYPE:
+    if not near and version <= CLASSIC and name == "sensor/@type":
         return  # Gazebo Classic lets plugins add types of sensors
     hint = f"did you mean {near!r}?" if near else ""
     message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
@@ -263,7 +258,7 @@ def _is_for_classic(element: _Element) -> bool:
     """Has the sensor of a value a plugin of Gazebo Classic?"""
     sensor = next(element.iterancestors("sensor"), None)
     plugins = sensor.iterchildren("plugin") if sensor is not None else ()
-    return any(_CLASSICS in it.get("filename", "") for it in plugins)
+    return any("gazebo_ros_" in it.get("filename", "") for it in plugins)
 
 
 @lru_cache

@@ -102,7 +102,11 @@ def _all_sections() -> Mapping[str, UrdfPart]:
         elif head.startswith("@"):
             attributes[head[1:]] = _kind(words)
         elif head:
-            children[head] = _child(head, words)
+            section = next((it[1:] for it in words if it.startswith("=")), head)
+            times = next(it for it in words if it in ("required", "once", "many", "either"))
+            children[head] = Child(
+                "" if "open" in words else section, times, _version_behind("since:", words)
+            )
     return found
 
 
@@ -143,12 +147,6 @@ def _version(word: str) -> Version:
     found = read_version(word)
     assert found, f"{word} in {_FILE} is a version"
     return found
-
-
-def _child(tag: str, words: Sequence[str]) -> Child:
-    section = next((it[1:] for it in words if it.startswith("=")), tag)
-    times = next(it for it in words if it in ("required", "once", "many", "either"))
-    return Child("" if "open" in words else section, times, _version_behind("since:", words))
 
 
 def is_own(name: object) -> bool:

@@ -59,7 +59,6 @@ def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Problem]:
         yield from _word(it, "property_name", text_of(it, "property_name"), _PROPERTIES, WARNING)
     for it in root.iterchildren("virtual_joint"):
         yield from _word(it, "type", text_of(it, "type").lower(), tuple(_SIZES), ERROR)
-    # Values of joints in states: no numbers, or not as many as the joint has positions.
     types = {text_of(it): text_of(it, "type").lower() for it in root.iterchildren("virtual_joint")}
     types |= {name: joint.type for name, joint in robot.joint.items()} if robot else {}
     for it in root.iterfind("group_state/joint[@value]"):

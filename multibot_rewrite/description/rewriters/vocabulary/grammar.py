@@ -247,8 +247,7 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     if wrong:
         raise VocabularyError(f"{place}: switches: {wrong[0]!r} is not PARAMETER=TOPIC[=on]")
     opened = [word for word in words[1:] if key == "opens" and word not in _BARE_OPENS]
-    wrong = [word for word in opened if not _OPENS.fullmatch(word)]
-    if wrong:
+    if wrong := [word for word in opened if not _OPENS.fullmatch(word)]:
         raise VocabularyError(
             f"{place}: opens: {wrong[0]!r} is not nothing, model, namespace, world, unknown, "
             "address:PATH=DEFAULT, address+STEP:PATH=DEFAULT or file:PATH"

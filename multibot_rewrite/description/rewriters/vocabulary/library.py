@@ -172,7 +172,13 @@ class Vocabulary:
         settings, own = read_section(file, line, rows)
         sites: dict[str, SiteRow] = {}
         for name in settings.get("with", "").split():
-            sites |= {site.path: site for site in self._block(f"{file}:{line}", name, within)}
+            place = f"{file}:{line}"
+            if name in within:
+                raise VocabularyError(f"{place}: with: {name}: [block {name}] includes itself")
+            if not self.has("block", name):
+                raise VocabularyError(f"{place}: with: {name}: there is no [block {name}]")
+            found = self._find(("block", name), (*within, name))
+            sites |= {site.path: site for site in (found[0].sites if found else ())}
         header = read_header(f"{file}:{line}", rows[0])
         sites |= {
             site.path if self.release else key: site
@@ -180,14 +186,6 @@ class Vocabulary:
             if self._is_here(site.releases)
         }
         return assemble(file, line, header, settings, list(sites.values()))
-
-    def _block(self, place: str, name: str, within: tuple[str, ...]) -> tuple[SiteRow, ...]:
-        if name in within:
-            raise VocabularyError(f"{place}: with: {name}: [block {name}] includes itself")
-        if not self.has("block", name):
-            raise VocabularyError(f"{place}: with: {name}: there is no [block {name}]")
-        found = self._find(("block", name), (*within, name))
-        return found[0].sites if found else ()
 
 
 def _released(chunk: str) -> str:

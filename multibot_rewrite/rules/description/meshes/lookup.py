@@ -166,8 +166,7 @@ def _elsewhere(subject: Subject, it: MeshFile) -> str:
     above = [here, *(here[: len(root) + at] for at in steps)]
     places = [*((folder, tail) for folder in above), (root, f"meshes/{os.path.basename(tail)}")]
     for folder, path in places:
-        found = find_in(folder, path)
-        if found:
+        if found := find_in(folder, path):
             return f"package://{package}/{os.path.relpath(os.path.join(folder, found), root)}"
     return ""
 
@@ -248,7 +247,6 @@ def mesh_units(subject: Subject) -> Iterator[Problem]:
 MOST_BYTES, BEGINNING = 4 * 2**20, 64 * 2**10
 # A binary STL: 80 bytes of anything, how many triangles, and 50 bytes for each.
 _HEAD, _TRIANGLE = 84, 50
-_CORNERS = "<12x9f2x"
 _WORD = rb"[ \t]+([-+.\deE]+)"
 COLLADA = ".dae"
 _CORNER = {
@@ -293,7 +291,7 @@ def _corners(path: str, data: bytes, size: int) -> Iterable[Vector]:
     count = int.from_bytes(data[_HEAD - 4 : _HEAD], "little")
     if kind == ".stl" and size == _HEAD + count * _TRIANGLE:
         whole = (len(data) - _HEAD) // _TRIANGLE * _TRIANGLE
-        for it in iter_unpack(_CORNERS, data[_HEAD : _HEAD + whole]):
+        for it in iter_unpack("<12x9f2x", data[_HEAD : _HEAD + whole]):
             yield from (it[:3], it[3:6], it[6:])
         return
     for found in _CORNER[kind].finditer(data):

@@ -73,8 +73,7 @@ def scopes(root: _Element) -> list[Scope]:
         tag = str(element.tag)
         if tag in ("link", "joint"):
             declares = _declares(element)
-            name = element.get("name")
-            if name:
+            if name := element.get("name"):
                 (scope.declared if declares else scope.used).append(_name_at(element, "name", name))
             continue
         attribute = _REFERENCES[tag]

@@ -149,9 +149,8 @@ def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
         if not claim_is_fixed(subject, claim):
             continue
         message = f"{tag_of(claim)} {topic!r} is the same gz topic for every copy of the robot"
-        yield Problem(
-            claim.element, message, claim.attribute, "leave it out, or set one for each robot"
-        )
+        hint = "leave it out, or set one for each robot"
+        yield Problem(claim.element, message, claim.attribute, hint)
 
 
 def _is_gz(claim: Claim) -> bool:
@@ -278,9 +277,8 @@ def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
             message = (
                 f"{tag_of(claim)} {claim.value!r} is the same frame for every copy of the robot"
             )
-            yield Problem(
-                claim.element, message, claim.attribute, "use a different one for each robot"
-            )
+            hint = "use a different one for each robot"
+            yield Problem(claim.element, message, claim.attribute, hint)
 
 
 @rule("MB408", "tf-not-remapped", NOTE)

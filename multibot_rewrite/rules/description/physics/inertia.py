@@ -96,8 +96,6 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
 def impossible_inertia(subject: Subject) -> Iterator[Problem]:
     """Inertias that no distribution of mass has, by more than rounding."""
     root, release = subject.document.root, subject.settings.distro
-    # The inertias that no body has, their principal moments, the smallest first, and whether
-    # simulators merge the link with others that have a mass, or with ``world``.
     parts: dict[str, int] | None = None
     for link, inertial in inertials(subject.robot):
         if inertial.moments is None or _is_possible(inertial.moments):

@@ -250,8 +250,7 @@ def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
         centre = None if origin is None else vector(origin.get("xyz"))
         if centre is None or not any(centre):
             continue
-        way = _outside(subject, link, centre)
-        if way:
+        if way := _outside(subject, link, centre):
             message = f"the centre of mass of link {link.name!r} is {way:.3g} m outside of it"
             yield Problem(part_of(inertial, "origin"), message, "xyz")
 

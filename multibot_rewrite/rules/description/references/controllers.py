@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
 _IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
 _YAML = (".yaml", ".yml")
-_BESIDE = "controllers"
 
 
 def _not_exported(subject: Subject) -> Iterator[Problem]:
@@ -124,7 +123,7 @@ def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, 
             yield element, path, own
     if not named:
         folder = os.path.dirname(os.path.abspath(subject.document.file))
-        beside = [it for it in entries(folder) if _BESIDE in it and it.endswith(_YAML)]
+        beside = [it for it in entries(folder) if "controllers" in it and it.endswith(_YAML)]
         if len(beside) == 1:
             yield system, os.path.join(folder, beside[0]), False
 

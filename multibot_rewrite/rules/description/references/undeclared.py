@@ -164,7 +164,6 @@ def _sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
 @rule("MB217", "frame-not-a-link", WARNING)
 def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
     """Frames that the robot does not have; others than misspelt ones may be a localisation's."""
-    # Frames that nothing declares, and the link that was meant, if one is near enough.
     declared = subject.inventory.declared
     links = declared["link"]
     meant: dict[str, str] = {}
