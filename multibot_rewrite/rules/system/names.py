@@ -66,11 +66,13 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                     ABSENT, level=WARNING, node=end.node, names=(ends.name,), **where([end]),
                 )  # fmt: skip
         for other_name, (first, *more) in by_kind.items():
-            # A lone sender and a lone reader of what a sensor measures are made for each other.
+            # A lone sender and a lone reader of what a sensor measures are made for each other. Next to
+            # what a launch file starts there may be a third.
             other = published[other_name]
             lone = other.type == first.type and not at_work(other.subscribers)
-            sure = words.is_of_a_body(first.type) or (
-                lone and words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK
+            sure = seen.is_live and (
+                words.is_of_a_body(first.type)
+                or (lone and words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK)
             )
             yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
 
