@@ -62,7 +62,12 @@ def run(options: argparse.Namespace) -> int:
     made = make_outputs(plan, os.path.abspath(options.output))
     back = read_back(plan, made, os.path.abspath(options.output))
     # What is told in both is said once, at the level of the folder.
-    told = (it for it in made.findings if it._replace(level=ERROR) not in back)
+    again = {(it.code, it.names) for it in back if it.names}
+    told = (
+        it
+        for it in made.findings
+        if it._replace(level=ERROR) not in back and (it.code, it.names) not in again
+    )
     held = coverage(made.planned)
     if _reported(options, plan, (*told, *plan.with_names(back)), held):
         say("nothing was written", PROGRAM)

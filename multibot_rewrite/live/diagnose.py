@@ -12,7 +12,7 @@ from multibot_rewrite.base.naming import LAYOUTS, Layout
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.rules.check import ABSENCE, in_domain, inconclusive_where_in_doubt, judge
-from multibot_rewrite.rules.system.differing import COMPARED
+from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS
 from multibot_rewrite.rules.system.likes import less_than_another_robot
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import named, side_by_side, space_of, unnamed
@@ -22,7 +22,7 @@ from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, Robot, Sys
 from multibot_rewrite.system.tf_copies import tree_topic
 
 # Rules that hold robots against each other, which they are in whatever domain.
-BETWEEN_ROBOTS = frozenset((*COMPARED, less_than_another_robot.code))
+HELD_AGAINST = frozenset((*BETWEEN_ROBOTS, less_than_another_robot.code))
 
 
 class Diagnosis(NamedTuple):
@@ -70,7 +70,7 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
     compared = [
         unnamed(it)
         for it in together.findings
-        if it.code in BETWEEN_ROBOTS and told.isdisjoint(it.names)
+        if it.code in HELD_AGAINST and told.isdisjoint(it.names)
     ]
     every = [
         *(

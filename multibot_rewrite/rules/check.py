@@ -18,7 +18,7 @@ from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.system import clocks, differing, frame_ids, likes, localized
 from multibot_rewrite.rules.system.commands import command_to_nobody
-from multibot_rewrite.rules.system.differing import COMPARED
+from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS
 from multibot_rewrite.rules.system.names import topic_names_miss
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
@@ -108,27 +108,36 @@ def absences(seen: Index) -> list[Finding]:
 def _part(seen: Index, absent: bool) -> list[Finding]:
     found = _judged(seen, (it for it in _rules(planned=False) if (it.code in ABSENCE) is absent))
     # What is found of robots held against each other is left to any other finding.
-    if any(it.code in differing.COMPARED for it in found):
+    if any(it.code in differing.BETWEEN_ROBOTS for it in found):
         found = judge(seen)
     return [it for it in found if (it.code in ABSENCE) is absent]
 
 
-def check(plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> list[Finding]:
+def check(
+    plan: System,
+    graph: System,
+    messages: Mapping[str, int] = NO_COUNTS,
+    before: System | None = None,
+) -> list[Finding]:
     """What is wrong with a system, and other than planned; empty for a fleet as planned. ``messages``
-    counts those of each topic, where they were counted."""
-    _, seen = side_by_side(plan, graph, messages)
+    counts those of each topic, where they were counted; ``before`` is the earlier look that the plan
+    was made of, if it was."""
+    _, seen = side_by_side(plan, graph, messages, before)
     found = sorted(judge(seen), key=lambda it: it.code)
     return inconclusive_where_in_doubt(found, graph)
 
 
 def side_by_side(
-    plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS
+    plan: System,
+    graph: System,
+    messages: Mapping[str, int] = NO_COUNTS,
+    before: System | None = None,
 ) -> tuple[Index, Index]:
     """The look-ups of a plan and a system, with the same words for what is made at run time."""
     fitting, there = fitted(plan, graph)
     by_plan = index(fitting, whose_by_plan(fitting))
     edges = without_bridged(fitting, there.edges)
-    return by_plan, beside(by_plan, there._replace(edges=edges), messages)
+    return by_plan, beside(by_plan, there._replace(edges=edges), messages, before)
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
@@ -170,7 +179,7 @@ def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
         told = {name for it in found for name in it.names}
         whole, together = (_without_bridges(it, plan) for it in (plan, domains_together(seen)))
         across = check(whole._replace(domains=()), together)
-        found += (it for it in across if it.code in COMPARED and told.isdisjoint(it.names))
+        found += (it for it in across if it.code in BETWEEN_ROBOTS and told.isdisjoint(it.names))
     return sorted(found, key=lambda it: it.code)
 
 

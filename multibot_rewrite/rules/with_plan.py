@@ -14,7 +14,8 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
 from multibot_rewrite.base.wording import shorten, unique
-from multibot_rewrite.rules.system.differing import COMPARED, unexplained
+from multibot_rewrite.rules.system.changed import untold
+from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS, unexplained
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_frames import frame_without_robot_name
 from multibot_rewrite.rules.system.planned_nodes import sender_not_planned, unplanned_node
@@ -61,8 +62,7 @@ def one_for_a_cause(
     # Nothing sends it by the plan either, whatever another robot has.
     return [
         it._replace(level=NOTE) if it.code == nothing_known_sends.code else it
-        for it in (*kept, *others)
-        if it in every
+        for it in untold(it for it in (*kept, *others) if it in every)
     ]
 
 
@@ -71,7 +71,7 @@ def _is_absence(it: Finding, rules: Mapping[str, Rule]) -> bool:
 
 
 def _abouts(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
-    if it.code in COMPARED:
+    if it.code in BETWEEN_ROBOTS:
         return
     yield it.node, ""
     # What is missing at one robot is no cause of what another one lacks.

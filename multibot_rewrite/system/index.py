@@ -83,10 +83,11 @@ class Sent(NamedTuple):
 
 class Known(NamedTuple):
     """What is known of a system besides what it shows: how many ``messages`` came on each topic in
-    ``seconds``, where they were counted."""
+    ``seconds``, where they were counted; how it was ``before``, where its plan is an earlier look."""
 
     messages: Mapping[str, int] = NO_COUNTS
     seconds: float = 0.0
+    before: System | None = None
 
 
 NOTHING_KNOWN = Known()
@@ -271,9 +272,14 @@ def index(system: System, whose: Whose, known: Known = NOTHING_KNOWN) -> Index:
     return Index(system, *whose, known, {})
 
 
-def beside(plan: Index, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Index:
+def beside(
+    plan: Index,
+    graph: System,
+    messages: Mapping[str, int] = NO_COUNTS,
+    before: System | None = None,
+) -> Index:
     """A system with its plan, which says whose each name is."""
-    known = Known(messages, graph.environment.seconds)
+    known = Known(messages, graph.environment.seconds, before)
     return plan._replace(system=graph, known=known, memo={}, expected=plan)
 
 

@@ -55,6 +55,11 @@ def _is_topic(claim: Claim) -> bool:
     )
 
 
+def given_topics(claims: Iterable[Claim]) -> frozenset[str]:
+    """The topics of Gazebo that a description gives in full, without the slash in front."""
+    return frozenset(it.value.strip().lstrip("/") for it in claims if _is_topic(it))
+
+
 def words_of(claims: Iterable[Claim]) -> Stems:
     """The words that systems make topics of, each with the joints that are named beside it."""
     beside: dict[object, list[str]] = defaultdict(list)

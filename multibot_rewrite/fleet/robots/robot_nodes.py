@@ -5,10 +5,8 @@ for all robots, as one map_server with one map."""
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
-
-from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import InputError
@@ -30,6 +28,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 from multibot_rewrite.fleet.outputs.output_file import params_of
 from multibot_rewrite.fleet.robots.fitting.fitted import described, fitted, free_nodes
 from multibot_rewrite.fleet.robots.fitting.transforms import (
+    brings_transforms,
     changed_frames,
     fitting_frames,
     is_led_elsewhere,
@@ -48,7 +47,7 @@ from multibot_rewrite.knowledge.parameters import (
     is_called,
     load_known_nodes,
 )
-from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, load_stack
 from multibot_rewrite.producers.ends import BRIDGE_NODE
 from multibot_rewrite.producers.evidence.hardware import with_hardware
@@ -58,9 +57,10 @@ from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing, for_a
 from multibot_rewrite.producers.launch.of_robot import (
     NOTHING,
     Launched,
+    without_bridges,
     without_robot,
 )
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
+from multibot_rewrite.producers.launch.records import IdleAction, LaunchedNode, LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
 from multibot_rewrite.spelling.records import Run
@@ -89,7 +89,8 @@ class RobotEvidence(NamedTuple):
     start all of its nodes and no simulator, the arguments of all that they start, the frames that it
     has in the place of defaults, the transforms that a simulator sends, whether a node of its files
     sends one of these, which no bridge file of its own has, what its launch files hand on to nodes, the
-    processes of these that are no nodes, the environment of all, and what places it."""
+    processes of these that are no nodes, the environment of all, what places it, and what they do
+    not start on a condition."""
 
     given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]
@@ -105,6 +106,7 @@ class RobotEvidence(NamedTuple):
     processes: tuple[Passing, ...] = ()
     environment: tuple[tuple[str, str], ...] = ()
     placing: LaunchedNode | None = None
+    idle: tuple[IdleAction, ...] = ()
 
 
 def robot_nodes(
@@ -128,12 +130,23 @@ def robot_nodes(
         stack = (*stack, *_manager_in_plugin(stack, own, member, file.distro))
     known = known_here(known, spec.launch, spec.words[0], file.distro)
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
+    launched = without_bridges(launched) if launched else None
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
-    without, findings = nodes_with(launched, stack, given, known | _started_here(file.distro))
+    # A controller manager that only a parameter file has is as its usual launch files start it.
+    started_here = {it.name: it for it in load_stack(PROGRAM, file.distro) if it.name == MANAGER}
+    without, findings = nodes_with(launched, stack, given, known | started_here)
     source = member.source
-    drives = wheels_in(source.root) and not _is_mounted(source.root)
-    standing = without if drives else _standing(without, given)
+    held = source.root.iterfind("joint[@type='fixed']/parent")
+    standing = without
+    if not wheels_in(source.root) or any(it.get("link") == WORLD for it in held):
+        # Without controllers of wheels that a stack has for robots that drive.
+        filed = {it.node for it in given}
+        standing = tuple(
+            it
+            for it in without
+            if it.name in filed or not (it.host == MANAGER and it.when and it.sends)
+        )
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
@@ -158,7 +171,7 @@ def robot_nodes(
     said = (*notes, *findings, *shared, *processes_not_known(of_launch[1] if of_launch else ()))
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    placing = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
+    placing = not brings_transforms(spec) and sends_too(nodes, free, has.sent)
     is_placed = placing or is_led_elsewhere(member, spec)
     more = unsimulated, arguments, frames, has.sent, is_placed, *of_launch
     return RobotEvidence(given, known, marked, said, spawned, *more)
@@ -170,7 +183,7 @@ def _of_launch(spec: RobotSpec, launched: Launched, file: FleetFile) -> tuple[An
     processes = tuple(
         it._replace(once=_is_once(it.name, it.once, file)) for it in launched.processes
     )
-    own = launched.handed_on, processes, launched.environment, launched.placing
+    own = launched.handed_on, processes, launched.environment, launched.placing, launched.idle
     return tuple(for_any(it, spec.name) for it in own) if by_name else own
 
 
@@ -182,7 +195,12 @@ def _as_written(
     outside = {it.node: frozenset(_outside(it, known, release)) for it in own}
     for it in nodes:
         moved = outside.get(it.name, frozenset())
-        ends = (_absolute(end) if end.parameter in moved else end for end in it.endpoints)
+        ends = (
+            end._replace(name=f"/{end.name}")
+            if end.parameter in moved and end.name[0] not in "/~"
+            else end
+            for end in it.endpoints
+        )
         yield it._replace(endpoints=tuple(ends)) if moved else it
 
 
@@ -194,13 +212,14 @@ def _made_by_arguments(
     values = {it.node: it.values for it in given}
     for it in nodes:
         own = values.get(it.name, {})
-        ends = (_in_full(end, topics) if end.parameter in own else end for end in it.endpoints)
+        names = (topics.get(end.name) or topics.get(end.name.lstrip("/")) for end in it.endpoints)
+        ends = (
+            end._replace(name=name, fixed=BY_ARGUMENT, own=True)
+            if name and end.parameter in own
+            else end
+            for end, name in zip(it.endpoints, names, strict=True)
+        )
         yield it._replace(endpoints=tuple(ends))
-
-
-def _in_full(end: Endpoint, topics: Mapping[str, str]) -> Endpoint:
-    name = topics.get(end.name) or topics.get(end.name.lstrip("/"))
-    return end._replace(name=name, fixed=BY_ARGUMENT, own=True) if name else end
 
 
 def _outside(it: Run, known: KnownNodes, release: str) -> Iterator[str]:
@@ -214,16 +233,6 @@ def _outside(it: Run, known: KnownNodes, release: str) -> Iterator[str]:
         fitting = (one for one in params if is_called(one, name))
         if any(below or is_absolute(one, release) for one in fitting):
             yield name
-
-
-def _absolute(end: Endpoint) -> Endpoint:
-    return end if end.name[0] in "/~" else end._replace(name=f"/{end.name}")
-
-
-def _is_mounted(root: _Element) -> bool:
-    """Does a joint hold the robot on its link world?"""
-    joints = root.iterfind("joint[@type='fixed']/parent")
-    return any(it.get("link") == WORLD for it in joints)
 
 
 def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
@@ -240,14 +249,6 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
         return library_key(it.plugin) in loaded
     of_one = it.name == BRIDGE_NODE and not it.shared
     return not of_one or bool(spec.companions.get("bridge")) or is_bridged(member.inventory)
-
-
-def _standing(nodes: Iterable[NodeFacts], given: Iterable[Run]) -> tuple[NodeFacts, ...]:
-    """The nodes without controllers of wheels that a stack has for robots that drive."""
-    named = {it.node for it in given}
-    return tuple(
-        it for it in nodes if it.name in named or not (it.host == MANAGER and it.when and it.sends)
-    )
 
 
 def _of_srdf(
@@ -290,12 +291,6 @@ def _manager_in_plugin(
         yield from [it for it in made if it.name == MANAGER and it.plugin in names][:1]
 
 
-def _started_here(release: str) -> dict[str, NodeFacts]:
-    """The controller manager that nothing but a parameter file has, as its usual launch files start
-    it."""
-    return {it.name: it for it in load_stack(PROGRAM, release) if it.name == MANAGER}
-
-
 def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> Iterator[NodeFacts]:
     """The nodes for which companion files are rewritten, with the names of their code: those in
     parameters are what is rewritten."""
@@ -316,27 +311,22 @@ def apart(
     marked = [it._replace(shared=_is_once(it.name, it.shared, file)) for it in nodes]
     shared = {it.name: None for it in marked if it.shared}
     managers = [it for it in marked if it.package == MANAGERS and not it.shared]
-    left = {it.name: _without(it, shared) for it in managers}
-    kept = tuple(left.get(it.name, it) for it in marked)
-    return kept, tuple(_notes(managers, file))
+    left, notes = {}, []
+    for it in managers:
+        heads = [end.name.partition("/")[0] for end in it.endpoints]
+        ends = zip(it.endpoints, heads, strict=True)
+        left[it.name] = it._replace(
+            endpoints=tuple(end for end, head in ends if head not in shared)
+        )
+        for name in (name for name in file.shared_nodes if name in heads):
+            message = f"{it.name} of each robot manages {name}, which all robots share"
+            hint = f"remove {name} from its node_names, and start {name} with a manager of its own"
+            notes.append(NOT_MANAGED.finding(message, hint, file=file.file, line=1))
+    return tuple(left.get(it.name, it) for it in marked), tuple(notes)
 
 
 def _is_once(name: str, once: bool, file: FleetFile) -> bool:
     return (once or name in file.shared_nodes) and name not in file.own_nodes
-
-
-def _without(manager: NodeFacts, shared: Collection[str]) -> NodeFacts:
-    ends = (it for it in manager.endpoints if it.name.partition("/")[0] not in shared)
-    return manager._replace(endpoints=tuple(ends))
-
-
-def _notes(managers: Sequence[NodeFacts], file: FleetFile) -> Iterator[Finding]:
-    for it in managers:
-        heads = {end.name.partition("/")[0] for end in it.endpoints}
-        for name in (name for name in file.shared_nodes if name in heads):
-            message = f"{it.name} of each robot manages {name}, which all robots share"
-            hint = f"remove {name} from its node_names, and start {name} with a manager of its own"
-            yield NOT_MANAGED.finding(message, hint, file=file.file, line=1)
 
 
 def check_shared(file: FleetFile, run: Mapping[str, object]) -> None:
