@@ -149,9 +149,10 @@ _URLS = frozenset({"camera_info_url", "camerainfo_url"})
 _SCHEMES = ("file://", "package://")
 
 
-@of_robots
-def _calibrations(file: NamedFile) -> Iterator[Finding]:
-    """Each calibration that all robots of a file read; a file for one robot has its own."""
+def one_device(file: NamedFile) -> Iterator[Finding]:
+    """What only one node can have, and calibrations of cameras."""
+    yield from _exclusive(file)
+    # Each calibration that all robots of a file read; a file for one robot has its own.
     # Source: image_common, camera_info_manager.cpp (humble to rolling). A camera_info_url is file:///,
     # package:// or flash:///, with ${NAME} and ${ROS_HOME} filled in; the file has no robot's name.
     sections = () if file.is_for_one else (it for it, _ in file.pages if not it.shared)
@@ -163,12 +164,6 @@ def _calibrations(file: NamedFile) -> Iterator[Finding]:
             message = f"every robot reads the calibration {text!r}; real cameras have one each"
             hint = "write <robot_namespace> into the path, which becomes the robot's name"
             yield remark_at(url, message, hint, NOTE)
-
-
-def one_device(file: NamedFile) -> Iterator[Finding]:
-    """What only one node can have, and calibrations of cameras."""
-    yield from _exclusive(file)
-    yield from _calibrations(file)
 
 
 @robots_rule("MB883", "section-of-one-robot", ERROR, PARAMS)
@@ -219,9 +214,17 @@ def shared_section(file: NamedFile) -> Iterator[Finding]:
 )
 def source_without_topic(file: NamedFile) -> Iterator[Finding]:
     """Observation sources of a costmap layer without a topic: their id is the topic."""
-    for section, _ in file.pages:
-        if not section.shared and _resolves_below(section, file.context):
-            yield from _without_topic(section)
+    pages = (it for it, _ in file.pages if not it.shared and _resolves_below(it, file.context))
+    for section in pages:
+        names = dict(flattened(section.body))
+        values = {id(key): str(value.value) for key, value in scalars(section.body)}
+        for name, key in names.items():
+            layer, _, last = name.rpartition(".")
+            words = values.get(id(key), "") if last == "observation_sources" and layer else ""
+            for source in (it for it in words.split() if f"{layer}.{it}.topic" not in names):
+                message = f"source {source} of {layer} has no topic, so it subscribes to {source!r}"
+                hint = f"add {layer}.{source}.topic: /{source}; it is renamed for each robot"
+                yield remark_at(key, message, hint)
 
 
 def _resolves_below(section: ParamSection, context: Context) -> bool:
@@ -229,17 +232,3 @@ def _resolves_below(section: ParamSection, context: Context) -> bool:
     param = section.node.params.get("<id>.<id>.topic") if section.node else None
     namespaced = context.topics.naming.topics == NAMESPACE
     return param is not None and (not namespaced or is_absolute(param, context.distro))
-
-
-def _without_topic(section: ParamSection) -> Iterator[Finding]:
-    names = dict(flattened(section.body))
-    values = {id(key): str(value.value) for key, value in scalars(section.body)}
-    for name, key in names.items():
-        layer, _, last = name.rpartition(".")
-        if last != "observation_sources" or not layer:
-            continue
-        for source in values.get(id(key), "").split():
-            if f"{layer}.{source}.topic" not in names:
-                message = f"source {source} of {layer} has no topic, so it subscribes to {source!r}"
-                hint = f"add {layer}.{source}.topic: /{source}; it is renamed for each robot"
-                yield remark_at(key, message, hint)

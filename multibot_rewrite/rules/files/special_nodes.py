@@ -109,11 +109,16 @@ _Filters = Mapping[str, Mapping[str, Setting]]
 @rule("MB896", "filter-chain", WARNING, formats=(PARAMS,))
 def broken_chains(file: NamedFile) -> Iterator[Finding]:
     """Of every chain of a node of laser_filters."""
-    for section in sections(file):
-        if section.node and section.node.package == "laser_filters":
-            for filters in _chains(section).values():
-                yield from _not_loaded(section, filters)
-                yield from _incomplete(section, filters)
+    own = (it for it in sections(file) if it.node and it.node.package == "laser_filters")
+    for section, filters in ((it, chain) for it in own for chain in _chains(it).values()):
+        last = next(at for at in range(1, len(filters) + 2) if str(at) not in filters) - 1
+        for number, parts in filters.items():
+            if not number or int(number) > last:
+                there = f"there is no filter{last + 1}"
+                message = f"{section.title}: filter{number} is not loaded: {there}"
+                hint = "filters are called filter1, filter2 and so on, without a gap"
+                yield remark_at(next(iter(parts.values())).key, message, hint)
+        yield from _incomplete(section, filters)
 
 
 def _chains(section: Section) -> Mapping[str, _Filters]:
@@ -123,15 +128,6 @@ def _chains(section: Section) -> Mapping[str, _Filters]:
             filters = found.setdefault(part["chain"], {})
             filters.setdefault(part["number"], {}).setdefault(part["word"], it)
     return found
-
-
-def _not_loaded(section: Section, filters: _Filters) -> Iterator[Finding]:
-    last = next(at for at in range(1, len(filters) + 2) if str(at) not in filters) - 1
-    for number, parts in filters.items():
-        if not number or int(number) > last:
-            message = f"{section.title}: filter{number} is not loaded: there is no filter{last + 1}"
-            hint = "filters are called filter1, filter2 and so on, without a gap"
-            yield remark_at(next(iter(parts.values())).key, message, hint)
 
 
 def _incomplete(section: Section, filters: _Filters) -> Iterator[Finding]:

@@ -331,16 +331,13 @@ def relied_on(subject: Subject, gone: frozenset[str]) -> tuple[str, ...]:
     blocks = subject.elements.tops("gazebo")
     lost = (it for it in blocks if it.get("reference") in gone | joints)
     sensors = (it.get("name") for block in lost for it in block.iterchildren("sensor"))
-    found = [*(f"sensor {name!r}" for name in sensors), *_driven(subject, joints)]
+    found = [f"sensor {name!r}" for name in sensors]
+    # Joints of which a plugin of the model, or ros2_control, knows the name.
+    of_model = (it for it in blocks if not it.get("reference"))
+    plugins = (it for block in of_model for it in block.iterchildren("plugin"))
+    named = (text_of(it) for plugin in plugins for it in plugin.iterdescendants("*"))
+    found += (f"joint {name!r} of a plugin" for name in named if name in joints)
+    systems = subject.elements.tops("ros2_control")
+    driven = (it.get("name", "") for system in systems for it in system.iterchildren("joint"))
+    found += (f"joint {name!r} of ros2_control" for name in driven if name in joints)
     return tuple(dict.fromkeys(found))
-
-
-def _driven(subject: Subject, joints: set[str]) -> Iterator[str]:
-    """Joints of which a plugin of the model, or ros2_control, knows the name."""
-    for block in subject.elements.tops("gazebo"):
-        for plugin in () if block.get("reference") else block.iterchildren("plugin"):
-            named = (text_of(it) for it in plugin.iterdescendants("*"))
-            yield from (f"joint {it!r} of a plugin" for it in named if it in joints)
-    for system in subject.elements.tops("ros2_control"):
-        named = (it.get("name", "") for it in system.iterchildren("joint"))
-        yield from (f"joint {it!r} of ros2_control" for it in named if it in joints)
