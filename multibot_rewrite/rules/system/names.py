@@ -224,7 +224,7 @@ def _missed_topic(
     if _is_doubled(other.name, end.name):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
         remaps = (Remap(sender, other.name, end.name),)
-    elif seen.robot(end.name) and not seen.robot(other.name):
+    elif seen.robot(end.name) and not seen.robot(other.name) and other.name not in EVERYBODYS:
         cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
         remaps = tuple(Remap(it, other.name, end.name) for it in nodes_of(other.publishers))
     elif other.type != end.type:
