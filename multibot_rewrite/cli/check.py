@@ -49,7 +49,13 @@ def run(options: argparse.Namespace) -> int:
         from multibot_rewrite.cli import unplanned  # a check with a plan needs none of it
 
         return unplanned.run(options, several)
-    _check_use(options)
+    live.check_source(options)
+    if options.suggest:
+        raise UsageError("--suggest begins a plan: leave out PLAN")
+    check_report(options, printed=False)
+    pictures.check(options)
+    if options.output:
+        check_target(options.output, [options.plan, *options.snapshot])
     plan, before = plan_of(options), _before(options)
     parts = _looked_at(options, plan, several)
     if options.watch:
@@ -61,7 +67,11 @@ def run(options: argparse.Namespace) -> int:
     if parts and not options.bag:
         return _apart(options, plan, parts)
     if options.bag:
-        return _recorded(options, plan)
+        from multibot_rewrite.producers.bags.read import read_bag
+
+        recording = read_bag(options.bag)
+        graph = as_snapshot(recording, plan)
+        return conclude(options, plan, graph, check(plan, graph, counted(recording)))
     graph = live.graph(options, judge=lambda it: check(plan, it, before=before))
     if options.state or answering(graph):
         plan = _with_files(options, plan)
@@ -119,24 +129,6 @@ def _parameters(plan: System) -> dict[str, list[str]]:
     return found
 
 
-def _recorded(options: argparse.Namespace, plan: System) -> int:
-    from multibot_rewrite.producers.bags.read import read_bag
-
-    recording = read_bag(options.bag)
-    graph = as_snapshot(recording, plan)
-    return conclude(options, plan, graph, check(plan, graph, counted(recording)))
-
-
-def _check_use(options: argparse.Namespace) -> None:
-    live.check_source(options)
-    if options.suggest:
-        raise UsageError("--suggest begins a plan: leave out PLAN")
-    check_report(options, printed=False)
-    pictures.check(options)
-    if options.output:
-        check_target(options.output, [options.plan, *options.snapshot])
-
-
 def plan_of(options: argparse.Namespace) -> System:
     """The plan that a file holds, or that follows from a fleet file; of an earlier snapshot that all
     of it is there again."""
@@ -149,7 +141,13 @@ def plan_of(options: argparse.Namespace) -> System:
 
         return seen_plan(diagnose(read_snapshot(path)))
     if not is_fleet(data):
-        return _of_release(options, read_plan(data, path))
+        # The plan, which is of the release that ``--distro`` names, if it says so.
+        plan = read_plan(data, path)
+        asked: str = options.distro or ""
+        if asked and plan.release not in ("", asked):
+            hint = f"make one with multibot plan --distro {asked}, or leave out --distro"
+            raise UsageError(f"{options.plan} is for ROS 2 {plan.release}; {hint}")
+        return plan._replace(release=plan.release or asked)
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
     from multibot_rewrite.fleet.checks.closed_plan import closed_plan
     from multibot_rewrite.fleet.file.fleet_file import (
@@ -166,15 +164,6 @@ def plan_of(options: argparse.Namespace) -> System:
     note_interfaces(options, made.facts)
     check_unread(options, made)
     return expected(made)
-
-
-def _of_release(options: argparse.Namespace, plan: System) -> System:
-    """The plan, which is of the release that ``--distro`` names, if it says so."""
-    asked: str = options.distro or ""
-    if asked and plan.release not in ("", asked):
-        hint = f"make one with multibot plan --distro {asked}, or leave out --distro"
-        raise UsageError(f"{options.plan} is for ROS 2 {plan.release}; {hint}")
-    return plan._replace(release=plan.release or asked)
 
 
 def conclude(

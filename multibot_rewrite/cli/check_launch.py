@@ -37,7 +37,10 @@ _Read = Callable[[Sequence[LaunchOrder]], Launched]
 def run(options: argparse.Namespace) -> int:
     """Read the launch file, make the graph that it would start, report; returns the exit code."""
     orders = orders_of(options, options.words)
-    _check_use(options, orders)
+    check_report(options, printed=False)
+    pictures.check(options)
+    if options.output:
+        check_target(options.output, [*filter(None, [options.plan]), *(it.file for it in orders)])
     plan, own = check.plan_of(options) if options.plan else None, own_nodes(options)
     told = release_told(options.distro) or (plan.release if plan else "")
     read = partial(launched_by, told=told, nodes=own[0], nodl=own[1])
@@ -64,13 +67,6 @@ def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchO
     """The launch files that words name, with the arguments; raises UsageError for other words."""
     orders = orders_in_words(words, shlex.join(words), options.roots)
     return [it._replace(trusted=options.trust) for it in orders]
-
-
-def _check_use(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> None:
-    check_report(options, printed=False)
-    pictures.check(options)
-    if options.output:
-        check_target(options.output, [*filter(None, [options.plan]), *(it.file for it in orders)])
 
 
 def _with_remedies(

@@ -68,16 +68,27 @@ def run(options: argparse.Namespace) -> int:
         return launched.run(options, words[0])
     if len(words) == 1 and node_source.is_program(words[0]):
         return node_source.run(options, words[0])
-    paths = any(map(_is_path, words))
+    paths = any(os.path.lexists(word) or word.endswith(_FILES) for word in words)
     if not paths and are_codes(words):
         return explain(options, words)
     if len(words) > 1 or xacro_args(options) or paths:
-        return try_arguments(options, words)
+        # Try the arguments of a xacro file and arguments_report; returns the exit code.
+        path = _only_xacro(options, words)
+        if options.output:
+            check_target(options.output, [path, *options.vocabulary])
+        tree = builtin_tree(
+            (*configured_vocabulary(path), *options.vocabulary), release_here(options.distro)
+        )
+        reach = Reach(trust=options.trust)
+        found = find_arguments(path, filled(xacro_args(options)), tree, reach=reach)
+        if options.output:
+            check_target(options.output, found.read)
+        if options.form == JSON:
+            deliver(options, json_bytes({"xacro": arguments_json(found)}))
+        else:
+            deliver_report(options, arguments_report(found))
+        return DONE
     return show(options, next(iter(words), None))
-
-
-def _is_path(word: str) -> bool:
-    return os.path.lexists(word) or word.endswith(_FILES)
 
 
 def show(options: argparse.Namespace, name: str | None) -> int:
@@ -89,7 +100,14 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     # Without a release the rows of all are shown, each with its own.
     vocabulary = load_vocabulary(files, options.distro or "")
     if name is None:
-        return _all(options, vocabulary.sections(*TYPES))
+        # Everything that is known: what a description may have, and what may be found in it.
+        sections = vocabulary.sections(*TYPES)
+        if options.form == JSON:
+            known = [as_json(it) for it in sections]
+            deliver(options, json_bytes({"sections": known, "rules": rules_json()}))
+        else:
+            deliver_report(options, (*_list(sections), "", rule_grid()))
+        return DONE
     found = look_up(vocabulary, name, TYPES)
     if not found and is_name(name):
         return explain(options, [name])
@@ -99,16 +117,6 @@ def show(options: argparse.Namespace, name: str | None) -> int:
         deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
         deliver_report(options, _details(found))
-    return DONE
-
-
-def _all(options: argparse.Namespace, sections: Sequence[VocabularySection]) -> int:
-    """Everything that is known: what a description may have, and what may be found in it."""
-    if options.form == JSON:
-        known = [as_json(it) for it in sections]
-        deliver(options, json_bytes({"sections": known, "rules": rules_json()}))
-    else:
-        deliver_report(options, (*_list(sections), "", rule_grid()))
     return DONE
 
 
@@ -279,25 +287,6 @@ def _asked(word: str) -> list[Rule]:
 ARGUMENT_COLUMNS = ("argument", "default", "goes into", "as", "count", "example")
 
 
-def try_arguments(options: argparse.Namespace, words: Sequence[str]) -> int:
-    """Try the arguments of a xacro file and arguments_report; returns the exit code."""
-    path = _only_xacro(options, words)
-    if options.output:
-        check_target(options.output, [path, *options.vocabulary])
-    tree = builtin_tree(
-        (*configured_vocabulary(path), *options.vocabulary), release_here(options.distro)
-    )
-    reach = Reach(trust=options.trust)
-    found = find_arguments(path, filled(xacro_args(options)), tree, reach=reach)
-    if options.output:
-        check_target(options.output, found.read)
-    if options.form == JSON:
-        deliver(options, json_bytes({"xacro": arguments_json(found)}))
-    else:
-        deliver_report(options, arguments_report(found))
-    return DONE
-
-
 def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
     """The one word, which is a xacro file; raises UsageError."""
     missing = next((it for it in words if not os.path.lexists(it)), None)
@@ -329,7 +318,14 @@ def arguments_report(found: XacroArguments) -> Iterator[str | Grid]:
         yield f"take no name of a robot: {', '.join(refused)}"
     if found.untried:
         yield f"too many to try: {', '.join(found.untried)}"
-    yield from _advice(found)
+    # The command that uses the arguments for robots.
+    command = ["urdf-postfix", found.file, "robot1", "robot2", "-o", "out/{robot}.urdf"]
+    line = shlex.join([*command, *found.words])
+    if found.words:
+        yield "each robot by its own argument, and everything else rewritten as usual:"
+    else:
+        yield "no argument gives each robot its own names; the rewrite does it:"
+    yield f"  {line}"
 
 
 def _argument_rows(it: Argument) -> Iterator[tuple[str, ...]]:
@@ -338,14 +334,3 @@ def _argument_rows(it: Argument) -> Iterator[tuple[str, ...]]:
         how = f"{use.how} {use.separator}".rstrip()
         yield *first, use.kind, how, f"{use.names} of {use.total}", use.example
         first = "", ""
-
-
-def _advice(found: XacroArguments) -> Iterator[str]:
-    """The command that uses the arguments for robots."""
-    command = ["urdf-postfix", found.file, "robot1", "robot2", "-o", "out/{robot}.urdf"]
-    line = shlex.join([*command, *found.words])
-    if found.words:
-        yield "each robot by its own argument, and everything else rewritten as usual:"
-    else:
-        yield "no argument gives each robot its own names; the rewrite does it:"
-    yield f"  {line}"

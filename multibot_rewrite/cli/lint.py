@@ -71,7 +71,12 @@ def run(options: argparse.Namespace) -> int:
     said = release_of_all(release_told(asked), (it for it in paths if it.endswith(_TELLING)))
     config = config._replace(settings=config.settings._replace(distro=said.release))
     _check_selecting(options, paths)
-    _check_targets(options, paths)
+    # Before the work: nothing that is linted is written over.
+    for option in ("--output", "--write-baseline"):
+        target = getattr(options, option[2:].replace("-", "_"))
+        if target and target != STDIN:
+            check_target(target, paths, option)
+            check_folder(target)
     findings = [*unreadable, *_lint(options, config.settings, paths)]
     if options.shared and paths != [STDIN] and not options.fix:
         _check_shared(options, alone, config.settings, paths, findings[len(unreadable) :])
@@ -136,15 +141,6 @@ def _check_shared(
         return lint_files(paths, settings._replace(naming=changed.settings.naming))
 
     check_shared(options, findings, linted, {}, paths)
-
-
-def _check_targets(options: argparse.Namespace, paths: Sequence[str]) -> None:
-    """Before the work: nothing that is linted is written over."""
-    for option in ("--output", "--write-baseline"):
-        target = getattr(options, option[2:].replace("-", "_"))
-        if target and target != STDIN:
-            check_target(target, paths, option)
-            check_folder(target)
 
 
 def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str]) -> list[Finding]:

@@ -106,7 +106,12 @@ def declare(parser: Parser, command: Command) -> None:
     parser.description = "\n\n".join(_head(command))
     parser.epilog = f"exit codes:\n  {_codes(command)}"
     for group in command.groups:
-        _add(parser, group)
+        section = parser.add_argument_group(group.title)
+        for option in group.options:
+            text = option.help.replace("%", "%%")
+            made = section.add_argument(*option.names, help=text, **option.keywords)
+            if made.nargs == argparse.ZERO_OR_MORE:
+                made.required = False  # else a message about another one asks for it, too
     general = parser._action_groups[-1]
     version = f"{parser.prog} {__version__}"
     general.add_argument("--version", action="version", version=version, help="show the version")
@@ -175,19 +180,17 @@ def wrapped(text: str, width: int = 80) -> str:
     return "\n".join(lines)
 
 
-def _add(parser: argparse.ArgumentParser, group: OptionGroup) -> None:
-    section = parser.add_argument_group(group.title)
-    for option in group.options:
-        text = option.help.replace("%", "%%")
-        made = section.add_argument(*option.names, help=text, **option.keywords)
-        if made.nargs == argparse.ZERO_OR_MORE:
-            made.required = False  # else a message about another one asks for it, too
-
-
 def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
     """What the words say; a mistake ends the process with one line."""
-    parser.colour = _colour_asked(words)
-    if wrong := _first_unknown_option(words, parser.known()):
+    # ``--color``, which ``--help`` may come before.
+    asked = [it for name, it in pairwise(words) if name == "--color"]
+    asked += [it.partition("=")[2] for it in words if it.startswith("--color=")]
+    parser.colour = asked[-1] if asked else AUTO
+    # The first option that is not known, without its value.
+    known = parser.known()
+    before_end = takewhile(lambda word: word != "--", words)
+    names = (it.partition("=")[0] for it in before_end if _OPTION.fullmatch(it))
+    if wrong := next((it for it in names if it not in known and not _is_short(it, known)), ""):
         from multibot_rewrite.cli.hints import option_hint  # a mistake alone needs it
 
         command = parser.prog.rpartition(" ")[2]
@@ -237,20 +240,6 @@ def _is_behind_list(word: str, words: Sequence[str], parser: Parser) -> bool:
     return any(name in it.option_strings for it in lists)
 
 
-def _first_unknown_option(words: Sequence[str], known: Collection[str]) -> str:
-    """Return the first option that is not known, without its value; "" where all are known."""
-    before_end = takewhile(lambda word: word != "--", words)
-    names = (it.partition("=")[0] for it in before_end if _OPTION.fullmatch(it))
-    return next((it for it in names if it not in known and not _is_short(it, known)), "")
-
-
 def _is_short(name: str, known: Collection[str]) -> bool:
     """Is it a known short option with others, or with its value, as ``-qv`` or ``-n3``?"""
     return not name.startswith("--") and name[:2] in known
-
-
-def _colour_asked(words: Sequence[str]) -> str:
-    """``--color``, which ``--help`` may come before."""
-    asked = [it for name, it in pairwise(words) if name == "--color"]
-    asked += [it.partition("=")[2] for it in words if it.startswith("--color=")]
-    return asked[-1] if asked else AUTO

@@ -38,7 +38,11 @@ ONE = -1
 
 def run(options: argparse.Namespace) -> int:
     """Start the stubs, look, compare, sum up; returns the exit code."""
-    _check_use(options)
+    fleet.check_use(options, printed=False)
+    pictures.check(options)
+    if options.save_snapshot:
+        check_target(options.save_snapshot, [options.input], "--save-snapshot")
+        check_folder(options.save_snapshot)
     made = fleet.build(options)
     # Nodes that stand in for others have none of their parameters.
     plan, table = expected(made)._replace(parameters=()), chosen(options, made.table.problems)
@@ -54,7 +58,11 @@ def run(options: argparse.Namespace) -> int:
     graph = side_by_side(seen) if plan.domains else seen[ONE]
     if options.save_snapshot:
         write_files(options, [(options.save_snapshot, to_json(graph))])
-    _note_substitutes(options, replaced)
+    if replaced:
+        what = "type is" if len(replaced) == 1 else "types are"
+        types = shorten(sorted(replaced), SEVERAL)
+        text = f"{len(replaced)} {what} not installed here and replaced by others: {types}"
+        note(options, f"note: {text}; this does not change the names")
     found = check_domains(plan, seen) if plan.domains else check(plan, graph)
     return conclude(options, plan, graph, found, table)
 
@@ -90,14 +98,6 @@ def _left_out(options: argparse.Namespace) -> Sequence[str]:
     return WAYS if "all" in options.without_rules else list(options.without_rules)
 
 
-def _check_use(options: argparse.Namespace) -> None:
-    fleet.check_use(options, printed=False)
-    pictures.check(options)
-    if options.save_snapshot:
-        check_target(options.save_snapshot, [options.input], "--save-snapshot")
-        check_folder(options.save_snapshot)
-
-
 def _without_places(graph: System) -> System:
     """Stubs send which frame hangs on which, not where, and all with one quality of service."""
     ends = tuple(it._replace(qos=None) for it in graph.ends)
@@ -112,11 +112,3 @@ def _edges(made: Fleet) -> tuple[Edges, list[str]]:
         if added:
             names.append(f"{added} of {robot}")
     return edges, names
-
-
-def _note_substitutes(options: argparse.Namespace, replaced: dict[str, str]) -> None:
-    if replaced:
-        what = "type is" if len(replaced) == 1 else "types are"
-        types = shorten(sorted(replaced), SEVERAL)
-        text = f"{len(replaced)} {what} not installed here and replaced by others: {types}"
-        note(options, f"note: {text}; this does not change the names")

@@ -18,7 +18,6 @@ from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, s
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
 from multibot_rewrite.knowledge.nodl.writing import NodlFile, file_name
 from multibot_rewrite.knowledge.stacks import built_in
@@ -39,7 +38,6 @@ from multibot_rewrite.system.records import (
     SUBSCRIBES,
     TOPIC,
     ZENOH,
-    Caveat,
     Environment,
     System,
     answering,
@@ -60,7 +58,14 @@ COLUMNS = (
 
 def run(options: argparse.Namespace) -> int:
     """Look, write what is seen and what may be missing; returns the exit code."""
-    describes = _check_use(options)
+    live.check_source(options)
+    for name in ("expect", "timeout", "domain"):
+        if (options.snapshot or options.bag) and getattr(options, name) not in (None, []):
+            raise UsageError(f"--{name} is for the live graph, leave out --from")
+    if options.output not in (None, STANDARD):
+        check_folder(options.output)
+        check_target(options.output, options.snapshot)
+    describes = is_asked(options)
     request = Request(options.timeout or live.LOOK_SECONDS, tuple(options.expect))
     snapshot = live.with_states(options, live.graph(options, request))
     if describes:
@@ -71,33 +76,19 @@ def run(options: argparse.Namespace) -> int:
         deliver(options, to_yaml(snapshot) if options.form == ROSGRAPH else to_json(snapshot))
         note(options, _headline(snapshot))
     for caveat in snapshot.environment.caveats:
-        _remark(options, caveat)
+        if caveat.incomplete:
+            say(f"incomplete: {caveat.message}", PROGRAM)
+        else:
+            note(options, f"note: {caveat.message}")
     return live.INCONCLUSIVE if incomplete(snapshot) else DONE
-
-
-def _check_use(options: argparse.Namespace) -> bool:
-    """Are nodes to be described? Raises UsageError."""
-    live.check_source(options)
-    for name in ("expect", "timeout", "domain"):
-        if (options.snapshot or options.bag) and getattr(options, name) not in (None, []):
-            raise UsageError(f"--{name} is for the live graph, leave out --from")
-    if options.output not in (None, STANDARD):
-        check_folder(options.output)
-        check_target(options.output, options.snapshot)
-    return is_asked(options)
-
-
-def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
-    if caveat.incomplete:
-        say(f"incomplete: {caveat.message}", PROGRAM)
-    else:
-        note(options, f"note: {caveat.message}")
 
 
 def report(snapshot: System) -> Iterator[str | Grid]:
     """What is printed: how it was looked, a row a node, a tf topic, a header, a node's answer."""
     yield _headline(snapshot)
-    short = _short_processes(snapshot)
+    # Small numbers in place of the process groups; nothing where the group is not known.
+    groups = sorted({node.process for node in snapshot.nodes} - {""})
+    short = {"": "", **{group: str(number) for number, group in enumerate(groups, 1)}}
     counts = Counter((end.node, end.role, end.kind) for end in snapshot.ends)
     rows = [(node.name, short[node.process], *_cells(counts, node.name)) for node in snapshot.nodes]
     if rows:
@@ -130,12 +121,6 @@ def _state_rows(snapshot: System, nodes: Iterable[str]) -> Iterator[tuple[str, .
 def _cells(counts: Counter[tuple[str, str, str]], node: str) -> Iterator[str]:
     for _, kind, role in COLUMNS:
         yield str(counts[node, role, kind])
-
-
-def _short_processes(snapshot: System) -> dict[str, str]:
-    """Small numbers in place of the process groups; nothing where the group is not known."""
-    groups = sorted({node.process for node in snapshot.nodes} - {""})
-    return {"": "", **{group: str(number) for number, group in enumerate(groups, 1)}}
 
 
 def _headline(snapshot: System) -> str:
@@ -186,7 +171,11 @@ def write_nodes(options: argparse.Namespace, graph: System) -> int:
     as_nodl = is_nodl(options)
     stack = options.stack or "learned"
     if as_nodl:
-        remarks += _write_nodl(options, _as_nodl(options, graph, learned, library))
+        in_json = (options.output or "").endswith(".json")
+        remarks += _write_nodl(
+            options,
+            [to_nodl(it, graph, options.namespace or "/", library, in_json) for it in learned],
+        )
     else:
         deliver(options, to_nodes_yaml(learned, stack, library).encode(), editors.NODES)
     for remark in remarks:
@@ -204,13 +193,6 @@ def is_nodl(options: argparse.Namespace) -> bool:
         form = f"--form {options.form}"
         raise UsageError(f"{options.output} is the name of a NoDL file; leave out {form}")
     return named or options.form == NODL
-
-
-def _as_nodl(
-    options: argparse.Namespace, graph: System, learned: Sequence[LearnedNode], library: NodeLibrary
-) -> list[NodlFile]:
-    in_json = (options.output or "").endswith(".json")
-    return [to_nodl(it, graph, options.namespace or "/", library, in_json) for it in learned]
 
 
 def _write_nodl(options: argparse.Namespace, found: Sequence[NodlFile]) -> Iterator[str]:

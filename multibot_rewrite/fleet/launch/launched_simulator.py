@@ -38,7 +38,7 @@ def launched_simulator(file: FleetFile) -> Simulator:
     """The simulator of the first robot whose launch files start one."""
     for spec in file.robots:
         nodes = launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ()
-        started = [it for it in nodes if _is_simulator(it)]
+        started = [it for it in nodes if it.executable == SIMULATOR and it.package in SIMULATORS]
         if started:
             return _simulator(started, any(_is_client(it) for it in nodes))
     return Simulator()
@@ -53,10 +53,6 @@ def with_launched_world(file: FleetFile) -> FleetFile:
         return file
     place = next((it.launch[0].file, 1) for it in file.robots if it.launch)
     return file._replace(simulator_world=own.world, world_place=place)
-
-
-def _is_simulator(it: LaunchedNode) -> bool:
-    return it.executable == SIMULATOR and it.package in SIMULATORS
 
 
 def _is_client(it: LaunchedNode) -> bool:

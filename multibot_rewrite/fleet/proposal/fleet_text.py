@@ -39,7 +39,7 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
     yield from (f"# {note}" for note in it.notes)
     for key, choice in it.keys.items():
         yield ""
-        yield f"# {_sentence(choice.why)}"
+        yield f"# {choice.why[:1].upper()}{choice.why[1:]}"
         if key == "layout":
             yield "# The other layouts:"
             others = (layout for layout in LAYOUTS if layout.name != choice.value)
@@ -107,10 +107,6 @@ def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
     for path in left.keys() - taken - it.broken.keys():
         if package_of(path) in packages:
             yield os.path.relpath(path, folder), left[path]
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def _block(key: str, value: Any) -> Iterator[str]:

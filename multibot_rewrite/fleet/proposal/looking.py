@@ -109,7 +109,19 @@ def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
     try:
         xacro = path.endswith(".xacro")
         text = expand(path, filled(given, ANY), None, reach) if xacro else read_model(path)
-        return _looked(path, text, tuple(given.items()) if xacro else ())
+        root = read_document(text, path).root
+        model = root if root.tag != "sdf" else next(root.iter("model"), root)
+        return Looked(
+            path,
+            model.get("name", ""),
+            str(root.tag),
+            sum(1 for it in root.iter("link") if it.get("name")),
+            _simulator(root),
+            _is_controlled(root),
+            tuple(given.items()) if xacro else (),
+            own_tf=any(_moves_tf(it) for it in root.iter("remapping", "argument")),
+            root=root,
+        )
     except InputError as error:
         return Looked(path, fault=str(error))
 
@@ -240,22 +252,6 @@ def with_model(it: Looked, sdf: Looked) -> Looked:
 
 def _suits_simulator(root: etree._Element) -> bool:
     return _simulator(root) != NO_SIMULATOR and suits_simulator(root)
-
-
-def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> Looked:
-    root = read_document(text, path).root
-    model = root if root.tag != "sdf" else next(root.iter("model"), root)
-    return Looked(
-        path,
-        model.get("name", ""),
-        str(root.tag),
-        sum(1 for it in root.iter("link") if it.get("name")),
-        _simulator(root),
-        _is_controlled(root),
-        arguments,
-        own_tf=any(_moves_tf(it) for it in root.iter("remapping", "argument")),
-        root=root,
-    )
 
 
 def _moves_tf(rule: etree._Element) -> bool:

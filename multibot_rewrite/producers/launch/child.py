@@ -46,11 +46,6 @@ _HEAD = lazy_compile(rb"^structure:", re.MULTILINE)
 _KEPT_TEXT = ("pkg", "exec", "plugin", "node_name", "container")
 
 
-def is_system_model(path: str) -> bool:
-    """Is it a system model? A launch file in YAML has ``launch:`` instead."""
-    return path.endswith(_ENDS) and _HEAD.search(read_file(path)) is not None
-
-
 def read_system_model(path: str) -> LaunchGraph:
     """The nodes of a system model; raises InputError for one that has none."""
     document = read_yaml(read_file(path), path)
@@ -129,7 +124,8 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
     Raises InputError for a file that cannot be read.
     """
     refuse_others(read_file(order.file), order.file, LAUNCH)
-    if is_system_model(order.file):
+    # A launch file in YAML has ``launch:`` in place of what a system model begins with.
+    if order.file.endswith(_ENDS) and _HEAD.search(read_file(order.file)) is not None:
         return read_system_model(order.file)
     if os.environ.get(_INSIDE):
         return LaunchGraph()

@@ -107,7 +107,10 @@ def _asked(hidden: set[str]) -> Callable[[Any, str], str]:
 
 
 def _readable(access: Access) -> Iterator[str]:
-    yield from _beside(access)
+    # The files in the folder of the launch file, which may be a home.
+    for folder in access.beside:
+        with os.scandir(folder or os.curdir) as found:
+            yield from (it.path for it in found if it.name[0] != "." and it.is_file())
     yield from access.roots
     for prefix in access.sourced:
         yield prefix
@@ -118,13 +121,6 @@ def _readable(access: Access) -> Iterator[str]:
     yield from sys.path
     yield from (sysconfig.get_path(it) for it in ("stdlib", "platstdlib"))
     yield from (*_LIBRARIES, *_DEVICES)
-
-
-def _beside(access: Access) -> Iterator[str]:
-    """The files in the folder of the launch file, which may be a home."""
-    for folder in access.beside:
-        with os.scandir(folder or os.curdir) as found:
-            yield from (it.path for it in found if it.name[0] != "." and it.is_file())
 
 
 START, SEND, READ, END = "start", "send", "read", "end"

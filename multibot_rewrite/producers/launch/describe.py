@@ -443,20 +443,16 @@ def _of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterText]:
     rest = {name: value for name, value in found.items() if name not in gone}
     if rest or not found:
         yield _values(rest)
-    _keep_files(rest.values(), here)
+    # Keep the parameter files that plugins in descriptions name: they may be gone when these are
+    # read.
+    for text_ in (it for it in rest.values() if isinstance(it, str)):
+        for path in _OF_PLUGIN.findall(text_):
+            here.files.update((path, it) for it in _file(path, here))
 
 
 def _is_gone(text_: str) -> bool:
     """Does it name what the launch makes? A description may do so: it is rewritten."""
     return GONE in real_paths(text_) and "<" not in text_
-
-
-def _keep_files(values: Iterable[Any], here: Visit) -> None:
-    """Keep the parameter files that plugins in descriptions name: they may be gone when these are
-    read."""
-    for text_ in (it for it in values if isinstance(it, str)):
-        for path in _OF_PLUGIN.findall(text_):
-            here.files.update((path, it) for it in _file(path, here))
 
 
 def _values(values: Any) -> ParameterText:

@@ -313,7 +313,8 @@ def _pair(
         shared=bool(facts.shared or once_for_all(it)) and not is_of_robot(it.namespace, words),
         when=it.later or unnamed,
         container=_below(it.container, "", words),
-        origin=_origin(it.place),
+        # Without its folder: a plan is the same from every working directory.
+        origin=Origin(place=Place(os.path.basename(it.place.file), it.place.line)),
         is_known=facts.is_known or bool(rows),
     )
     return _Pair(it, found, number)
@@ -358,11 +359,6 @@ def _below(namespace: str, name: str, words: Collection[str]) -> str:
     return "/".join(tokens[1:] if len(tokens) > 1 and tokens[0] in words else tokens)
 
 
-def _origin(place: Place) -> Origin:
-    # Without its folder: a plan is the same from every working directory.
-    return Origin(place=Place(os.path.basename(place.file), place.line))
-
-
 def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
     """Should a launch file have started it? What has no process of its own is not launched, and what
     no stack is named for is added to every robot."""
@@ -398,14 +394,11 @@ def _controllers(
         for it in given_nodes(documents, parameters):
             name = _stripped(it.node, words)
             if name in places:
-                found[name] = _joined(found.get(name, it), it)
+                # As it is started, with the type that a manager of any namespace declares.
+                one = found.get(name, it)
+                found[name] = one if one.program else it._replace(values=one.values)
         for name, it in found.items():
             yield _placed(it, places[name])._replace(node=name, host_name=above)
-
-
-def _joined(one: Run, other: Run) -> Run:
-    """A controller as it is started, with the type that a manager of any namespace declares."""
-    return one if one.program else other._replace(values=one.values)
 
 
 def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:

@@ -164,7 +164,15 @@ class _Share(FindPackageShare):
 
 
 def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
-    _check_given(description, order)
+    # Without an argument that the file itself has to be given it is not read.
+    for it, includes in getattr(description, ASKED)():
+        free = (
+            order.every
+            or it.default_value is not None
+            or getattr(it, "_conditionally_included", False)
+        )
+        if not free and not includes and it.name not in dict(order.arguments):
+            raise UnreadableError(f"it has to be given {it.name}; write {it.name}:=VALUE after it")
     context, path = of_launch().LaunchContext(noninteractive=True), os.path.abspath(order.file)
     folder = {"current_launch_file_directory": os.path.dirname(path)}
     context.extend_locals({"current_launch_file_path": path, **folder})
@@ -238,16 +246,3 @@ def _described(order: LaunchOrder) -> Any:
 
 def _what(made: object) -> str:
     return "nothing" if made is None else f"a value of type {type(made).__name__}"
-
-
-def _check_given(description: Any, order: LaunchOrder) -> None:
-    """Raises UnreadableError without an argument that the file itself has to be given."""
-    found = getattr(description, ASKED)()
-    for it, includes in found:
-        free = (
-            order.every
-            or it.default_value is not None
-            or getattr(it, "_conditionally_included", False)
-        )
-        if not free and not includes and it.name not in dict(order.arguments):
-            raise UnreadableError(f"it has to be given {it.name}; write {it.name}:=VALUE after it")

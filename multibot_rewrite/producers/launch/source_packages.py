@@ -75,7 +75,10 @@ def add_empty(name: str, folder: str) -> None:
 def add_file(error: BaseException, folder: str) -> bool:
     """Make the file empty that could not be read of such a package: what is in it is not known. False
     for another error."""
-    lost = _not_found(error)
+    # launch has its own error around what a launch file raises (jazzy invalid_launch_file_error.py).
+    lost: BaseException | None = error
+    while lost is not None and not isinstance(lost, FileNotFoundError):
+        lost = lost.__cause__
     path = str(lost.filename or "") if lost else ""
     share = os.path.join(folder, NOT_INSTALLED, "share", "")
     if not path.startswith(share):
@@ -83,14 +86,6 @@ def add_file(error: BaseException, folder: str) -> bool:
     os.makedirs(os.path.dirname(path), exist_ok=True)
     with open(path, "xb"):
         return True
-
-
-def _not_found(error: BaseException | None) -> FileNotFoundError | None:
-    """The file that was not there; launch has its own error around what a launch file raises
-    (launch jazzy invalid_launch_file_error.py)."""
-    while error is not None and not isinstance(error, FileNotFoundError):
-        error = error.__cause__
-    return error
 
 
 def _search(prefix: str) -> None:

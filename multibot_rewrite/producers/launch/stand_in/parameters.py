@@ -136,23 +136,20 @@ def value_of(context: LaunchContext, value: Any, name: Text) -> Any:
     if hasattr(value, "evaluate"):
         return value.evaluate(context)
     if isinstance(value, list | tuple):
-        return _listed(context, value, name)
+        # Values of one type; those that have none in common are texts.
+        kinds = {type(it) for it in value}
+        if kinds == {int, float}:
+            return [float(it) for it in value]
+        texts = [
+            it if isinstance(it, _PLAIN) else load_yaml(text_of(context, it), A_VALUE)
+            for it in value
+        ]
+        if not _are_alike(texts):
+            raise TypeError(f'{_UNIFORM} Got inconsistent input for "{text_of(context, name)}"')
+        return texts
     if not isinstance(value, _PLAIN):
         raise _no_value(value)
     return value
-
-
-def _listed(context: LaunchContext, values: list[Any] | tuple[Any, ...], name: Text) -> list[Any]:
-    """Values of one type; those that have none in common are texts."""
-    kinds = {type(it) for it in values}
-    if kinds == {int, float}:
-        return [float(it) for it in values]
-    texts = [
-        it if isinstance(it, _PLAIN) else load_yaml(text_of(context, it), A_VALUE) for it in values
-    ]
-    if not _are_alike(texts):
-        raise TypeError(f'{_UNIFORM} Got inconsistent input for "{text_of(context, name)}"')
-    return texts
 
 
 def _are_alike(values: list[Any]) -> bool:
