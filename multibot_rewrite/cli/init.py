@@ -181,8 +181,7 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
             options,
             f"wrote {options.output}: {what}; next: multibot build {options.output} -o out/",
         )
-    started = [who.partition(" ")[0] for _, _, who in made.started]
-    if started:
+    if started := [who.partition(" ")[0] for _, _, who in made.started]:
         listed = shorten(started, _NAMED)
         note(options, f"started by launch files and not by this fleet: {listed}")
     for it in made.members:

@@ -19,7 +19,6 @@ from multibot_rewrite.fleet.proposal.launches import said_of
 from multibot_rewrite.producers.launch.programs import once_for_all
 from multibot_rewrite.producers.launch.records import LaunchedNode
 
-_COLUMNS = ("for", "process", "place", "files", "why")
 _EACH = "each robot"
 
 
@@ -44,7 +43,7 @@ def run(options: argparse.Namespace, path: str) -> int:
         deliver(options, json_bytes({"processes": [it._asdict() for it in rows]}))
     else:
         shown = [(*it[:3], ", ".join(it.files), it.why) for it in rows]
-        deliver_report(options, (Grid(_COLUMNS, shown),))
+        deliver_report(options, (Grid(("for", "process", "place", "files", "why"), shown),))
     return DONE
 
 

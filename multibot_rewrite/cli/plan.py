@@ -101,8 +101,7 @@ def _of_launch(options: argparse.Namespace) -> int:
 def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
     """Write the rules in the form that is asked for."""
     known = {node.robot for node in made.table.runs}
-    nothing = [robot for robot in made.inventories if robot not in known]
-    if nothing:
+    if nothing := [robot for robot in made.inventories if robot not in known]:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         note(options, f"no node of {', '.join(nothing)} is known, so no rule is for it; {hint}")
     if options.form == TABLE:

@@ -93,8 +93,7 @@ def _shape(it: Any, field: str = "") -> object:
 
 def _named(it: Sequence[Any]) -> Iterator[tuple[str, Any]]:
     """Yield the items, each with its field; that of an argument of a program is the flag before it."""
-    fields = getattr(it, "_fields", None)
-    if fields:
+    if fields := getattr(it, "_fields", None):
         yield from zip(fields, it, strict=True)
         return
     before = ""

@@ -91,7 +91,6 @@ _OF_NODES, _OF_NAMES = ("lifecycle", "param", "control", "node"), ("topic", "ser
 # Where the first name stands behind ros2, its verb and what that does; what ends a command of a shell.
 _FIRST, _NEXT = 3, ("&&", "||", ";", "|", "&")
 _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
-_DOMAIN_BRIDGE = ("domain_bridge", "domain_bridge")
 
 
 def of_robot(
@@ -506,7 +505,7 @@ def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[St
     path = bridge_path(robot.spec.namespace)
     if path in files:
         name = bridge_name(robot.spec.namespace)
-        yield Start(*_DOMAIN_BRIDGE, "", name, arguments=(File(path),))
+        yield Start("domain_bridge", "domain_bridge", "", name, arguments=(File(path),))
 
 
 def of_all(

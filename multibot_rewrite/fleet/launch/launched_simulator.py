@@ -21,7 +21,6 @@ _VALUED = (
     *("-v", "-z", "--seed", "--iterations", "--physics-engine", "--render-engine"),
     *("--render-engine-server", "--render-engine-gui", "--network-role"),
 )
-_CLIENT = "gzclient"
 
 
 class Simulator(NamedTuple):
@@ -56,7 +55,7 @@ def with_launched_world(file: FleetFile) -> FleetFile:
 
 
 def _is_client(it: LaunchedNode) -> bool:
-    return not it.package and os.path.basename(it.executable) == _CLIENT
+    return not it.package and os.path.basename(it.executable) == "gzclient"
 
 
 def _simulator(started: Sequence[LaunchedNode], has_client: bool) -> Simulator:

@@ -198,8 +198,7 @@ def _sections(
     out."""
     before: dict[str, str] = {}
     for path, names, *_ in read:
-        again = sorted(names & before.keys())
-        if again:
+        if again := sorted(names & before.keys()):
             left[path] = f"{os.path.basename(before[again[0]])} has parameters of {again[0]}, too"
             continue
         before |= dict.fromkeys(names, path)

@@ -174,8 +174,7 @@ def _launched(it: Bringup) -> Iterator[str]:
     if once:
         yield "Once for all robots; `own_nodes: [NAME]` gives each its own:"
         yield from _some(once)
-    idle = [f"{one.what}: {one.why}" for one in it.graph.idle]
-    if idle:
+    if idle := [f"{one.what}: {one.why}" for one in it.graph.idle]:
         yield "Not started, by its conditions; another value behind its file here starts it:"
         yield from _some(idle)
     if it.others:
@@ -195,8 +194,7 @@ def _needed(it: Looked) -> Iterator[str]:
     arguments = dict(it.arguments)
     if it.switch:
         yield f"{it.switch} is the switch between the simulated and the real robot"
-    found = [name for name in it.needed if name in arguments]
-    if found:
+    if found := [name for name in it.needed if name in arguments]:
         yield f"It needs {', '.join(found)}; init chose a value: is it right?"
 
 

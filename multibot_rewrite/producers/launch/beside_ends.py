@@ -64,8 +64,7 @@ def prefix_of(it: Run) -> str:
     """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
     ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
     prefix = it.value("tf_prefix")
-    switch = it.fact.prefix_switch
-    if switch:
+    if switch := it.fact.prefix_switch:
         own = it.value("tf_frame_prefix") or it.namespace
         prefix = "" if it.value(switch) is False else own
     bare = str(prefix or "").strip("/")

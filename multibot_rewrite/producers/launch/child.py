@@ -41,7 +41,6 @@ from multibot_rewrite.producers.launch.records import (
 from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.system.records import Place
 
-_ENDS = (".yaml", ".yml")
 _HEAD = lazy_compile(rb"^structure:", re.MULTILINE)
 _KEPT_TEXT = ("pkg", "exec", "plugin", "node_name", "container")
 
@@ -125,7 +124,7 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
     """
     refuse_others(read_file(order.file), order.file, LAUNCH)
     # A launch file in YAML has ``launch:`` in place of what a system model begins with.
-    if order.file.endswith(_ENDS) and _HEAD.search(read_file(order.file)) is not None:
+    if order.file.endswith((".yaml", ".yml")) and _HEAD.search(read_file(order.file)) is not None:
         return read_system_model(order.file)
     if os.environ.get(_INSIDE):
         return LaunchGraph()

@@ -392,16 +392,11 @@ def _parameters(own: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
 
 def parameters(given: Any, here: Visit) -> Iterator[ParameterText]:
     """A parameter file, or values, that an action gives its node."""
-    for it in _each(given):
-        yield from _evaluated(it, here)
-
-
-def _each(given: Any) -> Iterator[Any]:
-    """The values one by one: one that cannot be told does not hide the others."""
-    if isinstance(given, dict):
-        yield from ({name: value} for name, value in given.items())
-    else:
-        yield given
+    # Values one by one: one that cannot be told does not hide the others.
+    for it in given.items() if isinstance(given, dict) else ():
+        yield from _evaluated(dict([it]), here)
+    if not isinstance(given, dict):
+        yield from _evaluated(given, here)
 
 
 def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
@@ -477,8 +472,7 @@ def _given(
 ) -> Iterator[ParameterText]:
     for path in files:
         yield from _file(path, here)
-    written = params_text(values)
-    if written:
+    if written := params_text(values):
         yield ParameterText("", written)
 
 

@@ -20,7 +20,6 @@ LINE = "multibot_line"
 _SEPARATOR, _CHILDREN = "-sep", "children"
 # What libxml2 says of it, by its release.
 _TOO_DEEP = (etree.ErrorTypes.ERR_RESOURCE_LIMIT, etree.ErrorTypes.ERR_INTERNAL_ERROR)
-_TEXT = "tag:yaml.org,2002:str"
 
 
 class Entity:
@@ -127,4 +126,4 @@ def _plain(node: yaml.Node) -> Any:
         return [_plain(it) for it in node.value]
     if isinstance(node, yaml.MappingNode):
         return {str(key.value): _plain(it) for key, it in node.value}
-    return node.value if node.tag == _TEXT else load_yaml(node.value, A_VALUE)
+    return node.value if node.tag == "tag:yaml.org,2002:str" else load_yaml(node.value, A_VALUE)

@@ -323,15 +323,12 @@ def _pair(
 def _unknown(it: LaunchedNode, name: str) -> NodeFacts:
     """What a launch file says of a node that nobody knows: what runs it, and its rules."""
     run = {"component": it.executable} if it.container else {"programs": (it.executable,)}
-    return UNKNOWN._replace(name=name, package=it.package, endpoints=_named_by(it), **run)
-
-
-def _named_by(it: LaunchedNode) -> tuple[Endpoint, ...]:
-    """What the rules of a node that nobody knows name: topics, as far as anybody can say."""
+    # Its rules name topics, as far as anybody can say.
     own = (old for old, _ in it.remappings if not check_topic_name(old))
     # It may send or read transforms: under these rules they are its robot's.
     names = dict.fromkeys((*own, *(f"/{topic}" for topic in TF_TOPICS)))
-    return tuple(Endpoint(TOPIC, "", old) for old in names)
+    ends = tuple(Endpoint(TOPIC, "", old) for old in names)
+    return UNKNOWN._replace(name=name, package=it.package, endpoints=ends, **run)
 
 
 def _only_named(it: LaunchedNode, facts: NodeFacts, name: str) -> Iterator[Endpoint]:

@@ -186,16 +186,20 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
         seen.note(it, parameters=True)
     notes = tuple(dict.fromkeys(_with_unset(seen.notes, path)))
     files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
-    found = LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
     own = tuple(changed_environment(seen).items())
-    found = found._replace(notes=(*notes, *_lost_variables(seen, path)))
+    notes = (*notes, *_lost_variables(seen, path))
     # The environment of launch is that of its process, and the file may be read again.
     for name in [it for it in context.environment if it not in before]:
         del context.environment[name]
     context.environment.update(before)
-    idle = tuple(dict.fromkeys(seen.idle))
-    more = found._replace(includes=tuple(seen.includes), environment=own, declared=declared)
-    return more._replace(idle=idle)
+    return LaunchGraph(
+        *(tuple(seen.nodes), notes, files),
+        unread=ignored,
+        includes=tuple(seen.includes),
+        environment=own,
+        declared=declared,
+        idle=tuple(dict.fromkeys(seen.idle)),
+    )
 
 
 def _lost_variables(seen: Visit, path: str) -> tuple[LaunchNote, ...]:
@@ -239,10 +243,7 @@ def _described(order: LaunchOrder) -> Any:
     source = sources.AnyLaunchDescriptionSource(os.path.abspath(order.file))
     made = source.get_launch_description(of_launch().LaunchContext(noninteractive=True))
     if not hasattr(made, ASKED):
-        what = f"its generate_launch_description() returns {_what(made)}"
-        raise UnreadableError(f"{what}; return a LaunchDescription")
+        what = "nothing" if made is None else f"a value of type {type(made).__name__}"
+        text = f"its generate_launch_description() returns {what}; return a LaunchDescription"
+        raise UnreadableError(text)
     return made
-
-
-def _what(made: object) -> str:
-    return "nothing" if made is None else f"a value of type {type(made).__name__}"

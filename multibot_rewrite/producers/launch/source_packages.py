@@ -102,18 +102,11 @@ def _shared(name: str, prefix: str) -> str:
 
 def packages_for(file: str, roots: Iterable[str]) -> dict[str, str]:
     """Return the folders of the packages that a launch file finds as sources, by their names."""
-    return dict(_packages(file, roots))
-
-
-def _packages(file: str, roots: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Name and folder of every package; the first of a name comes last."""
     own, around = package_of(file), sources_around(file)
     below = packages_below((*roots, *([around] if around else ())))
-    for name, folders in below.items():
-        path = os.path.abspath(folders[0])
-        if os.path.isfile(os.path.join(path, MANIFEST)):
-            yield name, path
-    yield from [own] if own else []
+    found = {name: os.path.abspath(folders[0]) for name, folders in below.items()}
+    found = {it: path for it, path in found.items() if os.path.isfile(f"{path}/{MANIFEST}")}
+    return found | dict([own] if own else [])
 
 
 ROOTS = "source its workspace, or give the folder of its sources with --roots (launch_roots:)"

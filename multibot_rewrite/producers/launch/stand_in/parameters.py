@@ -166,19 +166,15 @@ def _is_substituted(value: Any) -> bool:
 def _read(text: str, name: str) -> Any:
     """The text of a substitution as YAML has it."""
     wrapped = "try wrapping it in launch_ros.parameter_descriptions.ParameterValue"
+    hint = f"If the parameter is meant to be a string, {wrapped}(value, value_type=str)"
     try:
         found = load_yaml(text, A_VALUE) if text else ""
     except InputError:
         what = f"Unable to parse the value of parameter {name} as yaml."
-        raise TypeError(
-            f"{what} If the parameter is meant to be a string, {wrapped}(value, value_type=str)"
-        ) from None
+        raise TypeError(f"{what} {hint}") from None
     if isinstance(found, list):
         if not _are_alike(found):
             raise TypeError(f'{_UNIFORM} Got inconsistent input for "{name}"')
     elif not isinstance(found, _PLAIN):
-        what = f'{_KINDS} Got {type(found)} for "{name}".'
-        raise TypeError(
-            f"{what} If the parameter is meant to be a string, {wrapped}(value, value_type=str)"
-        )
+        raise TypeError(f'{_KINDS} Got {type(found)} for "{name}". {hint}')
     return found
