@@ -141,13 +141,7 @@ def plan_of(options: argparse.Namespace) -> System:
 
         return seen_plan(diagnose(read_snapshot(path)))
     if not is_fleet(data):
-        # The plan, which is of the release that ``--distro`` names, if it says so.
-        plan = read_plan(data, path)
-        asked: str = options.distro or ""
-        if asked and plan.release not in ("", asked):
-            hint = f"make one with multibot plan --distro {asked}, or leave out --distro"
-            raise UsageError(f"{options.plan} is for ROS 2 {plan.release}; {hint}")
-        return plan._replace(release=plan.release or asked)
+        return _of_release(options, read_plan(data, path))
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
     from multibot_rewrite.fleet.checks.closed_plan import closed_plan
     from multibot_rewrite.fleet.file.fleet_file import (
@@ -164,6 +158,15 @@ def plan_of(options: argparse.Namespace) -> System:
     note_interfaces(options, made.facts)
     check_unread(options, made)
     return expected(made)
+
+
+def _of_release(options: argparse.Namespace, plan: System) -> System:
+    """The plan, which is of the release that ``--distro`` names, if it says so."""
+    asked: str = options.distro or ""
+    if asked and plan.release not in ("", asked):
+        hint = f"make one with multibot plan --distro {asked}, or leave out --distro"
+        raise UsageError(f"{options.plan} is for ROS 2 {plan.release}; {hint}")
+    return plan._replace(release=plan.release or asked)
 
 
 def conclude(

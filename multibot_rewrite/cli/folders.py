@@ -131,14 +131,7 @@ def _swap(folder: str, write: Mapping[str, bytes], remove: Collection[str], note
         if os.path.isdir(folder):
             _link_all(folder, stage, {*write, *remove, note})
             _prune(stage, remove)
-        # All files, and then all of them onto the disk: it has to finish only once.
-        for path, data in write.items():
-            with explained(os.path.join(folder, path)):
-                os.makedirs(os.path.dirname(os.path.join(stage, path)), exist_ok=True)
-                write_new(os.path.join(stage, path), data, _mode(os.path.join(folder, path)))
-        for path in write:
-            with explained(os.path.join(folder, path)):
-                see_on_disk(os.path.join(stage, path))
+        _write_all(folder, stage, write)
         _exchange(stage, folder)
         _bring_late(stage, folder, {*write, *remove, note})
     finally:
@@ -175,6 +168,17 @@ def _walk(folder: str, below: str = "") -> Iterator[tuple[str, os.DirEntry[str]]
         yield path, entry
         if entry.is_dir(follow_symlinks=False):
             yield from _walk(folder, path)
+
+
+def _write_all(folder: str, stage: str, write: Mapping[str, bytes]) -> None:
+    """All files, and then all of them onto the disk: it has to finish only once."""
+    for path, data in write.items():
+        with explained(os.path.join(folder, path)):
+            os.makedirs(os.path.dirname(os.path.join(stage, path)), exist_ok=True)
+            write_new(os.path.join(stage, path), data, _mode(os.path.join(folder, path)))
+    for path in write:
+        with explained(os.path.join(folder, path)):
+            see_on_disk(os.path.join(stage, path))
 
 
 def _mode(path: str) -> int:

@@ -59,7 +59,10 @@ def run(options: argparse.Namespace) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     asked_number(options)
-    _check_names(options)
+    names = options.robots
+    if names and options.count:
+        raise UsageError("--robots and --count: give one of them")
+    check_robot_names(names)
     _check_output(options)
     wanted = _wanted(options)
     seen = _quietly(wanted, see)
@@ -138,13 +141,6 @@ def _launch(options: argparse.Namespace) -> tuple[LaunchOrder, ...] | None:
     if any(is_below(order.file, it) for it in roots):
         order = order._replace(package="", roots=(), file=os.path.relpath(order.file))
     return (order._replace(trusted=options.trust),)
-
-
-def _check_names(options: argparse.Namespace) -> None:
-    names = options.robots
-    if names and options.count:
-        raise UsageError("--robots and --count: give one of them")
-    check_robot_names(names)
 
 
 def _check_arguments(made: Proposal, wanted: Wanted) -> None:

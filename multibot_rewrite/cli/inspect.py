@@ -54,19 +54,21 @@ from multibot_rewrite.lint.catalogue import rules
 # A word that ends so is a file, there or not.
 _FILES = (".urdf", ".sdf", ".srdf", ".xacro", ".xml")
 
+_FLEETS = (".yaml", ".yml")
+
 
 def run(options: argparse.Namespace) -> int:
     """Look up a code or name, try a xacro's arguments, or draft what is missing; returns the code."""
     if options.suggest is not None:
         return draft(options)
     words = plain_words(options)
-    if len(words) == 1 and words[0].endswith((".yaml", ".yml")) and os.path.isfile(words[0]):
+    if len(words) == 1 and words[0].endswith(_FLEETS) and os.path.isfile(words[0]):
         from multibot_rewrite.cli import launched  # only a fleet needs it
 
         return launched.run(options, words[0])
     if len(words) == 1 and node_source.is_program(words[0]):
         return node_source.run(options, words[0])
-    paths = any(os.path.lexists(word) or word.endswith(_FILES) for word in words)
+    paths = any(map(_is_path, words))
     if not paths and are_codes(words):
         return explain(options, words)
     if len(words) > 1 or xacro_args(options) or paths:
@@ -87,6 +89,10 @@ def run(options: argparse.Namespace) -> int:
             deliver_report(options, arguments_report(found))
         return DONE
     return show(options, next(iter(words), None))
+
+
+def _is_path(word: str) -> bool:
+    return os.path.lexists(word) or word.endswith(_FILES)
 
 
 def show(options: argparse.Namespace, name: str | None) -> int:
@@ -145,7 +151,8 @@ def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
         yield from [""] * (number > 0)
         yield f"{section.name}  {section.file}:{section.line}"
         yield from (f"  {what}: {text}" for what, text in facts(section).items())
-        if rows := [_row(site, section) for site in section.sites]:
+        rows = [_row(site, section) for site in section.sites]
+        if rows:
             yield Grid(("path", "role", "kinds", "form", "default", "note", "from"), rows)
 
 
@@ -281,6 +288,9 @@ def _asked(word: str) -> list[Rule]:
     return found
 
 
+ARGUMENT_COLUMNS = ("argument", "default", "goes into", "as", "count", "example")
+
+
 def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
     """The one word, which is a xacro file; raises UsageError."""
     missing = next((it for it in words if not os.path.lexists(it)), None)
@@ -300,13 +310,15 @@ def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
 
 def arguments_report(found: XacroArguments) -> Iterator[str | Grid]:
     """What is printed of a xacro's arguments."""
-    if rows := [row for it in found.arguments for row in _argument_rows(it)]:
-        yield Grid(("argument", "default", "goes into", "as", "count", "example"), rows)
+    rows = [row for it in found.arguments for row in _argument_rows(it)]
+    if rows:
+        yield Grid(ARGUMENT_COLUMNS, rows)
         yield ""
     without = [it.name for it in found.arguments if not it.uses and not it.fault]
     if without:
         yield f"go into no names: {', '.join(without)}"
-    if refused := [it.name for it in found.arguments if it.fault]:
+    refused = [it.name for it in found.arguments if it.fault]
+    if refused:
         yield f"take no name of a robot: {', '.join(refused)}"
     if found.untried:
         yield f"too many to try: {', '.join(found.untried)}"

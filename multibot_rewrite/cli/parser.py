@@ -182,15 +182,8 @@ def wrapped(text: str, width: int = 80) -> str:
 
 def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
     """What the words say; a mistake ends the process with one line."""
-    # ``--color``, which ``--help`` may come before.
-    asked = [it for name, it in pairwise(words) if name == "--color"]
-    asked += [it.partition("=")[2] for it in words if it.startswith("--color=")]
-    parser.colour = asked[-1] if asked else AUTO
-    # The first option that is not known, without its value.
-    known = parser.known()
-    before_end = takewhile(lambda word: word != "--", words)
-    names = (it.partition("=")[0] for it in before_end if _OPTION.fullmatch(it))
-    if wrong := next((it for it in names if it not in known and not _is_short(it, known)), ""):
+    parser.colour = _colour_asked(words)
+    if wrong := _first_unknown_option(words, parser.known()):
         from multibot_rewrite.cli.hints import option_hint  # a mistake alone needs it
 
         command = parser.prog.rpartition(" ")[2]
@@ -199,7 +192,12 @@ def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
         parser.error(f"unknown option {wrong}{hint}")
     options, unknown = parser.parse_known_intermixed_args(words)
     if unknown:
-        hint = "; a list is written A,B" if _is_behind_list(unknown[0], words, parser) else ""
+        # Is the nearest option before a word one that takes a list?
+        word = unknown[0]
+        before = words[: words.index(word)] if word in words else words
+        name = next((it for it in reversed(before) if it.startswith("-")), "")
+        lists = (it for it in parser._actions if isinstance(it, argparse._ExtendAction))
+        hint = "; a list is written A,B" if any(name in it.option_strings for it in lists) else ""
         what = _kind_of(unknown[0], parser.prog) or f"{' '.join(unknown)}{hint}"
         parser.error(f"unexpected {what}")
     options.program = parser.prog.partition(" ")[0]
@@ -232,14 +230,20 @@ def _kind_of(word: str, program: str) -> str:
     return ""
 
 
-def _is_behind_list(word: str, words: Sequence[str], parser: Parser) -> bool:
-    """Is the nearest option before a word one that takes a list?"""
-    before = words[: words.index(word)] if word in words else words
-    name = next((it for it in reversed(before) if it.startswith("-")), "")
-    lists = (it for it in parser._actions if isinstance(it, argparse._ExtendAction))
-    return any(name in it.option_strings for it in lists)
+def _first_unknown_option(words: Sequence[str], known: Collection[str]) -> str:
+    """Return the first option that is not known, without its value; "" where all are known."""
+    before_end = takewhile(lambda word: word != "--", words)
+    names = (it.partition("=")[0] for it in before_end if _OPTION.fullmatch(it))
+    return next((it for it in names if it not in known and not _is_short(it, known)), "")
 
 
 def _is_short(name: str, known: Collection[str]) -> bool:
     """Is it a known short option with others, or with its value, as ``-qv`` or ``-n3``?"""
     return not name.startswith("--") and name[:2] in known
+
+
+def _colour_asked(words: Sequence[str]) -> str:
+    """``--color``, which ``--help`` may come before."""
+    asked = [it for name, it in pairwise(words) if name == "--color"]
+    asked += [it.partition("=")[2] for it in words if it.startswith("--color=")]
+    return asked[-1] if asked else AUTO

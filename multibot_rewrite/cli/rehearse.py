@@ -58,11 +58,7 @@ def run(options: argparse.Namespace) -> int:
     graph = side_by_side(seen) if plan.domains else seen[ONE]
     if options.save_snapshot:
         write_files(options, [(options.save_snapshot, to_json(graph))])
-    if replaced:
-        what = "type is" if len(replaced) == 1 else "types are"
-        types = shorten(sorted(replaced), SEVERAL)
-        text = f"{len(replaced)} {what} not installed here and replaced by others: {types}"
-        note(options, f"note: {text}; this does not change the names")
+    _note_substitutes(options, replaced)
     found = check_domains(plan, seen) if plan.domains else check(plan, graph)
     return conclude(options, plan, graph, found, table)
 
@@ -112,3 +108,11 @@ def _edges(made: Fleet) -> tuple[Edges, list[str]]:
         if added:
             names.append(f"{added} of {robot}")
     return edges, names
+
+
+def _note_substitutes(options: argparse.Namespace, replaced: dict[str, str]) -> None:
+    if replaced:
+        what = "type is" if len(replaced) == 1 else "types are"
+        types = shorten(sorted(replaced), SEVERAL)
+        text = f"{len(replaced)} {what} not installed here and replaced by others: {types}"
+        note(options, f"note: {text}; this does not change the names")

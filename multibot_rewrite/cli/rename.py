@@ -10,7 +10,7 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver_changed, detail, note, note_unread, proof_words
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
-from multibot_rewrite.refactor.rename import MOST_MENTIONS, rename_symbol
+from multibot_rewrite.refactor.rename import MOST_MENTIONS, Renaming, rename_symbol
 
 
 def run(options: argparse.Namespace) -> int:
@@ -26,14 +26,19 @@ def run(options: argparse.Namespace) -> int:
         distro=options.distro or "",
     )
     deliver_changed(options, made.before, made.after, write=not (options.diff or options.output))
+    _tell(options, made)
+    return DONE
+
+
+def _tell(options: argparse.Namespace, made: Renaming) -> None:
     where = f"{plural(made.places, 'place')} in {plural(len(made.after), 'file')}"
     note(
         options,
         f"{options.kind} {options.old} -> {options.new}: {where}; {proof_words(made.unread)}",
     )
     note_unread(options, made.unread)
-    if left := made.mentions:
+    left = made.mentions
+    if left:
         note(options, f"left as they are: {plural(len(left), 'line')} with {options.old!r}")
         for place in left[:MOST_MENTIONS]:
             detail(options, f"  {place}")
-    return DONE

@@ -38,6 +38,7 @@ from multibot_rewrite.system.records import (
     SUBSCRIBES,
     TOPIC,
     ZENOH,
+    Caveat,
     Environment,
     System,
     answering,
@@ -46,6 +47,7 @@ from multibot_rewrite.system.records import (
     incomplete,
 )
 
+ROSGRAPH = "rosgraph"
 COLUMNS = (
     ("publishes", TOPIC, PUBLISHES),
     ("subscribes", TOPIC, SUBSCRIBES),
@@ -57,14 +59,7 @@ COLUMNS = (
 
 def run(options: argparse.Namespace) -> int:
     """Look, write what is seen and what may be missing; returns the exit code."""
-    live.check_source(options)
-    for name in ("expect", "timeout", "domain"):
-        if (options.snapshot or options.bag) and getattr(options, name) not in (None, []):
-            raise UsageError(f"--{name} is for the live graph, leave out --from")
-    if options.output not in (None, STANDARD):
-        check_folder(options.output)
-        check_target(options.output, options.snapshot)
-    describes = is_asked(options)
+    describes = _check_use(options)
     request = Request(options.timeout or live.LOOK_SECONDS, tuple(options.expect))
     snapshot = live.with_states(options, live.graph(options, request))
     if describes:
@@ -72,14 +67,30 @@ def run(options: argparse.Namespace) -> int:
     if options.output is None and options.form is None:
         deliver_report(options, report(snapshot))
     else:
-        deliver(options, to_yaml(snapshot) if options.form == "rosgraph" else to_json(snapshot))
+        deliver(options, to_yaml(snapshot) if options.form == ROSGRAPH else to_json(snapshot))
         note(options, _headline(snapshot))
     for caveat in snapshot.environment.caveats:
-        if caveat.incomplete:
-            say(f"incomplete: {caveat.message}", PROGRAM)
-        else:
-            note(options, f"note: {caveat.message}")
+        _remark(options, caveat)
     return live.INCONCLUSIVE if incomplete(snapshot) else DONE
+
+
+def _check_use(options: argparse.Namespace) -> bool:
+    """Are nodes to be described? Raises UsageError."""
+    live.check_source(options)
+    for name in ("expect", "timeout", "domain"):
+        if (options.snapshot or options.bag) and getattr(options, name) not in (None, []):
+            raise UsageError(f"--{name} is for the live graph, leave out --from")
+    if options.output not in (None, STANDARD):
+        check_folder(options.output)
+        check_target(options.output, options.snapshot)
+    return is_asked(options)
+
+
+def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
+    if caveat.incomplete:
+        say(f"incomplete: {caveat.message}", PROGRAM)
+    else:
+        note(options, f"note: {caveat.message}")
 
 
 def report(snapshot: System) -> Iterator[str | Grid]:
@@ -101,7 +112,8 @@ def report(snapshot: System) -> Iterator[str | Grid]:
     if framed := [it[:2] for it in snapshot.heard if not (it.joints or it.topic == CLOCK)]:
         yield ""
         yield Grid(("message on", "frame_id"), framed)
-    if said := answering(snapshot):
+    said = answering(snapshot)
+    if said:
         yield ""
         answers = [*_state_rows(snapshot, said)]
         yield Grid(("node", "state", "use_sim_time", "controllers"), answers)
@@ -213,7 +225,8 @@ def _notes(
 ) -> Iterator[str]:
     for node in learned:
         yield from (f"{node.seen}: {remark}" for remark in node.remarks)
-    if lost := helpers_without_owner(graph, [node.seen for node in learned]):
+    lost = helpers_without_owner(graph, [node.seen for node in learned])
+    if lost:
         yield f"whose helpers these are is not seen, they are left out: {', '.join(lost)}"
     tools = left_out(graph, [node.seen for node in learned], namespace or "/")
     if tools and not named:

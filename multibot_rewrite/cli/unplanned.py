@@ -37,12 +37,7 @@ from multibot_rewrite.system.tool_nodes import is_tool
 
 def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
     """Look, report, sum up; returns the exit code. Several ``domains`` are looked at side by side."""
-    live.check_source(options)
-    check_report(options, printed=False)
-    pictures.check(options)
-    if options.output:
-        check_target(options.output, options.snapshot)
-    _check_folders(options, domains)
+    _check_use(options, domains)
     if options.watch:
         return _watch(options, domains)
     if options.bag:
@@ -78,6 +73,15 @@ def _report_on_domains(options: argparse.Namespace, views: Mapping[int, System])
 def _empty(each: Mapping[int, Diagnosis]) -> Iterator[str]:
     for domain, one in each.items():
         yield from (f"domain {domain}: {it}" for it in _nothing_seen(one.graph))
+
+
+def _check_use(options: argparse.Namespace, domains: Sequence[int] = ()) -> None:
+    live.check_source(options)
+    check_report(options, printed=False)
+    pictures.check(options)
+    if options.output:
+        check_target(options.output, options.snapshot)
+    _check_folders(options, domains)
 
 
 def _check_folders(options: argparse.Namespace, domains: Collection[int]) -> None:

@@ -39,7 +39,13 @@ def launched_simulator(file: FleetFile) -> Simulator:
         nodes = launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ()
         started = [it for it in nodes if it.executable == SIMULATOR and it.package in SIMULATORS]
         if started:
-            return _simulator(started, any(_is_client(it) for it in nodes))
+            words = [word for own in started for word in own.arguments]
+            worlds = [one for own in started for one in world_files(own)]
+            world = worlds[0] if worlds else ""
+            if started[0].package == CLASSIC:
+                return Simulator(world, (), any(_is_client(it) for it in nodes), True)
+            headless = _SERVER in words and _WINDOW not in words
+            return Simulator(world, tuple(dict.fromkeys(_options(words))), headless)
     return Simulator()
 
 
@@ -56,16 +62,6 @@ def with_launched_world(file: FleetFile) -> FleetFile:
 
 def _is_client(it: LaunchedNode) -> bool:
     return not it.package and os.path.basename(it.executable) == "gzclient"
-
-
-def _simulator(started: Sequence[LaunchedNode], has_client: bool) -> Simulator:
-    words = [word for it in started for word in it.arguments]
-    worlds = [one for it in started for one in world_files(it)]
-    world = worlds[0] if worlds else ""
-    if started[0].package == CLASSIC:
-        return Simulator(world, (), has_client, True)
-    headless = _SERVER in words and _WINDOW not in words
-    return Simulator(world, tuple(dict.fromkeys(_options(words))), headless)
 
 
 def _options(words: Sequence[str]) -> Iterator[str]:

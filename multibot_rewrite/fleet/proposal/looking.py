@@ -45,6 +45,7 @@ _NEEDED = lazy_compile(r"give it as (\w+):=VALUE$")
 MOST_ARGUMENTS = 20
 # An argument of a xacro that is empty where nobody gives it.
 _EMPTY = lazy_compile(r"""<xacro:arg\b(?=[^<>]*\bdefault=(?:""|''))[^<>]*\bname=["'](\w+)""")
+_MANAGER = "controller_manager"
 # A robot to expand a xacro for.
 ANY = "robot1"
 # A link of this name is where sdformat and MoveIt hold a robot.
@@ -108,19 +109,7 @@ def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
     try:
         xacro = path.endswith(".xacro")
         text = expand(path, filled(given, ANY), None, reach) if xacro else read_model(path)
-        root = read_document(text, path).root
-        model = root if root.tag != "sdf" else next(root.iter("model"), root)
-        return Looked(
-            path,
-            model.get("name", ""),
-            str(root.tag),
-            sum(1 for it in root.iter("link") if it.get("name")),
-            _simulator(root),
-            _is_controlled(root),
-            tuple(given.items()) if xacro else (),
-            own_tf=any(_moves_tf(it) for it in root.iter("remapping", "argument")),
-            root=root,
-        )
+        return _looked(path, text, tuple(given.items()) if xacro else ())
     except InputError as error:
         return Looked(path, fault=str(error))
 
@@ -221,7 +210,7 @@ def _switched(it: Looked, suits: Suits, reach: Reach) -> Looked:
 def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:
     """The same with the argument that names the file of controllers, where the plugin that makes the
     manager got none: launch files give it. The file is named from the description's folder."""
-    file = next((one for one in files if "controller_manager" in text_of(one)), "")
+    file = next((one for one in files if _MANAGER in text_of(one)), "")
     if not (it.control and file and it.path.endswith(".xacro") and _loads_nothing(it.root)):
         return it
     path = os.path.relpath(file, os.path.dirname(it.path))
@@ -251,6 +240,22 @@ def with_model(it: Looked, sdf: Looked) -> Looked:
 
 def _suits_simulator(root: etree._Element) -> bool:
     return _simulator(root) != NO_SIMULATOR and suits_simulator(root)
+
+
+def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> Looked:
+    root = read_document(text, path).root
+    model = root if root.tag != "sdf" else next(root.iter("model"), root)
+    return Looked(
+        path,
+        model.get("name", ""),
+        str(root.tag),
+        sum(1 for it in root.iter("link") if it.get("name")),
+        _simulator(root),
+        _is_controlled(root),
+        arguments,
+        own_tf=any(_moves_tf(it) for it in root.iter("remapping", "argument")),
+        root=root,
+    )
 
 
 def _moves_tf(rule: etree._Element) -> bool:
