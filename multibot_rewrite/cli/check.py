@@ -49,13 +49,7 @@ def run(options: argparse.Namespace) -> int:
         from multibot_rewrite.cli import unplanned  # a check with a plan needs none of it
 
         return unplanned.run(options, several)
-    live.check_source(options)
-    if options.suggest:
-        raise UsageError("--suggest begins a plan: leave out PLAN")
-    check_report(options, printed=False)
-    pictures.check(options)
-    if options.output:
-        check_target(options.output, [options.plan, *options.snapshot])
+    _check_use(options)
     plan, before = plan_of(options), _before(options)
     parts = _looked_at(options, plan, several)
     if options.watch:
@@ -127,6 +121,16 @@ def _parameters(plan: System) -> dict[str, list[str]]:
     for it in plan.parameters:
         found[it.node].append(it.name)
     return found
+
+
+def _check_use(options: argparse.Namespace) -> None:
+    live.check_source(options)
+    if options.suggest:
+        raise UsageError("--suggest begins a plan: leave out PLAN")
+    check_report(options, printed=False)
+    pictures.check(options)
+    if options.output:
+        check_target(options.output, [options.plan, *options.snapshot])
 
 
 def plan_of(options: argparse.Namespace) -> System:

@@ -72,22 +72,7 @@ def run(options: argparse.Namespace) -> int:
     if not paths and are_codes(words):
         return explain(options, words)
     if len(words) > 1 or xacro_args(options) or paths:
-        # Try the arguments of a xacro file and arguments_report; returns the exit code.
-        path = _only_xacro(options, words)
-        if options.output:
-            check_target(options.output, [path, *options.vocabulary])
-        tree = builtin_tree(
-            (*configured_vocabulary(path), *options.vocabulary), release_here(options.distro)
-        )
-        reach = Reach(trust=options.trust)
-        found = find_arguments(path, filled(xacro_args(options)), tree, reach=reach)
-        if options.output:
-            check_target(options.output, found.read)
-        if options.form == JSON:
-            deliver(options, json_bytes({"xacro": arguments_json(found)}))
-        else:
-            deliver_report(options, arguments_report(found))
-        return DONE
+        return try_arguments(options, words)
     return show(options, next(iter(words), None))
 
 
@@ -289,6 +274,25 @@ def _asked(word: str) -> list[Rule]:
 
 
 ARGUMENT_COLUMNS = ("argument", "default", "goes into", "as", "count", "example")
+
+
+def try_arguments(options: argparse.Namespace, words: Sequence[str]) -> int:
+    """Try the arguments of a xacro file and arguments_report; returns the exit code."""
+    path = _only_xacro(options, words)
+    if options.output:
+        check_target(options.output, [path, *options.vocabulary])
+    tree = builtin_tree(
+        (*configured_vocabulary(path), *options.vocabulary), release_here(options.distro)
+    )
+    reach = Reach(trust=options.trust)
+    found = find_arguments(path, filled(xacro_args(options)), tree, reach=reach)
+    if options.output:
+        check_target(options.output, found.read)
+    if options.form == JSON:
+        deliver(options, json_bytes({"xacro": arguments_json(found)}))
+    else:
+        deliver_report(options, arguments_report(found))
+    return DONE
 
 
 def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
