@@ -60,6 +60,8 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 yield _missed_topic(seen, end, near, ERROR)
             elif other := sent_instead(seen, end):
                 by_kind.setdefault(other.name, []).append(end)
+            elif mine := _of_robots(seen, end):
+                yield _reads_no_robots(seen, end, mine)
             elif absent := nobody_in(seen, ends.name, published):
                 yield topic_names_miss.finding(
                     f"subscribes to {ends.name}, which no node publishes; {absent}",
@@ -73,6 +75,28 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 lone and words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK
             )
             yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
+
+
+def _of_robots(seen: Index, end: End) -> Sequence[str]:
+    """What robots send under the name that a node outside of them reads, whoever else reads it: data of
+    sensors, odometry, a map."""
+    kind = words.kind_of_data(end.name, end.type)
+    outside = not (seen.robot(end.node) or seen.robot(end.name) or seen.is_tool(end.node))
+    if not (outside and kind) or is_from_outside(end.name) or words.moves(end.name, end.type):
+        return ()
+    names = (it for robot in seen.robots for it in _by_plain(seen).get((robot, end.name), ()))
+    return [it for it in names if seen.by_name[TOPIC, it].type == end.type]
+
+
+def _reads_no_robots(seen: Index, end: End, names: Sequence[str]) -> Finding:
+    sender = nodes_of(seen.by_name[TOPIC, names[0]].publishers)[0]
+    several = f" (or that of another of the {len(names)} robots)" if len(names) > 1 else ""
+    return topic_names_miss.finding(
+        f"subscribes to {end.name}, which no node publishes; {sender} publishes {names[0]}{several}",
+        f"start it in its robot's namespace, or pass the rule {end.name}:={names[0]}{several}",
+        node=end.node, names=(end.name, names[0]), **where([end]),
+        remaps=() if several else (Remap(end.node, end.name, names[0]),),
+    )  # fmt: skip
 
 
 def _runs(end: End) -> bool:
@@ -368,7 +392,7 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
     if seen.robot(name):
         return ""
     for at in (at for at in range(2, len(name)) if name[at] == "/"):
-        alike_, space = _of_robots(seen).get(name[at:], ()), name[:at]
+        alike_, space = _named_by_robots(seen).get(name[at:], ()), name[:at]
         other = next((it for it in reversed(alike_) if it in known), "")
         if other and space not in spaces(seen):
             return f"no node is in {space}, and {seen.robot(other)} has {other}"
@@ -376,7 +400,7 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
 
 
 @once
-def _of_robots(seen: Index) -> Mapping[str, Sequence[str]]:
+def _named_by_robots(seen: Index) -> Mapping[str, Sequence[str]]:
     """The names of robots, by their name without a robot's."""
     found: dict[str, list[str]] = defaultdict(list)
     for _, name in seen.by_name:
