@@ -341,9 +341,10 @@ def _waits(seen: Index, end: End) -> bool:
     # Beside other robots it may be one that is not started yet, if it is not its own.
     own = seen.robot(end.node)
     others = len(seen.robots) > 1 and not (own and own == seen.robot(end.name))
-    # What all robots call in vain is so by their make.
-    same = (seen.of_robot(it, end.kind, seen.plain(end.name)) for it in seen.robots if it != own)
+    # What all robots call in vain is so by their make; goals that another robot takes are MG322.
+    same = [seen.of_robot(it, end.kind, seen.plain(end.name)) for it in seen.robots if it != own]
     others = others or any(it and it.clients and not it.servers for it in same)
+    others = others or any(it and it.servers and end.kind == ACTION for it in same)
     return not (doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
 
 
