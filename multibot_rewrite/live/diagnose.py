@@ -12,12 +12,23 @@ from multibot_rewrite.base.naming import LAYOUTS, Layout
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.rules.check import ABSENCE, in_domain, inconclusive_where_in_doubt, judge
+from multibot_rewrite.rules.folded import in_order
+from multibot_rewrite.rules.system.commands import command_for_several_robots
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS
 from multibot_rewrite.rules.system.likes import less_than_another_robot
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import named, side_by_side, space_of, unnamed
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
-from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, ends_of, index
+from multibot_rewrite.system.index import (
+    NO_COUNTS,
+    TF,
+    Index,
+    Known,
+    at_work,
+    ends_of,
+    index,
+    nodes_of,
+)
 from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, Robot, System, surely
 from multibot_rewrite.system.tf_copies import tree_topic
 
@@ -82,7 +93,31 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
         ),
         *(_sent_elsewhere(it, together, each) for it in compared),
     ]
-    return together._replace(findings=tuple(sorted(every, key=lambda it: it.code)))
+    carried = [*_carried_across(each)]
+    said = {(it.node, it.names) for it in carried}
+    every = [*(it for it in every if (it.node, it.names) not in said), *carried]
+    return together._replace(findings=tuple(in_order(together.whose, every)))
+
+
+def _carried_across(each: Mapping[int, Diagnosis]) -> Iterator[Finding]:
+    """Orders that a robot's own nodes send and its driver obeys, and that a node which runs in two
+    domains sends on in the other one, where a driver obeys them as well: one sender drives two."""
+    pairs = ((at, other) for at in each for other in each if at != other)
+    for at, other in pairs:
+        for name, ends in each[at].whose.orders.items():
+            there = each[other].whose.orders.get(name)
+            readers = nodes_of(at_work(ends.subscribers))
+            senders = set(nodes_of(at_work(ends.publishers))).difference(readers)
+            obeyed = nodes_of(at_work(there.subscribers)) if there else ()
+            carriers = set(readers).intersection(nodes_of(there.publishers) if there else ())
+            drivers = [it for it in readers if it not in carriers]
+            for node in sorted(carriers) if drivers and senders and obeyed else ():
+                yield command_for_several_robots.finding(
+                    f"{node} carries {name} of {min(senders)} from domain {at} to domain {other}:"
+                    f" {drivers[0]} obeys it here, {obeyed[0]} there",
+                    f"leave {name} out of the topics of {node}, or give it another name there",
+                    node=node, names=(name,),
+                )  # fmt: skip
 
 
 def _sent_elsewhere(

@@ -47,6 +47,12 @@ def _sends_tf(seen: Index, cause: Finding, it: Finding) -> bool:
     return tf and cause.robot == it.robot
 
 
+def _lacks_tf(seen: Index, cause: Finding, it: Finding) -> bool:
+    """Is it tf that the node of the first lacks, by the plan?"""
+    planned = ends_of(seen.expected, cause.names[0]) if seen.expected and cause.names else ()
+    return any(end.type == TF for end in planned) and cause.robot == it.robot
+
+
 def _described(seen: Index, cause: Finding, it: Finding) -> bool:
     """Is it of the robot whose description it is, or of which it has the frames?"""
     links = (
@@ -66,6 +72,8 @@ _EXPLAINS: Sequence[tuple[str, tuple[str, ...], _Explains]] = (
     ("MG502", ("MG504", "MG417"), lambda *_: True),
     ("MG101", ("MG301",), _same_node),
     ("MG101", ("MG406", "MG415", "MG413", "MG208"), _sends_tf),
+    ("MG102", ("MG406", "MG415", "MG412", "MG413", "MG208"), _lacks_tf),
+    ("MG208", ("MG412", "MG413"), _names),
     ("MG301", ("MG304",), _served),
     ("MG301", ("MG402", "MG408", "MG401", "MG405", "MG325"), _two_robots),
     ("MG314", ("MG312", "MG329"), _names),
@@ -119,9 +127,10 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
     """A cause is as bad as what comes of it."""
     if not explained:
         return it
-    codes = shorten(unique(one.code for one in explained))
+    codes = unique(one.code for one in explained)
+    told = f"{shorten(codes)} {'comes' if len(codes) == 1 else 'come'} of it"
     level = min((it.level, *(one.level for one in explained)), key=_BAD.index)
-    return it._replace(hint=f"{it.hint}; {codes} comes of it" if it.hint else it.hint, level=level)
+    return it._replace(hint=f"{it.hint}; {told}" if it.hint else told, level=level)
 
 
 def _alike(found: Iterable[Finding]) -> Iterator[Finding]:

@@ -238,8 +238,8 @@ class Index(NamedTuple):
 
     @property
     def is_live(self) -> bool:
-        """Was it seen running? What launch files start may be a part of it."""
-        return bool(self.system.environment.rmw)
+        """Was it seen running? Next to what launch files start there may be more."""
+        return not any(it.place.file for it in self.system.nodes)
 
     def is_tool(self, node: str) -> bool:
         """Is the node none of the robots', but one that comes and goes beside any?"""

@@ -124,7 +124,7 @@ def test_a_robots_own_server_is_not_started() -> None:
         added("/robot2/camera", (SERVES, "/robot2/look_around", NAVIGATE)),
     )(nav2_with_tools())
     (it,) = diagnose(graph).findings
-    assert (it.code, it.level, it.node) == ("MG304", "warning", "/robot1/patrol")
+    assert (it.code, it.level, it.node) == ("MG322", "error", "")
 
 
 @pytest.mark.more

@@ -157,8 +157,7 @@ def test_transforms_that_are_stamped_with_another_time() -> None:
     assert not aged(-2.0, 2.0)
     (ahead,) = aged(0.0, -10.0)
     assert ahead.robot == "robot2" and "10 s in the future" in ahead.message
-    (zero,) = aged(math.inf)
-    assert (zero.level, zero.names) == ("warning", ("robot1/base_link",))
+    assert not aged(math.inf)
     (machine,) = aged(2.0, clock=True)
     assert "not of /clock" in machine.message
     assert not aged(30.0, senders=("/rosbag2_player",))

@@ -140,6 +140,21 @@ def test_a_missing_node_explains_the_tree_that_it_joins() -> None:
     assert codes(check(plan, graph))[0] == "MG101"
 
 
+def test_tf_that_a_node_lacks_explains_the_frames_that_are_missed() -> None:
+    plan, graph = read_example(
+        "planned: frames of robot1 on /robot1/tf: base_link, laser\n"
+        f"planned: /robot1/rsp publishes /robot1/tf_static {TF}\n"
+        f"as planned: /robot1/amcl publishes /robot1/tf {TF}\n"
+        f"as planned: /robot1/lidar publishes /robot1/scan {SCAN}\n"
+        f"as planned: /robot1/amcl subscribes /robot1/scan {SCAN}\n"
+        "running: /robot1/rsp\n"
+        "running: frame_id laser on /robot1/scan\n"
+        "running: transform odom -> base_link on /robot1/tf by /robot1/amcl"
+    )
+    (it,) = check(plan, graph)
+    assert (it.code, it.node) == ("MG102", "/robot1/rsp") and "of it" in it.hint
+
+
 def test_all_tf_rules_forgotten_is_not_more_with_a_plan() -> None:
     healthy = nav2_with_tools()
 

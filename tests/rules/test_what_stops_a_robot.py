@@ -51,6 +51,19 @@ def test_a_driver_that_nobody_waits_for_may_be_left_out() -> None:
     assert codes(*DRIVER, *(it for it in USERS if it.startswith("/robot2"))) == []
 
 
+def test_goals_for_a_robot_whose_server_is_gone() -> None:
+    go = "nav2_msgs/action/NavigateToPose"
+    calls = [f"/fleet_manager calls /robot{it}/go {go}" for it in "12"]
+    here = ["/robot1/driver", "/robot2/driver"]
+    (it,) = found(*calls, *here, f"/robot2/bt_navigator serves /robot2/go {go}")
+    assert (it.code, it.level, it.robot, it.names) == ("MG322", "error", "robot1", ("/robot1/go",))
+    assert "robot1 has no bt_navigator" in it.message and "/fleet_manager in vain" in it.message
+    # An RViz panel has goals for nobody, and where no robot serves it none is odd.
+    panel = [it.replace("fleet_manager", "rviz2") for it in calls]
+    assert codes(*panel, *here, f"/robot2/bt_navigator serves /robot2/go {go}") == []
+    assert codes(*calls, *here) == []
+
+
 def test_a_driver_under_another_name_is_why_it_is_missed() -> None:
     moved = [it.replace("/robot2/", "/").replace("/base ", "/robot1/base ") for it in DRIVER[1:2]]
     told = codes(*DRIVER, *USERS, *moved)

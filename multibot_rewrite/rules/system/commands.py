@@ -294,9 +294,16 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
             cause = f"send it to a topic that {guards[0]} reads"
         robot = seen.robot(ends.name) or seen.robot(readers[0])
         yield several_command_senders.finding(
-            message, cause, level=ERROR if past else WARNING,
+            message, cause, level=ERROR if past or _is_unplanned(seen, tool, ends.name) else WARNING,
             robot=robot, node=tool, names=(ends.name,),
         )  # fmt: skip
+
+
+def _is_unplanned(seen: Index, node: str, name: str) -> bool:
+    """Has the plan other senders of a command than this one?"""
+    planned = seen.expected.by_name.get((TOPIC, name)) if seen.expected else None
+    senders = nodes_of(planned.publishers) if planned else ()
+    return bool(senders) and node not in senders
 
 
 @system_rule("MG313", "bag-beside-a-robot", ERROR)

@@ -17,6 +17,7 @@ from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, ends_of, nodes_of, once
 from multibot_rewrite.system.records import (
+    ACTION,
     CALLS,
     PUBLISHES,
     RUNS,
@@ -295,17 +296,19 @@ def _silent(seen: Index) -> Iterator[Finding]:
 @system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="missing")
 def driver_missing(seen: Index) -> Iterator[Finding]:
     """By its readers, and by another robot that has it, however much the two differ: all that one node
-    of the other robot does is one finding. A launch file may leave it to another one."""
+    of the other robot does is one finding."""
     lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
-    for ends in seen.topics if seen.is_live and len(seen.robots) > 1 else ():
+    actions = [it for it in seen.by_name.values() if it.kind == ACTION]
+    for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
         robot = seen.robot(ends.name)
         role = _missed_side(seen, ends) if robot else ""
         if role and (node := _who_does(seen, ends, role)):
             lost[robot, node].append(ends)
     for (robot, node), missed in lost.items():
         names, plain = tuple(it.name for it in missed), seen.plain(node)
-        ends_ = (end for it in missed for end in at_work((*it.subscribers, *it.publishers)))
-        vain = f"{shorten(nodes_of(ends_), SEVERAL)} in vain"
+        using = ((*it.subscribers, *it.publishers, *it.clients) for it in missed)
+        users = nodes_of(end for own in using for end in at_work(own))
+        vain = f"{shorten(users, SEVERAL)} in vain"
         there = nodes_of_each(seen)[robot].get(plain, "")
         what = (
             f"{robot} has no {plain.strip('/')}, as {seen.robot(node)} has ({node});"
@@ -315,24 +318,32 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
         if there:
             what = f"lacks {shorten(names, SEVERAL)}, which {node} has; it is used by {vain}"
             hint = "see its log; a remap rule, a parameter or a version of its own?"
-        yield driver_missing.finding(what, hint, robot=robot, node=there, names=names)
+        level = ERROR if seen.is_live else WARNING
+        yield driver_missing.finding(what, hint, level=level, robot=robot, node=there, names=names)
 
 
 def _who_does(seen: Index, ends: Ends, role: str) -> str:
     """The node of another robot that does this with its own topic of that name; empty for none."""
     robot, plain = seen.robot(ends.name), seen.plain(ends.name)
     for other in (it for it in seen.robots if it != robot):
-        there = seen.of_robot(other, TOPIC, plain)
+        there = seen.of_robot(other, ends.kind, plain)
         if there and there.type == ends.type:
-            own = at_work(there.publishers if role == PUBLISHES else there.subscribers)
+            sides = {
+                PUBLISHES: there.publishers,
+                SUBSCRIBES: there.subscribers,
+                SERVES: there.servers,
+            }
+            own = at_work(sides[role])
             if node := next((it.node for it in own if seen.robot(it.node) == other), ""):
                 return node
     return ""
 
 
 def _missed_side(seen: Index, ends: Ends) -> str:
-    """What nobody does with a topic of a robot, and a node of this robot waits for: sends what its body
-    measures, or obeys its velocities; else empty."""
+    """What nobody does with a name of a robot, and a node of this robot waits for: sends what its body
+    measures, or obeys its velocities; or serves an action, whoever has goals for it; else empty."""
+    if ends.kind == ACTION:
+        return SERVES if at_work(ends.clients) and not ends.servers else ""
     kind, own = words.kind_of_data(ends.name, ends.type), seen.robot(ends.name)
     if not kind:
         return ""

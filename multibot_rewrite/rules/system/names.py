@@ -60,21 +60,43 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 yield _missed_topic(seen, end, near, ERROR)
             elif other := sent_instead(seen, end):
                 by_kind.setdefault(other.name, []).append(end)
+            elif mine := _of_robots(seen, end):
+                yield _reads_no_robots(seen, end, mine)
             elif absent := nobody_in(seen, ends.name, published):
                 yield topic_names_miss.finding(
                     f"subscribes to {ends.name}, which no node publishes; {absent}",
                     ABSENT, level=WARNING, node=end.node, names=(ends.name,), **where([end]),
                 )  # fmt: skip
         for other_name, (first, *more) in by_kind.items():
-            # A lone sender and a lone reader of what a sensor measures are made for each other. Next to
-            # what a launch file starts there may be a third.
+            # A lone sender and a lone reader of what a sensor measures are made for each other, but for
+            # what another launch file may start.
             other = published[other_name]
             lone = other.type == first.type and not at_work(other.subscribers)
-            sure = seen.is_live and (
-                words.is_of_a_body(first.type)
-                or (lone and words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK)
-            )
+            sensor = words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK
+            sure = seen.is_live and (words.is_of_a_body(first.type) or (lone and sensor))
             yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
+
+
+def _of_robots(seen: Index, end: End) -> Sequence[str]:
+    """What robots send under the name that a node outside of them reads, whoever else reads it: data of
+    sensors, odometry, a map."""
+    kind = words.kind_of_data(end.name, end.type)
+    outside = not (seen.robot(end.node) or seen.robot(end.name) or seen.is_tool(end.node))
+    if not (outside and kind) or is_from_outside(end.name) or words.moves(end.name, end.type):
+        return ()
+    names = (it for robot in seen.robots for it in _by_plain(seen).get((robot, end.name), ()))
+    return [it for it in names if seen.by_name[TOPIC, it].type == end.type]
+
+
+def _reads_no_robots(seen: Index, end: End, names: Sequence[str]) -> Finding:
+    sender = nodes_of(seen.by_name[TOPIC, names[0]].publishers)[0]
+    several = f" (or that of another of the {len(names)} robots)" if len(names) > 1 else ""
+    return topic_names_miss.finding(
+        f"subscribes to {end.name}, which no node publishes; {sender} publishes {names[0]}{several}",
+        f"start it in its robot's namespace, or pass the rule {end.name}:={names[0]}{several}",
+        node=end.node, names=(end.name, names[0]), **where([end]),
+        remaps=() if several else (Remap(end.node, end.name, names[0]),),
+    )  # fmt: skip
 
 
 def _runs(end: End) -> bool:
@@ -319,9 +341,10 @@ def _waits(seen: Index, end: End) -> bool:
     # Beside other robots it may be one that is not started yet, if it is not its own.
     own = seen.robot(end.node)
     others = len(seen.robots) > 1 and not (own and own == seen.robot(end.name))
-    # What all robots call in vain is so by their make.
-    same = (seen.of_robot(it, end.kind, seen.plain(end.name)) for it in seen.robots if it != own)
+    # What all robots call in vain is so by their make; goals that another robot takes are MG322.
+    same = [seen.of_robot(it, end.kind, seen.plain(end.name)) for it in seen.robots if it != own]
     others = others or any(it and it.clients and not it.servers for it in same)
+    others = others or any(it and it.servers and end.kind == ACTION for it in same)
     return not (doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
 
 
@@ -370,7 +393,7 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
     if seen.robot(name):
         return ""
     for at in (at for at in range(2, len(name)) if name[at] == "/"):
-        alike_, space = _of_robots(seen).get(name[at:], ()), name[:at]
+        alike_, space = _named_by_robots(seen).get(name[at:], ()), name[:at]
         other = next((it for it in reversed(alike_) if it in known), "")
         if other and space not in spaces(seen):
             return f"no node is in {space}, and {seen.robot(other)} has {other}"
@@ -378,7 +401,7 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
 
 
 @once
-def _of_robots(seen: Index) -> Mapping[str, Sequence[str]]:
+def _named_by_robots(seen: Index) -> Mapping[str, Sequence[str]]:
     """The names of robots, by their name without a robot's."""
     found: dict[str, list[str]] = defaultdict(list)
     for _, name in seen.by_name:
