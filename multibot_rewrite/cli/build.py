@@ -16,13 +16,7 @@ from multibot_rewrite.cli.fleet import note_interfaces
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
-from multibot_rewrite.cli.report import (
-    About,
-    check_report,
-    chosen,
-    report_beside,
-    with_coverage,
-)
+from multibot_rewrite.cli.report import About, check_report, chosen, report_beside, with_coverage
 from multibot_rewrite.cli.usage import asked_number
 from multibot_rewrite.cli.walk import check_link, is_same_file
 from multibot_rewrite.description.checks.verdict import not_proved
@@ -30,10 +24,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import (
-    input_files,
-    read_fleet,
-)
+from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH

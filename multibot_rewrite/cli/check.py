@@ -17,22 +17,11 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import PROGRAM, STOPPED
-from multibot_rewrite.cli.report import (
-    About,
-    check_report,
-    chosen,
-    report_first,
-)
+from multibot_rewrite.cli.report import About, check_report, chosen, report_first
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.live.watching import (
-    Outcome,
-    Verdict,
-    final,
-    final_words,
-    verdict_words,
-)
+from multibot_rewrite.live.watching import Outcome, Verdict, final, final_words, verdict_words
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 from multibot_rewrite.rules.check import check, check_domains
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
@@ -148,10 +137,7 @@ def plan_of(options: argparse.Namespace) -> System:
         return _of_release(options, read_plan(data, path))
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
     from multibot_rewrite.fleet.checks.closed_plan import closed_plan
-    from multibot_rewrite.fleet.file.fleet_file import (
-        input_files,
-        read_fleet,
-    )
+    from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
     from multibot_rewrite.fleet.fleet import expected
     from multibot_rewrite.fleet.fleet_plan import plan_fleet
 

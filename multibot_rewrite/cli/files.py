@@ -152,16 +152,13 @@ def explained(path: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise UsageError(f"{path}: cannot be written: {_reason(error, path)}") from None
-
-
-def _reason(error: OSError, path: str) -> str:
-    above = existing_folder(path)
-    if not os.path.isdir(above):
-        return f"{above} is a file, not a folder; choose another output"
-    if os.path.isdir(path):
-        return "it is a folder, name a file in it"
-    return f"{error.strerror or error}, choose another output"
+        above = existing_folder(path)
+        reason = f"{error.strerror or error}, choose another output"
+        if not os.path.isdir(above):
+            reason = f"{above} is a file, not a folder; choose another output"
+        elif os.path.isdir(path):
+            reason = "it is a folder, name a file in it"
+        raise UsageError(f"{path}: cannot be written: {reason}") from None
 
 
 def existing_folder(path: str) -> str:

@@ -51,13 +51,9 @@ _T = TypeVar("_T")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
+@kept_expansions()
 def run(options: argparse.Namespace) -> int:
     """Look, ask, try, write; returns the exit code."""
-    with kept_expansions():
-        return _run(options)
-
-
-def _run(options: argparse.Namespace) -> int:
     asked_number(options)
     names = options.robots
     if names and options.count:
@@ -92,7 +88,10 @@ def _run(options: argparse.Namespace) -> int:
     for path, fault in [*seen.broken.items()][:MOST_BROKEN]:
         say(f"{path} was not used: {fault}", PROGRAM)
     if others:
-        note(options, _one_of_several(whole))
+        # Which description was taken, and how another one is.
+        taken = whole.members[0].looked.path
+        which = f"{taken} is one of {len(others) + 1} descriptions"
+        note(options, f"{which}; for another: multibot init {shlex.quote(others[0])}")
     return done
 
 
@@ -189,13 +188,6 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
     return STOPPED if made.notes else DONE
 
 
-def _one_of_several(made: Proposal) -> str:
-    """Which description was taken, and how another one is."""
-    (taken,) = made.members
-    many, other = len(made.others) + 1, shlex.quote(made.others[0])
-    return f"{taken.looked.path} is one of {many} descriptions; for another: multibot init {other}"
-
-
 def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
     """The fleet that the user describes; what ``wanted`` says is not asked."""
     robots = seen.robots if seen.named else _chosen([seen.robots[0], *seen.rivals])
@@ -226,12 +218,10 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
 
 def _chosen(found: Sequence[Looked]) -> Sequence[Looked]:
     """The one that the user takes of several."""
+    if len(found) == 1:
+        return found
     shown = [f"{it.path} ({plural(it.links, 'link')})" for it in found]
-    return (
-        found
-        if len(found) == 1
-        else [found[_of_these(shown, "Description", "1", or_none=False) or 0]]
-    )
+    return [found[_of_these(shown, "Description", "1", or_none=False) or 0]]
 
 
 def _with_files_asked_for(
@@ -276,7 +266,7 @@ def _with_names(wanted: Wanted) -> Wanted:
     text = _valid("Robots: how many, or their names", given, _is_robots)
     if text.strip().isdigit():
         return wanted._replace(each=int(text))
-    names = tuple(text.replace(",", " ").split())
+    names = tuple(_words(text))
     return wanted._replace(each=len(names), names=names)
 
 

@@ -13,12 +13,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.formats.plain import counts, in_words
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError, VocabularyError
-from multibot_rewrite.base.releases import (
-    facts_of_release,
-    release_doubt,
-    release_told,
-    why_here,
-)
+from multibot_rewrite.base.releases import facts_of_release, release_doubt, release_told, why_here
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import (
     detail,

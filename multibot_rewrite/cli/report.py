@@ -12,12 +12,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, Rule
 from multibot_rewrite.base.findings.formats import NO_COVERAGE, Report, rendered
-from multibot_rewrite.base.findings.selection import (
-    Selection,
-    fails,
-    grouped,
-    selected,
-)
+from multibot_rewrite.base.findings.selection import Selection, fails, grouped, selected
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour

@@ -12,11 +12,7 @@ from typing import Any
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.findings.finding import RewriteRefused
 from multibot_rewrite.base.naming import FRAME_KINDS, SEPARATORS, TOPIC_KINDS
-from multibot_rewrite.base.releases import (
-    facts_of_release,
-    release_doubt,
-    why_here,
-)
+from multibot_rewrite.base.releases import facts_of_release, release_doubt, why_here
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import output
 from multibot_rewrite.cli.output import STANDARD, serves_a_program

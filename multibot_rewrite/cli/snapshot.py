@@ -39,7 +39,6 @@ from multibot_rewrite.system.records import (
     TOPIC,
     ZENOH,
     Caveat,
-    Environment,
     System,
     answering,
     clocks,
@@ -100,7 +99,10 @@ def report(snapshot: System) -> Iterator[str | Grid]:
     groups = sorted({node.process for node in snapshot.nodes} - {""})
     short = {"": "", **{group: str(number) for number, group in enumerate(groups, 1)}}
     counts = Counter((end.node, end.role, end.kind) for end in snapshot.ends)
-    rows = [(node.name, short[node.process], *_cells(counts, node.name)) for node in snapshot.nodes]
+    rows = []
+    for node in snapshot.nodes:
+        ends = (str(counts[node.name, role, kind]) for _, kind, role in COLUMNS)
+        rows.append((node.name, short[node.process], *ends))
     if rows:
         yield ""
         yield Grid(("node", "process", *(column for column, _, _ in COLUMNS)), rows)
@@ -128,30 +130,21 @@ def _state_rows(snapshot: System, nodes: Iterable[str]) -> Iterator[tuple[str, .
         yield node, states.get(node, ""), timed.get(node, ""), listed
 
 
-def _cells(counts: Counter[tuple[str, str, str]], node: str) -> Iterator[str]:
-    for _, kind, role in COLUMNS:
-        yield str(counts[node, role, kind])
-
-
 def _headline(snapshot: System) -> str:
     around = snapshot.environment
     nodes, many = len(snapshot.nodes), around.participants
     seen = len(machines(snapshot))
     where = f" on {seen} machines" if seen > 1 else ""
     why = "no change any more" if around.settled == QUIET else around.settled
-    return (
-        f"{plural(nodes, 'node')} in {plural(many, 'participant')}{where}"
-        f" after {around.seconds:.1f} s ({why});"
-        f" domain {around.domain}{_reach(around)}, {around.rmw}"
-    )
-
-
-def _reach(around: Environment) -> str:
-    """How the look was made: Zenoh has a router in place of a discovery range."""
+    # Zenoh has a router in place of a discovery range.
     router = f", router {around.discovery_server}" if around.rmw == ZENOH else ""
     range_ = f", range {around.range}" if around.range else ""
     peers = f", peers {' '.join(around.static_peers)}" if around.static_peers else ""
-    return f"{router}{range_}{peers}"
+    return (
+        f"{plural(nodes, 'node')} in {plural(many, 'participant')}{where}"
+        f" after {around.seconds:.1f} s ({why});"
+        f" domain {around.domain}{router}{range_}{peers}, {around.rmw}"
+    )
 
 
 NODES, NODL = "nodes", "nodl"

@@ -15,13 +15,7 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, say, with_schema, write_files
 from multibot_rewrite.cli.process import PROGRAM
-from multibot_rewrite.cli.report import (
-    About,
-    by_themselves,
-    check_report,
-    chosen,
-    report_first,
-)
+from multibot_rewrite.cli.report import About, by_themselves, check_report, chosen, report_first
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import Look, follow
 from multibot_rewrite.live.diagnose import Diagnosis, diagnose, diagnose_domains, survey
@@ -67,12 +61,8 @@ def _report_on_domains(options: argparse.Namespace, views: Mapping[int, System])
     each = {it: diagnose(live.with_states(live.at(options, it), views[it])) for it in sorted(views)}
     for domain, one in each.items():
         note(options, f"domain {domain}: {next(survey(one))}")
-    return _report(options, diagnose_domains(each), [*_empty(each)], each)
-
-
-def _empty(each: Mapping[int, Diagnosis]) -> Iterator[str]:
-    for domain, one in each.items():
-        yield from (f"domain {domain}: {it}" for it in _nothing_seen(one.graph))
+    empty = [f"domain {at}: {it}" for at, one in each.items() for it in _nothing_seen(one.graph)]
+    return _report(options, diagnose_domains(each), empty, each)
 
 
 def _check_use(options: argparse.Namespace, domains: Sequence[int] = ()) -> None:

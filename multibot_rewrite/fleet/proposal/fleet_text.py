@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from math import inf
 from typing import Any
 
@@ -45,7 +45,9 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
             others = (layout for layout in LAYOUTS if layout.name != choice.value)
             yield from (f"#   {layout.name}: {layout.about}" for layout in others)
         yield f"{key}: {_flow(choice.value)}"
-    for key, (value, whys) in _common(it, folder).items():
+    # What all robots have, if they have one description, with the reasons.
+    common = _of_member(it.members[0], folder) if len(it.members) == 1 else ()
+    for key, (value, whys) in common:
         yield ""
         yield from (f"# {line}" for line in whys)
         yield from _block(key, value)
@@ -72,16 +74,13 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield from _placed((*it.unread, *few), folder)
     if len(it.others_unread) > len(few):
         yield ""
-        yield f"# {_unread(it.others_unread, folder)}"
+        names = shorten([os.path.relpath(file, folder) for file, _, _ in it.others_unread], 1)
+        many = f"{len(it.others_unread)} launch files could not be read: {names}"
+        yield f"# {many}; init --verbose says why of each"
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
     yield "robots:"
     yield from (f"  - {_flow(robot)}" for robot in _robots(it, folder))
-
-
-def _unread(rows: Sequence[Row], folder: str) -> str:
-    names = shorten([os.path.relpath(file, folder) for file, _, _ in rows], 1)
-    return f"{len(rows)} launch files could not be read: {names}; init --verbose says why of each"
 
 
 def _placed(rows: Iterable[Row], folder: str) -> Iterator[str]:
@@ -120,13 +119,6 @@ def _block(key: str, value: Any) -> Iterator[str]:
 def _flow(value: Any) -> str:
     text = fleet_yaml(value, default_flow_style=True, width=inf)
     return text.removesuffix("\n").removesuffix("\n...")
-
-
-def _common(it: Proposal, folder: str) -> dict[str, tuple[Any, tuple[str, ...]]]:
-    """What all robots have, if they have one description, with the reasons."""
-    if len(it.members) > 1:
-        return {}
-    return dict(_of_member(it.members[0], folder))
 
 
 def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:

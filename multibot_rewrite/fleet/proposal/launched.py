@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 from multibot_rewrite.fleet.proposal.companions import (
     Companions,
@@ -16,7 +16,6 @@ from multibot_rewrite.fleet.proposal.launches import Bringup
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.searching import Found, text_of
 from multibot_rewrite.knowledge.stacks import load_stack
-from multibot_rewrite.producers.launch.records import LaunchGraph
 
 _MOVEIT, _UTILITIES = "move_group", "moveit_configs_utils"
 # What of these makes a move_group.
@@ -31,7 +30,8 @@ def companions_launched(
     """What the launch file of a robot gives its nodes, but for the parameter files that a build finds
     there itself, and what goes with the stacks that were ``asked`` for."""
     graph = bringup.graph
-    words = "\n".join(_words(graph))
+    # The words and texts that nodes get, in which the files that they read are named.
+    words = "\n".join((*(word for it in graph.nodes for word in it.arguments), *graph.texts))
 
     def is_read(path: str) -> bool:
         return path in found.meant or os.path.realpath(path) in words
@@ -54,12 +54,6 @@ def companions_launched(
     files["params"] = [*dict.fromkeys(params)]
     kept = {kind: tuple(its) for kind, its in files.items() if its}
     return Companions(kept, srdf, {**stacks, **asked}, {})
-
-
-def _words(graph: LaunchGraph) -> Iterator[str]:
-    """The words and texts that nodes get, in which the files that they read are named."""
-    yield from (word for it in graph.nodes for word in it.arguments)
-    yield from graph.texts
 
 
 def _makes_moveit(it: Bringup) -> bool:

@@ -26,13 +26,7 @@ from multibot_rewrite.description.sources.release_said import SaidRelease, relea
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of
 from multibot_rewrite.fleet.proposal.launched import companions_launched
-from multibot_rewrite.fleet.proposal.launches import (
-    Bringup,
-    Reading,
-    Row,
-    not_read,
-    started,
-)
+from multibot_rewrite.fleet.proposal.launches import Bringup, Reading, Row, not_read, started
 from multibot_rewrite.fleet.proposal.looking import (
     CLASSIC,
     GZ,
@@ -121,11 +115,9 @@ def layout_of(members: Sequence[Member]) -> Choice:
 
 def affix_of(layout: str) -> Choice | None:
     """``prefix`` where frames have the robot's name, as most robots of vendors do."""
-    return (
-        None
-        if layout == PER_ROBOT
-        else Choice("prefix", "frames are called robot1/base_link, the usual form in ROS")
-    )
+    if layout == PER_ROBOT:
+        return None
+    return Choice("prefix", "frames are called robot1/base_link, the usual form in ROS")
 
 
 def simulator_of(members: Sequence[Member]) -> Choice:
@@ -287,8 +279,7 @@ def _others(found: Found, robots: Sequence[Looked]) -> tuple[str, ...]:
 # The release that parameter files were written for, by the parameters and the classes of plugins that
 # only some releases have.
 # Sources: what the packages declare in each release (``knowledge/declared.schema``), and the classes
-# that
-# they register (``knowledge/plugin_classes.schema``).
+# that they register (``knowledge/plugin_classes.schema``).
 # The newest that people run first; nobody writes files for the one that changes each day.
 _ORDER = (NEWEST_LTS, *(it for it in RELEASES[-2::-1] if it != NEWEST_LTS))
 # One parameter may be left over of an older file.

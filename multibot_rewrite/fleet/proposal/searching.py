@@ -34,12 +34,7 @@ from multibot_rewrite.description.sources.included_by import (
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.outputs.output_file import PLAN
-from multibot_rewrite.fleet.proposal.launches import (
-    Reading,
-    order_text,
-    read_any,
-    read_named,
-)
+from multibot_rewrite.fleet.proposal.launches import Reading, order_text, read_any, read_named
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 
 _BUILT = frozenset((MANIFEST, PLAN))

@@ -17,11 +17,7 @@ from multibot_rewrite.description.sources.expand import once_kept
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.as_planned import is_of_sources
 from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_data import (
-    FleetSource,
-    FleetText,
-    without_place,
-)
+from multibot_rewrite.fleet.file.fleet_data import FleetSource, FleetText, without_place
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet

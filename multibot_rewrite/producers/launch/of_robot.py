@@ -23,10 +23,7 @@ from multibot_rewrite.producers.evidence.nodes import MANAGER, remapped
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.launch.bridges import bridge_rows, passes_topics_on
 from multibot_rewrite.producers.launch.describe import SIMULATOR, SIMULATORS
-from multibot_rewrite.producers.launch.findings import (
-    launch_findings,
-    started_twice,
-)
+from multibot_rewrite.producers.launch.findings import launch_findings, started_twice
 from multibot_rewrite.producers.launch.handed_on import (
     OWN,
     HandedOn,
