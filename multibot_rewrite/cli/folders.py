@@ -36,7 +36,10 @@ def locked(folder: str) -> Iterator[None]:
     """Alone with a folder: another build into it, or beside it, waits until this one is done."""
     import fcntl
 
-    above = _above(os.path.realpath(folder))
+    # The nearest folder above that is there.
+    above = os.path.dirname(os.path.realpath(folder))
+    while not os.path.isdir(above):
+        above = os.path.dirname(above)
     try:
         handle = os.open(above, os.O_RDONLY)
     except OSError:
@@ -48,14 +51,6 @@ def locked(folder: str) -> Iterator[None]:
         yield
     finally:
         os.close(handle)
-
-
-def _above(folder: str) -> str:
-    """The nearest folder above that is there."""
-    above = os.path.dirname(folder)
-    while not os.path.isdir(above):
-        above = os.path.dirname(above)
-    return above
 
 
 def check_inside(folder: str, paths: Iterable[str]) -> None:

@@ -186,7 +186,8 @@ def print_bytes(data: bytes) -> None:
         raise UsageError("standard output is closed; name a file with -o")
     try:
         # A program gets the bytes; a terminal would obey some of them.
-        shown = _shown(data) if sys.stdout.isatty() else data
+        text = data.decode("utf-8", "surrogateescape")
+        shown = for_terminal(text).encode() if sys.stdout.isatty() else data
         sys.stdout.buffer.write(shown)
         sys.stdout.buffer.flush()
     except OSError as error:
@@ -195,10 +196,6 @@ def print_bytes(data: bytes) -> None:
         if isinstance(error, BrokenPipeError):
             raise
         raise UsageError(f"standard output: cannot be written: {error.strerror}") from None
-
-
-def _shown(data: bytes) -> bytes:
-    return for_terminal(data.decode("utf-8", "surrogateescape")).encode()
 
 
 def print_lines(lines: Iterable[object]) -> None:

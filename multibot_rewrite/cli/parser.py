@@ -104,7 +104,8 @@ def declare(parser: Parser, command: Command) -> None:
     """Give a parser the options and the help text of a command."""
     parser.short = short_help(command, parser.prog)
     parser.description = "\n\n".join(_head(command))
-    parser.epilog = f"exit codes:\n  {_codes(command)}"
+    codes = "\n  ".join(command.exit_codes.split("; "))
+    parser.epilog = f"exit codes:\n  {codes}"
     for group in command.groups:
         section = parser.add_argument_group(group.title)
         for option in group.options:
@@ -164,10 +165,6 @@ def _example(example: Example) -> str:
     about = f"    # {example.about}" if example.about else ""
     one = f"  {example.command}{about}"
     return one if len(one) <= 80 or not about else f"  # {example.about}\n  {example.command}"
-
-
-def _codes(command: Command) -> str:
-    return "\n  ".join(command.exit_codes.split("; "))
 
 
 def wrapped(text: str, width: int = 80) -> str:

@@ -71,15 +71,10 @@ def _parts(planned: bool, state: WatchState) -> Iterator[str | Grid]:
     yield _headline(planned, state)
     yield ""
     findings, held = Counter(it.robot for it in state.findings), state.coverage
-    rows = [
-        (
-            it.robot,
-            f"{it.seen}/{it.nodes}" if held.compared else str(it.nodes),
-            str(findings[it.robot]),
-        )
-        for it in held.robots
-        if it.robot
-    ]
+    rows = []
+    for it in (one for one in held.robots if one.robot):
+        nodes = f"{it.seen}/{it.nodes}" if held.compared else f"{it.nodes}"
+        rows.append((it.robot, nodes, f"{findings[it.robot]}"))
     # Those with findings first: a screen does not hold a hundred.
     rows.sort(key=lambda row: row[2] == "0")
     yield Grid(("robot", "nodes", "findings"), rows[:_SHOWN])

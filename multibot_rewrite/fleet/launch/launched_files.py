@@ -186,8 +186,6 @@ def _maps(spec: RobotSpec) -> Iterator[tuple[str, object, str]]:
 
 
 _PACKAGES = ("ros_gz_bridge", "ros_ign_bridge")
-# The parameter that names a bridge's file (ros_gz_bridge/src/ros_gz_bridge.cpp).
-_FILE = "config_file"
 
 
 def with_bridge_namespaces(file: FleetFile) -> FleetFile:

@@ -121,11 +121,8 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
     """
     for path in paths:
         if not os.path.exists(path):
-            what = (
-                "it is a link to nothing"
-                if os.path.islink(path)
-                else "there is no such file or folder"
-            )
+            link = os.path.islink(path)
+            what = "it is a link to nothing" if link else "there is no such file or folder"
             raise UsageError(f"{path or repr(path)}: {what}; give a description or a folder")
         if not _can_be_named(path):
             raise UsageError(f"{path}: its name is no UTF-8, as that in a YAML file is; rename it")

@@ -178,9 +178,15 @@ def errors_of(
     except MultibotError as error:
         place = (source.path,) if isinstance(source, FleetText) else ()
         return [("", without_place(str(error), *place))]
-    asked = (it for it in back if of_sources or not _is_of_sources(it, found))
+    told = {it for it in back if it._replace(level=WARNING) in found or is_of_sources(it)}
+    asked = (it for it in back if of_sources or it not in told)
     errors = sorted((it for it in (*found, *asked) if it.level == ERROR), key=by_place)
-    return [(_file(it), _line(it)) for it in grouped(plan.with_names(errors), plan.words)]
+    lines = []
+    for it in grouped(plan.with_names(errors), plan.words):
+        who = f"{it.node}: " if it.node else ""
+        file = os.path.abspath(it.file) if it.file else ""
+        lines.append((file, f"{who}{it.code} {said(it)}"))
+    return lines
 
 
 def _built(source: FleetSource, trust: bool) -> tuple[FleetPlan, Set[Finding], Set[Finding]]:
@@ -192,19 +198,6 @@ def _built(source: FleetSource, trust: bool) -> tuple[FleetPlan, Set[Finding], S
     wrong = any(it.level == ERROR for it in found)
     back = frozenset(() if wrong else read_back(plan, made, folder)) - found
     return plan, found, back
-
-
-def _is_of_sources(it: Finding, told: Set[Finding]) -> bool:
-    return it._replace(level=WARNING) in told or is_of_sources(it)
-
-
-def _line(it: Finding) -> str:
-    who = f"{it.node}: " if it.node else ""
-    return f"{who}{it.code} {said(it)}"
-
-
-def _file(it: Finding) -> str:
-    return os.path.abspath(it.file) if it.file else ""
 
 
 def in_a_layout_that_builds(

@@ -302,9 +302,11 @@ def _pair(
     facts = base or _unknown(it, name)
     unnamed = "" if it.name or own else NO_NAME
     rows = bridge_rows(it, words)
+    # The rules of a stack do not count: those of the launch do.
+    ends = (end._replace(remapped="") for end in facts.endpoints)
     found = facts._replace(
         name=_below(it.namespace, name, words),
-        endpoints=rows or (*_unmapped(facts), *(_only_named(it, facts, name) if base else ())),
+        endpoints=rows or (*ends, *(_only_named(it, facts, name) if base else ())),
         known=facts.kind if base else "",
         # A node that usually serves all robots, in the namespace of one, is that robot's.
         shared=bool(facts.shared or once_for_all(it)) and not is_of_robot(it.namespace, words),
@@ -335,11 +337,6 @@ def _only_named(it: LaunchedNode, facts: NodeFacts, name: str) -> Iterator[Endpo
     for old in dict.fromkeys(old for old, _ in it.remappings if not check_topic_name(old)):
         if expand(old, it.namespace, name) not in there:
             yield Endpoint(TOPIC, "", old)
-
-
-def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
-    """Its endpoints without the rules of a stack: those of the launch count."""
-    return tuple(end._replace(remapped="") for end in facts.endpoints)
 
 
 def is_of_robot(namespace: str, words: Collection[str]) -> bool:

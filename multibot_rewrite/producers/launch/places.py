@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import lru_cache, wraps
 from types import FrameType
 from typing import Any
@@ -72,8 +72,8 @@ def _lines(file: str) -> dict[tuple[str, str], int]:
         every = [*root_of(read_bytes(file), file).every()]
     except (ValueError, TypeError, RuntimeError, SyntaxError, InputError):
         return {}
-    return {_started(it.values): it.line for it in reversed(every) if it.tag in _ELEMENTS}
-
-
-def _started(given: Mapping[str, Any]) -> tuple[str, str]:
-    return str(given.get("pkg", "")), str(given.get("plugin") or given.get("exec", ""))
+    found = {}
+    for it in (one for one in reversed(every) if one.tag in _ELEMENTS):
+        program = it.values.get("plugin") or it.values.get("exec", "")
+        found[str(it.values.get("pkg", "")), str(program)] = it.line
+    return found

@@ -135,7 +135,8 @@ def _each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
     top = _parser(names="*").parse_args(list(words[: starts[0]]))
     for at, end in zip(starts, (*starts[1:], len(words)), strict=True):
         one = _parser(names="+").parse_args(list(words[at + 1 : end]))
-        yield _below(one, vars(top))
+        one.controller_manager, one.namespace = top.controller_manager, top.namespace
+        yield one
 
 
 def _further(given: argparse.Namespace) -> Iterator[str]:
@@ -146,11 +147,6 @@ def _further(given: argparse.Namespace) -> Iterator[str]:
     for flag in ("--load-only", "--activate-as-group", "--unload-on-kill", "--switch-asap"):
         if getattr(given, flag[2:].replace("-", "_"), False):
             yield flag
-
-
-def _below(one: argparse.Namespace, top: Mapping[str, object]) -> argparse.Namespace:
-    shared = ("controller_manager", "namespace")
-    return argparse.Namespace(**{**vars(one), **{key: top[key] for key in shared}})
 
 
 def _parser(names: str) -> _Parser:
