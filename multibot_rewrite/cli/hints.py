@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 
 from multibot_rewrite.base.nearest import CHOICE, extensions, nearest
 from multibot_rewrite.base.other_words import other_words
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.declared.options import Command
 
 # A beginning of so few letters says nothing.
 _BEGUN = 2
@@ -73,14 +72,9 @@ def _begun(word: str, known: Iterable[str]) -> str:
 
 def _takers(option: str) -> str:
     """Return the commands that have an option, with a verb: ``multibot init takes``; "" if none has."""
-    names = [name for name, command in _every_command().items() if _has(command, option)]
+    every = {**PROGRAMS, **{f"multibot {name}": it for name, it in COMMANDS.items()}}
+    groups = ((name, group) for name, it in every.items() for group in it.groups)
+    has = (name for name, group in groups if any(option in it.names for it in group.options))
+    names = [*dict.fromkeys(has)]
     verb = "takes" if len(names) == 1 else "take"
     return f"{shorten(names)} {verb}" if names else ""
-
-
-def _has(command: Command, option: str) -> bool:
-    return any(option in it.names for group in command.groups for it in group.options)
-
-
-def _every_command() -> Mapping[str, Command]:
-    return {**PROGRAMS, **{f"multibot {name}": it for name, it in COMMANDS.items()}}

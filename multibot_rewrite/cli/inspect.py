@@ -135,8 +135,7 @@ def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
         yield from [""] * (number > 0)
         yield f"{section.name}  {section.file}:{section.line}"
         yield from (f"  {what}: {text}" for what, text in facts(section).items())
-        rows = [_row(site, section) for site in section.sites]
-        if rows:
+        if rows := [_row(site, section) for site in section.sites]:
             yield Grid(("path", "role", "kinds", "form", "default", "note", "from"), rows)
 
 
@@ -313,15 +312,13 @@ def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
 
 def arguments_report(found: XacroArguments) -> Iterator[str | Grid]:
     """What is printed of a xacro's arguments."""
-    rows = [row for it in found.arguments for row in _argument_rows(it)]
-    if rows:
+    if rows := [row for it in found.arguments for row in _argument_rows(it)]:
         yield Grid(ARGUMENT_COLUMNS, rows)
         yield ""
     without = [it.name for it in found.arguments if not it.uses and not it.fault]
     if without:
         yield f"go into no names: {', '.join(without)}"
-    refused = [it.name for it in found.arguments if it.fault]
-    if refused:
+    if refused := [it.name for it in found.arguments if it.fault]:
         yield f"take no name of a robot: {', '.join(refused)}"
     if found.untried:
         yield f"too many to try: {', '.join(found.untried)}"

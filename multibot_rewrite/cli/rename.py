@@ -37,8 +37,7 @@ def _tell(options: argparse.Namespace, made: Renaming) -> None:
         f"{options.kind} {options.old} -> {options.new}: {where}; {proof_words(made.unread)}",
     )
     note_unread(options, made.unread)
-    left = made.mentions
-    if left:
+    if left := made.mentions:
         note(options, f"left as they are: {plural(len(left), 'line')} with {options.old!r}")
         for place in left[:MOST_MENTIONS]:
             detail(options, f"  {place}")

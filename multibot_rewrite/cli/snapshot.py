@@ -114,8 +114,7 @@ def report(snapshot: System) -> Iterator[str | Grid]:
     if framed := [it[:2] for it in snapshot.heard if not (it.joints or it.topic == CLOCK)]:
         yield ""
         yield Grid(("message on", "frame_id"), framed)
-    said = answering(snapshot)
-    if said:
+    if said := answering(snapshot):
         yield ""
         answers = [*_state_rows(snapshot, said)]
         yield Grid(("node", "state", "use_sim_time", "controllers"), answers)
@@ -218,8 +217,7 @@ def _notes(
 ) -> Iterator[str]:
     for node in learned:
         yield from (f"{node.seen}: {remark}" for remark in node.remarks)
-    lost = helpers_without_owner(graph, [node.seen for node in learned])
-    if lost:
+    if lost := helpers_without_owner(graph, [node.seen for node in learned]):
         yield f"whose helpers these are is not seen, they are left out: {', '.join(lost)}"
     tools = left_out(graph, [node.seen for node in learned], namespace or "/")
     if tools and not named:

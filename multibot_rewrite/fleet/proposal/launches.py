@@ -111,11 +111,9 @@ def _time(file: str) -> tuple[int, int]:
 
 def order_text(it: LaunchOrder, folder: str) -> str:
     """Return what follows ``ros2 launch``, for a fleet file in a folder."""
-    file = (
-        [it.package, os.path.basename(it.file)]
-        if it.package
-        else [os.path.relpath(it.file, folder)]
-    )
+    file = [os.path.relpath(it.file, folder)]
+    if it.package:
+        file = [it.package, os.path.basename(it.file)]
     return shlex.join([*file, *(f"{name}:={value}" for name, value in it.arguments)])
 
 

@@ -479,10 +479,9 @@ def _given(
 def _file(path: str, here: Visit) -> Iterator[ParameterText]:
     if not os.path.isfile(path) or os.path.getsize(path) > LIMIT:
         lost = missing_package(FileNotFoundError(path))
-        said = (
-            f"a parameter file of the package {lost!r}, which is not installed here, is not known"
-        )
-        here.note(said if lost else _lost(path), parameters=True, file="" if lost else path)
+        said = f"of the package {lost!r}, which is not installed here, is not known"
+        told = f"a parameter file {said}" if lost else _lost(path)
+        here.note(told, parameters=True, file="" if lost else path)
         return
     source = source_of(path, here.context)
     with open(path, encoding="utf-8", errors="replace") as file:

@@ -236,10 +236,8 @@ def with_sources(
 def _read(it: LaunchedNode, folders: Mapping[str, str], release: str) -> NodeFacts | None:
     found = None
     if it.package in folders:
-        with suppress(
-            UsageError
-        ):  # C++ without its reader: who says that a node is not known, says so
-            found = node_of_program(
-                folders[it.package], it.package, it.executable, folders, release
-            )
+        # C++ without its reader: who says that a node is not known, says so.
+        with suppress(UsageError):
+            program = it.package, it.executable
+            found = node_of_program(folders[it.package], *program, folders, release)
     return found.facts._replace(known=f"{it.package} {it.executable}") if found else None

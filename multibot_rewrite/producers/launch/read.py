@@ -166,11 +166,8 @@ class _Share(FindPackageShare):
 def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     # Without an argument that the file itself has to be given it is not read.
     for it, includes in getattr(description, ASKED)():
-        free = (
-            order.every
-            or it.default_value is not None
-            or getattr(it, "_conditionally_included", False)
-        )
+        usual = it.default_value is not None or getattr(it, "_conditionally_included", False)
+        free = order.every or usual
         if not free and not includes and it.name not in dict(order.arguments):
             raise UnreadableError(f"it has to be given {it.name}; write {it.name}:=VALUE after it")
     context, path = of_launch().LaunchContext(noninteractive=True), os.path.abspath(order.file)
@@ -220,9 +217,8 @@ def _declared(description: Any) -> tuple[LaunchArgument, ...]:
         parts = given if isinstance(given, list | tuple) else [given or ""]
         plain = [one if isinstance(one, str) else getattr(one, "text", None) for one in parts]
         default = "".join(map(str, plain)) if None not in plain else ""
-        found.setdefault(
-            it.name, LaunchArgument(it.name, default, tuple(map(str, it.choices or ())))
-        )
+        choices = tuple(map(str, it.choices or ()))
+        found.setdefault(it.name, LaunchArgument(it.name, default, choices))
     return tuple(found.values())
 
 

@@ -194,20 +194,11 @@ def _made_by_hardware(
         if it.fact.known != MANAGER or it.process == SIMULATED:
             continue
         root = root_of(it.value(DESCRIPTION) or _described(it, published))
-        facts = (
-            with_hardware((it.fact,), root, it.place.file, known.nodes) if root is not None else ()
-        )
-        for one in facts[1:]:
-            yield it._replace(
-                node=one.name,
-                name=one.name,
-                rules=it.process_rules,
-                fact=one,
-                values={},
-                arguments=(),
-                texts=(),
-                untold=(),
-            )
+        if root is None:
+            continue
+        bare = it._replace(values={}, arguments=(), texts=(), untold=(), rules=it.process_rules)
+        for one in with_hardware((it.fact,), root, it.place.file, known.nodes)[1:]:
+            yield bare._replace(node=one.name, name=one.name, fact=one)
 
 
 def _described(manager: Run, published: Mapping[str, str]) -> str:

@@ -194,6 +194,12 @@ def _nodes(running: Iterable[Run], parts: Iterable[_Part]) -> Iterator[Node]:
         yield from (Node(name, it.process, place=it.place, known=known) for name in own)
 
 
+def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
+    if nodes:
+        text = f"rcl refuses {plural(len(nodes), 'node')}: {shorten(nodes)}"
+        yield Caveat(REFUSED, True, text)
+
+
 def _caveats(
     stood_in: bool,
     notes: Iterable[LaunchNote],
@@ -204,9 +210,7 @@ def _caveats(
     """What of the launch is not known."""
     if stood_in:
         yield Caveat(NOT_WHOLE, False, STOOD_IN)
-    if refused:
-        text = f"rcl refuses {plural(len(refused), 'node')}: {shorten(refused)}"
-        yield Caveat(REFUSED, True, text)
+    yield from _refused(refused)
     # What several nodes lack is said once, where the first one does.
     first: dict[str, Place] = {}
     for note in (it for it in notes if not it.fails):

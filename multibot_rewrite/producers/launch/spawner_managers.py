@@ -7,7 +7,7 @@ manager is below the namespace that the spawner gets, by ``--namespace`` or as a
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
@@ -30,15 +30,14 @@ def under_managers(spawned: Iterable[Spawned], started: Collection[str]) -> Unde
     every = tuple(spawned)
     lost = [it for it in every if meant and it.manager not in started]
     found = tuple(it._replace(manager=meant) if it in lost else it for it in every)
-    return UnderManagers(found, tuple(_findings(lost, meant)))
-
-
-def _findings(lost: Iterable[Spawned], meant: str) -> Iterator[Finding]:
-    """One a spawner."""
+    # One finding a spawner.
     spawners: dict[tuple[str, int, str], list[str]] = {}
     for it in lost:
         spawners.setdefault((it.place.file, it.place.line, it.manager), []).append(it.name)
+    findings = []
     for (file, line, manager), names in spawners.items():
         message = f"the spawner of {', '.join(names)} asks for {manager}, which nothing starts"
         hint = f"{meant} is started; give the namespace once; the plan has them there"
-        yield NO_MANAGER.finding(message, hint, level=WARNING, file=file, line=line, column=1)
+        where = {"file": file, "line": line, "column": 1}
+        findings.append(NO_MANAGER.finding(message, hint, level=WARNING, **where))
+    return UnderManagers(found, tuple(findings))
