@@ -88,7 +88,15 @@ def _split(options: argparse.Namespace) -> int:
 
 def _parts(options: argparse.Namespace) -> list[Part]:
     """The parts as the words name them: each file with the xacro arguments behind it."""
-    files = _files(options.words)
+    files: list[tuple[str, dict[str, str]]] = []
+    for word in options.words:
+        name, is_argument, text = word.partition(":=")
+        if not is_argument:
+            files.append((word, {}))
+        elif not files:
+            raise UsageError(f"{word}: write it behind the xacro that it is for")
+        else:
+            files[-1][1][name] = text
     many = len(files)
     ends = _for_each("--at", options.at, many)
     poses = _for_each("--pose", options.pose, many)
@@ -98,19 +106,6 @@ def _parts(options: argparse.Namespace) -> list[Part]:
         Part(file, at, _numbers(pose), prefix, "", given)
         for (file, given), at, pose, prefix in every
     ]
-
-
-def _files(words: Sequence[str]) -> list[tuple[str, dict[str, str]]]:
-    files: list[tuple[str, dict[str, str]]] = []
-    for word in words:
-        name, is_argument, text = word.partition(":=")
-        if not is_argument:
-            files.append((word, {}))
-        elif not files:
-            raise UsageError(f"{word}: write it behind the xacro that it is for")
-        else:
-            files[-1][1][name] = text
-    return files
 
 
 def _listed(options: argparse.Namespace) -> tuple[Sequence[Part], int]:

@@ -36,7 +36,12 @@ class _Row(NamedTuple):
 def run(options: argparse.Namespace, path: str) -> int:
     """Show the processes; returns the exit code. Raises UsageError for a fleet without launch files."""
     file = read_fleet(path, options.distro or "", os.environ)
-    rows = [*_rows(file, options.trust)]
+    rows: list[_Row] = []
+    # Robots with the same launch files have the processes in common, and all robots some once.
+    for launch in dict.fromkeys(it.launch for it in file.robots if it.launch):
+        robots = [it for it in file.robots if it.launch == launch]
+        whose = _EACH if len(robots) == len(file.robots) else ", ".join(it.name for it in robots)
+        rows += dict.fromkeys(_of_robot(robots[0], whose, file, options.trust))
     if not rows:
         raise UsageError(f"{path}: no robot has a launch file; multibot plan {path} has its nodes")
     if options.form == JSON:
@@ -45,16 +50,6 @@ def run(options: argparse.Namespace, path: str) -> int:
         shown = [(*it[:3], ", ".join(it.files), it.why) for it in rows]
         deliver_report(options, (Grid(("for", "process", "place", "files", "why"), shown),))
     return DONE
-
-
-def _rows(file: FleetFile, trust: bool) -> Iterator[_Row]:
-    """Yield the processes of each robot, and those of all robots once; those with the same launch files
-    have them in common."""
-    launches = dict.fromkeys(it.launch for it in file.robots if it.launch)
-    for launch in launches:
-        robots = [it for it in file.robots if it.launch == launch]
-        whose = _EACH if len(robots) == len(file.robots) else ", ".join(it.name for it in robots)
-        yield from dict.fromkeys(_of_robot(robots[0], whose, file, trust))
 
 
 def _of_robot(robot: RobotSpec, whose: str, file: FleetFile, trust: bool) -> Iterator[_Row]:

@@ -122,7 +122,9 @@ def _sets_parameters(path: str) -> bool:
 def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Finding]]:
     """The robot with the files that it has not got, and notes of those that are left out."""
     own, filled, notes = list(spec.companions.get(PARAMS, ())), [], []
-    taken = {os.path.basename(it): it for it in _written(spec)}
+    written = filter(None, (spec.description, spec.srdf, spec.simulated))
+    beside = (path for paths in spec.companions.values() for path in paths)
+    taken = {os.path.basename(it): it for it in (*written, *beside)}
     for it in named:
         there = taken.setdefault(os.path.basename(it.path), it.path)
         text = yaml_of(it.path).text
@@ -141,11 +143,6 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
             notes.append(NOT_REWRITTEN.finding(message, hint, level=WARNING, file=file, line=line))
     companions = {**spec.companions, PARAMS: tuple(own)} if own else spec.companions
     return spec._replace(companions=companions, filled=(*spec.filled, *filled)), notes
-
-
-def _written(spec: RobotSpec) -> Iterator[str]:
-    yield from filter(None, (spec.description, spec.srdf, spec.simulated))
-    yield from (path for paths in spec.companions.values() for path in paths)
 
 
 def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:

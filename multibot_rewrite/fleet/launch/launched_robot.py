@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
 
@@ -41,7 +41,10 @@ def launched_robot(
         return None
     mine = _own(orders, words[0])
     graph = launch_of(orders, words[0])
-    return with_launched(stack, graph, known, {*words, *_values(mine)}, parameters, release)
+    # What stands for the robot besides its own words: its namespace in a launch.
+    values = (value.strip("/") for it in mine for _, value in it.arguments)
+    every = {*words, *filter(None, values)}
+    return with_launched(stack, graph, known, every, parameters, release)
 
 
 def known_here(
@@ -85,7 +88,8 @@ def _times(file: str) -> tuple[int, ...]:
 
 
 def _own(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
-    return [it._replace(arguments=tuple(_filled(it, robot))) for it in orders]
+    pairs = ((it, filled(dict(it.arguments), robot)) for it in orders)
+    return [it._replace(arguments=tuple(given.items())) for it, given in pairs]
 
 
 def nodes_with(
@@ -140,12 +144,3 @@ def _both(own: Run, launched: Run) -> Run:
     said = launched if launched.program or not own.program else own
     manager = launched.host_name or own.host_name
     return said._replace(values=values, place=own.place, host_name=manager)
-
-
-def _filled(order: LaunchOrder, robot: str) -> Iterator[tuple[str, str]]:
-    yield from filled(dict(order.arguments), robot).items()
-
-
-def _values(orders: Collection[LaunchOrder]) -> Iterator[str]:
-    """What stands for the robot besides its own words: its namespace in a launch."""
-    yield from (value.strip("/") for it in orders for _, value in it.arguments if value.strip("/"))

@@ -137,10 +137,8 @@ def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tu
         why = "Arguments of the xacro: {robot} stands for the robot's name"
         yield "arguments", (dict(looked.arguments), (why, *_needed(looked)))
     if member.bringup:
-        yield (
-            "launch",
-            (order_text(member.bringup.order, folder), (*_launched(member.bringup),)),
-        )
+        told = order_text(member.bringup.order, folder)
+        yield "launch", (told, (*_launched(member.bringup),))
     if beside.srdf:
         yield "srdf", (here(beside.srdf), ("The planning groups of MoveIt",))
     if beside.stacks:

@@ -118,15 +118,11 @@ def worlds(launched: Launched) -> Iterator[World]:
 
 def world_files(it: LaunchedNode) -> list[str]:
     """The files of worlds in the words of a simulator."""
-    words = (word for text in it.arguments for word in _split(text))
-    return [it for it in words if it.endswith(_WORLDS)] if it.executable == SIMULATOR else []
-
-
-def _split(text: str) -> list[str]:
-    try:
-        return shlex.split(text)
-    except ValueError:
-        return []
+    words: list[str] = []
+    for text in it.arguments if it.executable == SIMULATOR else ():
+        with suppress(ValueError):
+            words += shlex.split(text)
+    return [word for word in words if word.endswith(_WORLDS)]
 
 
 def sensors_of(models: Iterable[InSimulator]) -> list[SensorFrame]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import count
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import TF_TOPICS
@@ -418,15 +418,11 @@ def _of_any_robot(given: Run, namespace: str, words: Collection[str]) -> Run:
     if not own:
         return given
     above = max(own, key=len)
-    values = {
-        name: it._replace(value=_without(it.value, above)) for name, it in given.values.items()
-    }
+    values = dict(given.values)
+    for name, it in given.values.items():
+        if isinstance(it.value, str) and it.value.startswith(above):
+            values[name] = it._replace(value=f"/{it.value.removeprefix(above)}")
     return given._replace(values=values)
-
-
-def _without(value: Any, above: str) -> Any:
-    is_name = isinstance(value, str) and value.startswith(above)
-    return f"/{value.removeprefix(above)}" if is_name else value
 
 
 def _placed(given: Run, place: Place) -> Run:
