@@ -77,8 +77,12 @@ def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
     nodes = _nodes(hosts, vocabulary.release)
     with_node = {it.number for it in nodes}
     names = [*_links(root), *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
-    names += _of_plugins(root, hosts, with_node, vocabulary)
-    names += [*_of_hardware(root, vocabulary), *_of_sensors(root, vocabulary)]
+    names += _of_hosts(root, hosts, "plugin", with_node, vocabulary)
+    systems = enumerate(root.iter("ros2_control"))
+    known = ((it, number, hardware_section(it, vocabulary)) for number, it in systems)
+    hardware = [_Host(it, number, section) for it, number, section in known if section]
+    names += _of_hosts(root, hardware, "ros2_control", (), vocabulary)
+    names += _of_sensors(root, vocabulary)
     names += _of_elements(root, vocabulary)
     missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
     heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
@@ -176,15 +180,15 @@ def _endpoints(node: ReadNode, below: bool) -> Iterator[RuntimeName]:
     yield from (it for it in node.endpoints if not it.off and (it.parameter in stems) == below)
 
 
-def _of_plugins(
-    root: _Element, hosts: list[_Host], nodes: Container[int], vocabulary: Vocabulary
+def _of_hosts(
+    root: _Element, hosts: list[_Host], tag: str, nodes: Container[int], vocabulary: Vocabulary
 ) -> Iterator[RuntimeName]:
     for host in hosts:
         if host.number not in nodes or _is_of_either(host):
-            yield from _topics(*host, "plugin", vocabulary.release)
-        yield from _frames(host, "plugin")
+            yield from _topics(*host, tag, vocabulary.release)
+        yield from _frames(host, tag)
         yield from _lookups(root, host, vocabulary)
-        yield from _opened(host, "plugin")
+        yield from _opened(host, tag)
 
 
 def _is_of_either(host: _Host) -> bool:
@@ -193,17 +197,6 @@ def _is_of_either(host: _Host) -> bool:
     if host.section.ros or host.element.find("ros") is not None:
         return False
     return any(it.kinds == ("namespace",) and "/" not in it.path for it in host.section.sites)
-
-
-def _of_hardware(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
-    for number, system in enumerate(root.iter("ros2_control")):
-        section = hardware_section(system, vocabulary)
-        if section is not None:
-            host = _Host(system, number, section)
-            yield from _topics(*host, "ros2_control", vocabulary.release)
-            yield from _frames(host, "ros2_control")
-            yield from _lookups(root, host, vocabulary)
-            yield from _opened(host, "ros2_control")
 
 
 def _of_sensors(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
