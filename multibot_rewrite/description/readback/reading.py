@@ -8,12 +8,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.description.readback.active import (
-    hardware_section,
-    opened,
-    plugin_section,
-    sensor_sections,
-)
+from multibot_rewrite.description.readback import active
 from multibot_rewrite.description.readback.nodes import (
     BELOW,
     TOPIC,
@@ -79,7 +74,7 @@ def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
     names = [*_links(root), *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
     names += _of_hosts(root, hosts, "plugin", with_node, vocabulary)
     systems = enumerate(root.iter("ros2_control"))
-    known = ((it, number, hardware_section(it, vocabulary)) for number, it in systems)
+    known = ((it, number, active.hardware_section(it, vocabulary)) for number, it in systems)
     hardware = [_Host(it, number, section) for it, number, section in known if section]
     names += _of_hosts(root, hardware, "ros2_control", (), vocabulary)
     names += _of_sensors(root, vocabulary)
@@ -114,7 +109,7 @@ def _hosts(root: _Element, vocabulary: Vocabulary) -> tuple[list[_Host], list[tu
         # The class of a ros2_control system, or a plugin of Webots: none of Gazebo's.
         if "filename" not in plugin.attrib and "name" not in plugin.attrib:
             continue
-        section, known = plugin_section(plugin, vocabulary)
+        section, known = active.plugin_section(plugin, vocabulary)
         if not known:
             unknown.append((number, plugin.get("filename", "") or plugin.get("name", "")))
         if section is not None:
@@ -201,7 +196,7 @@ def _is_of_either(host: _Host) -> bool:
 
 def _of_sensors(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
     for number, sensor in enumerate(root.iter("sensor")):
-        for section in sensor_sections(sensor, vocabulary):
+        for section in active.sensor_sections(sensor, vocabulary):
             yield from _topics(sensor, number, section, "sensor", vocabulary.release)
             yield from _opened(_Host(sensor, number, section), "sensor")
 
@@ -241,7 +236,7 @@ def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
 
 
 def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
-    for kind, value, path in opened(host.element, host.section):
+    for kind, value, path in active.opened(host.element, host.section):
         yield RuntimeName(kind, value, tag, host.number, path)
 
 
