@@ -21,6 +21,8 @@ from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, ends_of, 
 from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, Robot, System, surely
 from multibot_rewrite.system.tf_copies import tree_topic
 
+# With more tf topics of one robot each they share a line.
+MOST_OWN = 3
 # Rules that hold robots against each other, which they are in whatever domain.
 HELD_AGAINST = frozenset((*BETWEEN_ROBOTS, less_than_another_robot.code))
 
@@ -131,12 +133,23 @@ def survey(seen: Diagnosis) -> Iterator[str]:
         where = _where(seen.robots)
         yield f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
         yield f"layout: {_layout_line(seen)}"
+    own = [topic for topic, nodes_ in seen.tf if _is_its_own(seen, topic, nodes_)]
+    if len(own) > MOST_OWN:
+        yield f"tf on {shorten(own, MOST_OWN)}: each of the nodes of its robot"
     for topic, nodes_ in seen.tf:
         if nodes_ == (RECORDER,):
             yield f"tf on {topic}"
             continue
+        if topic in own and len(own) > MOST_OWN:
+            continue
         by_robot = Counter(seen.whose.robot(node) or "no robot" for node in nodes_)
         yield f"tf on {topic}: {plural(len(nodes_), 'node')} of {shorten(by_robot, SEVERAL)}"
+
+
+def _is_its_own(seen: Diagnosis, topic: str, nodes: Sequence[str]) -> bool:
+    """Is it a robot's topic, on which only nodes of that robot send?"""
+    robot = seen.whose.robot(topic)
+    return bool(robot) and all(seen.whose.robot(it) == robot for it in nodes)
 
 
 def _where(robots: Sequence[GuessedRobot]) -> str:

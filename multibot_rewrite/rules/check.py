@@ -16,6 +16,7 @@ from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING,
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import rules_in
+from multibot_rewrite.rules.folded import folded, in_order
 from multibot_rewrite.rules.system import clocks, differing, frame_ids, likes, localized
 from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS
@@ -43,19 +44,20 @@ ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 
 
 def judge(seen: Index) -> list[Finding]:
-    """What is wrong with a system, and other than its plan has it where there is one; empty for one
-    that is as it should be."""
+    """What is wrong with a system, and other than its plan has it where there is one, the likeliest
+    cause first; empty for one that is as it should be."""
     with gc_paused():
         plan = seen.expected
         if plan is None:
-            return _judged(seen, _rules(planned=False))
+            return in_order(seen, folded(seen, _judged(seen, _rules(planned=False))))
         # What a robot has not and others have is meant where nothing that is planned is missing.
         asked = (it for it in _rules(planned=False) if it is not _LACKS or missing(plan, seen))
         recorded = is_recorded(seen.system)
         only = (it for it in _rules(planned=True) if not (recorded and it.options["nodes"]))
         by_plan = [*_found_by(only, seen)]
         found = _judged(seen, asked)
-        return one_for_a_cause(seen, plan, found, by_plan, RULES, bool(unseen(seen.system)))
+        told = one_for_a_cause(seen, plan, found, by_plan, RULES, bool(unseen(seen.system)))
+        return in_order(seen, folded(seen, told))
 
 
 def _rules(planned: bool) -> Iterator[Rule]:
@@ -123,8 +125,7 @@ def check(
     counts those of each topic, where they were counted; ``before`` is the earlier look that the plan
     was made of, if it was."""
     _, seen = side_by_side(plan, graph, messages, before)
-    found = sorted(judge(seen), key=lambda it: it.code)
-    return inconclusive_where_in_doubt(found, graph)
+    return inconclusive_where_in_doubt(judge(seen), graph)
 
 
 def side_by_side(

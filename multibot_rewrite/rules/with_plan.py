@@ -53,9 +53,10 @@ def one_for_a_cause(
     said = {at: _with_cause(left[at], own, rules, in_doubt) for at, own in causes.items()}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     loose = {name for node, *_, name in missing(plan, seen)} - lost
+    by_end = {at for at, own in causes.items() if any(it.code != unplanned_node.code for it in own)}
     kept = []
     for at, it in enumerate(left):
-        names = {*it.names} if at not in said and _is_absence(it, rules) else set()
+        names = {*it.names} if at not in by_end and _is_absence(it, rules) else set()
         if not (names & lost or (names and names <= loose)):
             kept.append(said.get(at, it))
     every = {*unexplained([*kept, *by_plan])}

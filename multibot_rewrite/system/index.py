@@ -236,6 +236,11 @@ class Index(NamedTuple):
         """The ends of a robot's name, by the name without the robot's."""
         return _by_robot(self).get((robot, kind, plain))
 
+    @property
+    def is_live(self) -> bool:
+        """Was it seen running? What launch files start may be a part of it."""
+        return bool(self.system.environment.rmw)
+
     def is_tool(self, node: str) -> bool:
         """Is the node none of the robots', but one that comes and goes beside any?"""
         plan = self.expected

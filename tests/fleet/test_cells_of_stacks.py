@@ -106,7 +106,7 @@ def test_a_fault_between_two_ends_of_the_build_is_seen(
 ) -> None:
     """Without the settings that fit, the cells say so."""
     wrongs = {
-        "fitting.commands._typed": (lambda node, choice, wanted: node, "MG306"),
+        "fitting.fitted.of_one_type": (lambda nodes, *_: [*nodes], "MG306"),
         "fitting.fitted.without_second_senders": (lambda nodes, free, sent: nodes, "MG408"),
         "robot_nodes.fitting_frames": (lambda member, nodes, sent: {}, "MG413"),
     }

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.likes import (
     alike,
@@ -184,7 +184,7 @@ def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterat
         yield differs_from_its_likes.finding(
             f"{robot} has {shorten([*listed], SEVERAL)} as {like}",
             "has it another description, or an older one?",
-            robot=robot, names=tuple({own.name: None for own, _ in pairs}),
+            robot=robot, names=unique(it.name for pair in pairs for it in pair),
         )  # fmt: skip
 
 

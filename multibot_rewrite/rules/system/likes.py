@@ -295,9 +295,9 @@ def _silent(seen: Index) -> Iterator[Finding]:
 @system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="missing")
 def driver_missing(seen: Index) -> Iterator[Finding]:
     """By its readers, and by another robot that has it, however much the two differ: all that one node
-    of the other robot does is one finding."""
+    of the other robot does is one finding. A launch file may leave it to another one."""
     lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
-    for ends in seen.topics if len(seen.robots) > 1 else ():
+    for ends in seen.topics if seen.is_live and len(seen.robots) > 1 else ():
         robot = seen.robot(ends.name)
         role = _missed_side(seen, ends) if robot else ""
         if role and (node := _who_does(seen, ends, role)):

@@ -66,11 +66,13 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                     ABSENT, level=WARNING, node=end.node, names=(ends.name,), **where([end]),
                 )  # fmt: skip
         for other_name, (first, *more) in by_kind.items():
-            # A lone sender and a lone reader of what a sensor measures are made for each other.
+            # A lone sender and a lone reader of what a sensor measures are made for each other. Next to
+            # what a launch file starts there may be a third.
             other = published[other_name]
             lone = other.type == first.type and not at_work(other.subscribers)
-            sure = words.is_of_a_body(first.type) or (
-                lone and words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK
+            sure = seen.is_live and (
+                words.is_of_a_body(first.type)
+                or (lone and words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK)
             )
             yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
 
@@ -222,7 +224,7 @@ def _missed_topic(
     if _is_doubled(other.name, end.name):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
         remaps = (Remap(sender, other.name, end.name),)
-    elif seen.robot(end.name) and not seen.robot(other.name):
+    elif seen.robot(end.name) and not seen.robot(other.name) and other.name not in EVERYBODYS:
         cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
         remaps = tuple(Remap(it, other.name, end.name) for it in nodes_of(other.publishers))
     elif other.type != end.type:
