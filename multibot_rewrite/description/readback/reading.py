@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.description.readback import active
+from multibot_rewrite.description.readback import active, parameters
 from multibot_rewrite.description.readback.nodes import (
     BELOW,
     TOPIC,
@@ -18,13 +18,6 @@ from multibot_rewrite.description.readback.nodes import (
     node_of,
 )
 from multibot_rewrite.description.readback.other_topics import of_others, resolved
-from multibot_rewrite.description.readback.parameters import (
-    MODEL,
-    around,
-    default_of,
-    is_nested,
-    values_of,
-)
 from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
 
@@ -79,7 +72,7 @@ def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
     names += _of_hosts(root, hardware, "ros2_control", (), vocabulary)
     names += _of_sensors(root, vocabulary)
     names += _of_elements(root, vocabulary)
-    missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
+    missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(parameters.MODEL))
     heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
     below = (end for it in nodes for end in _endpoints(it, below=True))
     others = (
@@ -127,13 +120,17 @@ def _of_first_senders(
 ) -> tuple[RuntimeName, ...]:
     """Without those of systems whose transform another one of the model sends, or sends first."""
     numbers = {it.number for it in missed}
-    models = {it.number: around(it.element) for it in hosts}
+    models = {it.number: parameters.around(it.element) for it in hosts}
     sent: set[_Element] = set()
     partly: set[int] = set()
     for it in hosts:
-        sites = [s for s in it.section.sites if MODEL in s.default and s.kinds[0] == FRAME]
+        sites = [
+            s for s in it.section.sites if parameters.MODEL in s.default and s.kinds[0] == FRAME
+        ]
         if it.number not in numbers:
-            sent |= {models[it.number] for s in sites if default_of(it.element, s.default)}
+            sent |= {
+                models[it.number] for s in sites if parameters.default_of(it.element, s.default)
+            }
         elif any(any(values_at(it.element, s.path)) for s in sites):
             partly.add(it.number)
     sent |= {models[it] for it in partly}
@@ -141,7 +138,7 @@ def _of_first_senders(
     for number in sorted(numbers - partly):
         if models[number] not in sent:
             first.setdefault(models[number], number)
-    first = {model: it for model, it in first.items() if not is_nested(model)}
+    first = {model: it for model, it in first.items() if not parameters.is_nested(model)}
     return tuple(it for it in missed if it.number in partly or it.number in first.values())
 
 
@@ -251,7 +248,7 @@ def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[Ru
     (every,) = vocabulary.find("element", tag)
     for site in (*every.sites, *host.section.sites):
         if site.role != "keep" and kind in site.kinds:
-            for value in dict.fromkeys(values_of(host.element, site)):
+            for value in dict.fromkeys(parameters.values_of(host.element, site)):
                 # What is looked up below a link has its name.
                 if (value.partition("::")[0] if site.form == "suffixed" else value) in there:
                     yield RuntimeName(kind, value, tag, host.number, site.path)
