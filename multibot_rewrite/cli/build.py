@@ -62,7 +62,12 @@ def run(options: argparse.Namespace) -> int:
     made = make_outputs(plan, os.path.abspath(options.output))
     back = read_back(plan, made, os.path.abspath(options.output))
     # What is told in both is said once, at the level of the folder.
-    told = (it for it in made.findings if it._replace(level=ERROR) not in back)
+    again = {(it.code, it.names) for it in back if it.names}
+    told = (
+        it
+        for it in made.findings
+        if it._replace(level=ERROR) not in back and (it.code, it.names) not in again
+    )
     held = coverage(made.planned)
     both = dict.fromkeys((*told, *plan.with_names((*back, *plan.fleet.table.problems))))
     ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))

@@ -208,7 +208,7 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
         known = is_declared(context.names, kind, name)
         return f"{kind}/{spell(context.names, kind, name) if known else name}"
 
-    if found:
+    if found and found[0].lstrip("/") not in context.names.given:
         return found["above"] + MODEL_SLOT + PART.sub(part, rest)
     bare = name.strip("/")
     if bare in WORLD or bare.startswith("world/"):
@@ -223,7 +223,10 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
 def _made_parts(context: Context, name: str) -> list[NamePart]:
     """The names in a topic that a system of the description makes of a word of its parameters."""
     parts = [*parts_of(name, context.names.words, context.names.declared)]
-    return parts if parts and parts[0].kinds == STEM else []
+    # The description spells what it gives in full: there the model is one of its names.
+    naming, is_given = context.names.naming, name.lstrip("/") in context.names.given
+    is_model = is_given and naming.layout.renames_models
+    return parts if parts and (parts[0].kinds == STEM or is_model) else []
 
 
 def _of_words(context: Context, name: str, parts: Sequence[NamePart]) -> str:

@@ -16,7 +16,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.fleet.checks.across_domains import one_launch_each
-from multibot_rewrite.fleet.checks.closed_plan import bridged_by, demanded, gaps_of, sorted_out
+from multibot_rewrite.fleet.checks.closed_plan import bridged_by, gaps_of, sorted_out
 from multibot_rewrite.fleet.checks.of_robots import of_robots
 from multibot_rewrite.fleet.file.fleet_file import input_files
 from multibot_rewrite.fleet.fleet import Fleet, expected, possible
@@ -96,7 +96,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings += of_robots(plan)
         gaps = gaps_of(plan, fleet, made)
         findings += gaps
-        fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, files)))
+        fleet = fleet._replace(gaps=gaps, bridged=bridged_by(plan, files))
         planned = _portable_plan(plan, fleet)
         opened = configs or usual_windows(plan, planned)
         shown = windows(plan, opened)

@@ -68,6 +68,11 @@ class FleetPlan(NamedTuple):
         return self.evidence[node_sources(robot.spec)]
 
     @property
+    def launched_words(self) -> tuple[str, ...]:
+        """Return the arguments of all that launch files start."""
+        return tuple(word for it in self.evidence.values() for word in it.arguments)
+
+    @property
     def of_rewrites(self) -> list[Finding]:
         """What the rewrites of the robots say, but for what the fleet says itself at the line."""
         told = {(it.code, it.file, it.line) for it in self.fleet.table.problems}

@@ -652,6 +652,55 @@ def test_topics_of_the_bridges_of_a_launch_file_are_bridged_for_each_robot(tmp_p
     ]
 
 
+NAMED = """
+        Node(package='ros_gz_bridge', executable='parameter_bridge', name='sensors',
+            arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock',
+                '/cmd_vel@geometry_msgs/msg/Twist@gz.msgs.Twist@/model/bot/drive',
+                '/world/w/create@ros_gz_interfaces/srv/SpawnEntity',
+                '/world/w/set@ros_gz_interfaces/srv/ControlWorld@gz.msgs.A@gz.msgs.B']),
+        Node(package='ros_gz_bridge', executable='bridge_node', name='more', namespace='head',
+            parameters=[{'config_file': 'FOLDER/more.yaml'}]),
+        Node(package='ros_gz_image', executable='image_bridge', name='eye', arguments=['/image']),
+"""
+MORE = """\
+- ros_topic_name: imu
+  gz_topic_name: /model/bot/imu
+  ros_type_name: sensor_msgs/msg/Imu
+  gz_type_name: gz.msgs.IMU
+  direction: GZ_TO_ROS
+"""
+
+
+@pytest.mark.parametrize("layout", AFFIX)
+def test_the_plan_has_what_bridges_with_names_carry_and_not_the_bridges(
+    layout: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The bridges of the build stand for them: whoever compares a plan misses no other ones."""
+    (tmp_path / "more.yaml").write_text(MORE)
+    body = NAMED.replace("FOLDER", str(tmp_path))
+    found = actions(tmp_path, body, more="simulator: gazebo", layout=layout, given={"robots": "2"})
+    bridges = [it.values for it in found if _word(it) == "parameter_bridge"]
+    services = [
+        "/world/w/create@ros_gz_interfaces/srv/SpawnEntity",
+        "/world/w/set@ros_gz_interfaces/srv/ControlWorld@gz.msgs.A@gz.msgs.B",
+    ]
+    assert [it.get("arguments", []) for it in bridges] == [services, [], []]
+    plan = yaml.safe_load((tmp_path / "out/plan.yaml").read_text())
+    topics = {it["name"]: it["bridge"] for it in plan["topics"] if "bridge" in it}
+    mine = "{}/robot1".format if layout == "postfix" else "/robot1{}".format
+    for name in ("/image", "/head/imu"):
+        assert topics[mine(name)] == ["publishes"]
+    assert topics[mine("/cmd_vel")] == ["publishes", "subscribes"]
+    assert [topics[it] for it in ("/world/w/create", "/world/w/set")] == [["serves"]] * 2
+    rows = yaml.safe_load((tmp_path / "out/robot1/bridge.yaml").read_text())
+    inside = {it.get("gz_topic_name", it.get("topic_name")) for it in rows}
+    assert {"/model/robot1/drive", "/model/robot1/imu"} <= inside
+    capsys.readouterr()
+    words = ["check-launch", str(tmp_path / "out/fleet.launch.py"), "--plan"]
+    main([*words, str(tmp_path / "out/plan.yaml")])
+    assert "MG101" not in "".join(capsys.readouterr())
+
+
 GZ = """
         IncludeLaunchDescription([FindPackageShare('ros_gz_sim'), '/launch/gz_sim.launch.py'],
             launch_arguments={'gz_args': 'ARGS'}.items()),
@@ -710,3 +759,152 @@ def test_spawners_start_when_the_robot_is_in_its_simulator(simulator: str, tmp_p
     waits = ["OnProcessExit of create", *inside, "end", "create"]
     started = [it for it in found if it in waits]
     assert started == (waits if simulator == "true" else inside)
+
+
+@pytest.mark.parametrize("words", ["'--param', 'robot_description'", ""])
+def test_a_vendors_own_spawner_is_the_only_one(words: str, tmp_path: Path) -> None:
+    """A second spawner would put the robot into the simulator twice; each robot has its own place."""
+    given = "" if words else "parameters=[{'robot_description': 'x'}],"
+    body = f"""
+        IncludeLaunchDescription([FindPackageShare('ros_gz_sim'), '/launch/gz_sim.launch.py']),
+        Node(package='acme', executable='spawn_it', {given}
+            arguments=[{words}{", " if words else ""}'--x', '1.5', '--Y', '0.3', '--keep']),
+    """
+    more = "simulator: gazebo"
+    text = FLEET.replace("robot2,", "robot2, pose: {{x: 4, y: 1, yaw: 2}},")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setitem(globals(), "FLEET", text)
+        found = actions(tmp_path, body, more=more)
+    assert "create" not in told(found)
+    assert of(found, "spawn_it")["arguments"][-5:] == ["--x", "4.0", "--Y", "2.0", "--keep"]
+    assert told(found).count("spawn_it") == 1
+
+
+def test_a_program_without_the_description_is_no_spawner_of_the_robot(tmp_path: Path) -> None:
+    body = """
+        IncludeLaunchDescription([FindPackageShare('ros_gz_sim'), '/launch/gz_sim.launch.py']),
+        here('spawn_boxes', arguments=['--x', '1.5']),
+    """
+    found = actions(tmp_path, body, more="simulator: gazebo")
+    assert "create" in told(found)
+    assert of(found, "spawn_boxes")["arguments"] == ["--x", "1.5"]
+
+
+CONDITIONS = """
+        DeclareLaunchArgument('joy', default_value='false'),
+        DeclareLaunchArgument('mode', default_value='real'),
+        here('yes', condition=UnlessCondition(joy)),
+        here('stick', condition=IfCondition(joy)),
+        GroupAction([here('a'), here('b')], condition=LaunchConfigurationEquals('mode', 'sim')),
+        IncludeLaunchDescription([FindPackageShare('acme'), '/launch/more.launch.py'],
+            condition=IfCondition(PythonExpression(["'", joy, "' == '1' or '", mode, "' == 'sim'"]))),
+        ExecuteProcess(cmd=['/usr/bin/thing'], condition=IfCondition(joy)),
+        TimerAction(period=1.0, actions=[here('late')], condition=IfCondition(joy)),
+        OpaqueFunction(function=lambda context: [here('made', condition=IfCondition(joy))]),
+"""
+
+
+def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The conditions count with the arguments of the fleet file; others start what they kept out."""
+    setup = """from launch.conditions import LaunchConfigurationEquals, UnlessCondition
+    from launch.substitutions import PythonExpression
+    joy, mode = LaunchConfiguration('joy'), LaunchConfiguration('mode')"""
+    assert told(actions(tmp_path, CONDITIONS, setup)) == ["yes"]
+    text = (tmp_path / "out/fleet.launch.py").read_text()
+    comments = " ".join(it.strip("# ") for it in text.splitlines() if it.strip()[:1] == "#")
+    left = dict(it.split(" (", 1) for it in comments.split("Not started: ")[1:])
+    assert {name: why.split(" has ")[1].split(";")[0] for name, why in left.items()} == {
+        "acme stick": "joy:=false",
+        "acme a, acme b": "mode:=real",
+        "more.launch.py": "joy:=false, mode:=real",
+        "thing": "joy:=false",
+        "acme late": "joy:=false",
+        "acme made": "joy:=false",
+    }
+    capsys.readouterr()
+    words = ["init", str(tmp_path), "--launch", str(tmp_path / "up.launch.py"), "-o", "-", "--yes"]
+    main(words)
+    assert "#   acme a, acme b: mode:=real" in capsys.readouterr().out.splitlines()
+    fleet = (tmp_path / "fleet.yaml").read_text()
+    (tmp_path / "fleet.yaml").write_text(
+        fleet.replace("up.launch.py", "up.launch.py joy:=true mode:=sim")
+    )
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "other")]) == 0
+    text = (tmp_path / "other/fleet.launch.py").read_text()
+    assert "Not started: acme yes" in text and text.count("Not started") == 1
+
+
+ODOMETRY = """<gazebo>
+      <plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
+      <odom_topic>/model/bot/odometry</odom_topic><odom_frame>odom</odom_frame>
+      <robot_base_frame>base_link</robot_base_frame></plugin></gazebo></robot>"""
+
+
+@pytest.mark.parametrize("is_bridged", [True, False])
+def test_transforms_of_a_system_are_bridged_where_no_node_sends_them(
+    is_bridged: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The vendor's bridge has other topics, and his filter places the robot: two would do so."""
+    values = "{'world_frame': 'odom', 'base_link_frame': 'base_link', 'publish_tf': True}"
+    body = """Node(package='ros_gz_bridge', executable='parameter_bridge',
+            arguments=['/model/bot/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry']),"""
+    if not is_bridged:
+        body += "Node(package='robot_localization', executable='ekf_node', name='ekf_filter_node',"
+        body += f"parameters=[{values}]),"
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setitem(globals(), "DESCRIPTION", DESCRIPTION.replace("</robot>", ODOMETRY))
+        actions(tmp_path, body, more="simulator: gazebo")
+    rows = yaml.safe_load((tmp_path / "out/robot1/bridge.yaml").read_text())
+    types = {it["ros_type_name"] for it in rows}
+    assert ("tf2_msgs/msg/TFMessage" in types) is is_bridged
+    assert "MG408" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("layout", AFFIX)
+def test_a_bridge_has_topics_of_a_model_as_the_description_gives_them(
+    layout: str, tmp_path: Path
+) -> None:
+    """A topic that a system is told in full is no default: it has not the name of the spawned model."""
+    row = "/model/bot/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry"
+    body = f"Node(package='ros_gz_bridge', executable='parameter_bridge', arguments=['{row}']),"
+    text = DESCRIPTION.replace("</robot>", ODOMETRY)
+    text = text.replace(text[text.index("<robot") : text.index(">") + 1], '<robot name="bot">')
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setitem(globals(), "DESCRIPTION", text)
+        actions(tmp_path, body, more="simulator: gazebo", layout=layout)
+    written = (tmp_path / "out/robot1/robot.urdf").read_text()
+    told = written.split("<odom_topic>")[1].split("</odom_topic>")[0]
+    rows = yaml.safe_load((tmp_path / "out/robot1/bridge.yaml").read_text())
+    inside = [it.get("gz_topic_name", it.get("topic_name")) for it in rows]
+    assert told in inside and "/model/robot1/odometry" not in inside
+
+
+def test_move_group_has_what_its_launch_file_and_its_files_say_of_pipelines(tmp_path: Path) -> None:
+    """What a build makes of MoveIt's files comes before them; the last value counts (rcl)."""
+    mine = "move_group:\n  ros__parameters:\n    ompl: {request_adapters: [mine/One]}\n"
+    (tmp_path / "pipes.yaml").write_text(mine)
+    srdf = '<robot name="r"><group name="g"><link name="wheel"/></group></robot>'
+    (tmp_path / "arm.srdf").write_text(srdf)
+    (tmp_path / "kinematics.yaml").write_text("g: {kinematics_solver: k/K}\n")
+    body = f"""Node(package='moveit_ros_move_group', executable='move_group', name='move_group',
+        parameters=['{tmp_path}/pipes.yaml', {{'ompl.planning_plugin': 'mine/Two'}}]),"""
+    more = "simulator: none\nsrdf: arm.srdf\ncompanions: {moveit: [kinematics.yaml]}"
+    told = of(actions(tmp_path, body, more=more), "move_group")["parameters"]
+    files = [Path(it).name for it in told if isinstance(it, str)]
+    assert files.index("moveit_parameters.yaml") < files.index("pipes.yaml")
+    rows = [at for at, it in enumerate(told) if "ompl.planning_plugin" in it]
+    assert rows[-1] > max(at for at, it in enumerate(told) if isinstance(it, str))
+
+
+@pytest.mark.parametrize(
+    "file", ["ros_gz_sim/launch/gz_sim.launch.py", "ros_ign_gazebo/launch/ign_gazebo.launch.py"]
+)
+def test_a_simulator_is_started_once_by_its_launch_file(file: str, tmp_path: Path) -> None:
+    """No package has a program gzserver but gazebo_ros: ros2 launch would end."""
+    package, _, path = file.partition("/")
+    body = f"IncludeLaunchDescription([FindPackageShare('{package}'), '/{path}']),"
+    found = actions(tmp_path, body, more="simulator: gazebo")
+    assert [it.kind for it in found].count("IncludeLaunchDescription") == 1
+    assert "gzserver" not in told(found)

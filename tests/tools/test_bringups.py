@@ -15,7 +15,7 @@ from paths import fixture_text
 from waiting import wait_until
 
 from tools.bringups import running
-from tools.bringups.__main__ import Made, Verdict, details, table
+from tools.bringups.__main__ import Made, Verdict, details, installed, table
 from tools.bringups.choose import Choice, chosen, launch_files
 from tools.bringups.compare import Comparison, compare
 from tools.bringups.install import install
@@ -54,6 +54,31 @@ def test_a_process_is_there_for_each_robot_once_or_missing() -> None:
     assert where(found) == ["each", "once", "missing"]
     assert [it.differs for it in found.matches] == [(), (), ()]
     assert [it.program for it in found.extra] == ["amcl", "amcl"]
+
+
+def test_a_simulator_is_there_by_its_launch_file() -> None:
+    program = Process("", "ign", words=("gazebo", "-r"))
+    fleet = [Process("ros_gz_sim", "launch/gz_sim.launch.py", kind="include")]
+    found = compare([program], fleet, ROBOTS)
+    assert (where(found), found.extra) == (["once"], ())
+    assert found.matches[0].differs == ("include in place of program",)
+    assert where(compare([Process("", "gazebo", words=("-r",))], fleet, ROBOTS)) == ["missing"]
+    classic = [Process("gazebo_ros", "launch/gazebo.launch.py", kind="include")]
+    server = Process("gazebo_ros", "launch/gzserver.launch.py", kind="include")
+    assert where(compare([server, program], classic, ROBOTS)) == ["once", "missing"]
+    old, new = Process("ros_ign_gazebo", "create"), Process("ros_gz_sim", "create")
+    assert where(compare([old], of_each(new), ROBOTS)) == ["each"]
+
+
+def test_installed_packages_are_copies_with_their_modules(tmp_path: Path) -> None:
+    """What a fenced launch file may read is in the prefix: a link leads out of it."""
+    package = tmp_path / "src/acme"
+    (package / "acme").mkdir(parents=True)
+    (package / "acme/__init__.py").write_text("")
+    (package / "package.xml").write_text("<package><name>acme</name></package>")
+    prefix = installed([tmp_path / "src"], tmp_path / "there")
+    for path in (prefix / "share/acme/package.xml", prefix / "site/acme/__init__.py"):
+        assert path.is_file() and not path.is_symlink()
 
 
 def test_a_process_of_one_robot_alone_is_not_there_for_each() -> None:

@@ -28,7 +28,7 @@ import yaml
 
 from tools.bringups.choose import Choice, chosen, launch_files
 from tools.bringups.compare import SHARED, Comparison, Match, compare
-from tools.bringups.install import install, packages
+from tools.bringups.install import copied, install, merge, packages
 from tools.bringups.reading import read
 from tools.bringups.running import Process, Ran, start
 from tools.strangers import MULTIBOT, run
@@ -212,14 +212,17 @@ def details(verdict: Verdict) -> Iterator[str]:
 
 
 def installed(sources: Iterable[Path], prefix: Path) -> Path:
-    """Return a prefix with the packages below some folders, as a sourced workspace has them."""
+    """Return a prefix with copies of the packages below some folders, as a sourced workspace has them;
+    their Python modules are in its folder ``site``."""
     shutil.rmtree(prefix, ignore_errors=True)
     index = prefix.resolve() / "share/ament_index/resource_index/packages"
     index.mkdir(parents=True)
     for source in sources:
         for name, place in packages(source.resolve()).items():
             (index / name).touch()
-            install(name, place, prefix.resolve())
+            install(name, place, prefix.resolve(), copied)
+            if (place / name / "__init__.py").is_file():
+                merge(place / name, prefix / "site" / name, copied)
     return prefix.resolve()
 
 
@@ -242,8 +245,8 @@ def main(words: Sequence[str]) -> int:
         "--list", action="store_true", help="list launch files that may be bringups"
     )
     given = parser.parse_args(words)
-    os.environ.pop("PYTHONPATH", None)
-    os.environ["AMENT_PREFIX_PATH"] = str(installed(given.sources, given.keep / "installed"))
+    prefix = installed(given.sources, given.keep / "installed")
+    os.environ |= {"AMENT_PREFIX_PATH": str(prefix), "PYTHONPATH": str(prefix / "site")}
     verdicts = []
     for choice in [it for part in given.only for it in chosen(given.half) if part in it.name]:
         checkout = (given.folder / choice.name.replace("/", "+")).resolve()

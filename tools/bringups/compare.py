@@ -50,6 +50,13 @@ OWN: dict[str, dict[str, str]] = {
 }
 
 
+# What starts one simulator: the program, or the launch file that starts it with the same options.
+SIMULATORS = {
+    **dict.fromkeys(("gz", "ign", "gz_sim.launch.py", "ign_gazebo.launch.py"), "gz_sim"),
+    **dict.fromkeys(("gazebo.launch.py", "gzserver.launch.py"), "classic"),
+}
+# One package under two names, of which Humble has both.
+RENAMED = {"ros_ign_gazebo": "ros_gz_sim", "ros_ign_bridge": "ros_gz_bridge"}
 # Static transforms for the poses in the fleet file.
 POSES = {"start_pose"}
 
@@ -137,11 +144,14 @@ def _key(process: Process, robot: str) -> tuple[str, ...]:
     """Return what two processes that do one thing have in common."""
     if process.program == "spawner":
         return ("spawner", bare(process.words[0], robot) if process.words else "")
+    if of_one := SIMULATORS.get(os.path.basename(process.program)):
+        return (of_one,)
     if process.program in STATIC:
         return ("static", *(bare(it, robot) for it in frames(process)))
     if not process.package:
         return (process.program, *(bare(it, robot) for it in process.words[:1]))
-    return (process.package, os.path.basename(process.program))
+    package = RENAMED.get(process.package, process.package)
+    return (package, os.path.basename(process.program))
 
 
 def _may_be(process: Process, other: Process, robot: str) -> bool:
@@ -244,7 +254,7 @@ def differences(process: Process, other: Process, robot: str) -> Iterator[str]:
         yield f"namespace {process.namespace!r}: {other.namespace!r}"
     yield from _rules(process, other, robot)
     yield from _parameters(process, other, robot)
-    if process.program not in STATIC:
+    if process.program not in STATIC and process.kind == other.kind:
         yield from _words(process, other, robot)
         yield from _files(process, other, robot)
     for name, it in process.facts.items():

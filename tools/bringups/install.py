@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+import shutil
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -30,31 +31,46 @@ def packages(folder: Path) -> dict[str, Path]:
     return found
 
 
-def install(name: str, source: Path, prefix: Path) -> None:
+def linked(source: Path, target: Path) -> None:
+    """Make a link to a file."""
+    target.symlink_to(source)
+
+
+def copied(source: Path, target: Path) -> None:
+    """Copy a file that is there."""
+    if source.is_file():
+        shutil.copyfile(source, target)
+
+
+# How a file gets to its place: source, target.
+Way = Callable[[Path, Path], None]
+
+
+def install(name: str, source: Path, prefix: Path, way: Way = linked) -> None:
     """Make the share folder of a package: what its CMakeLists.txt installs there, and its sources."""
     share = prefix / "share" / name
     share.mkdir(parents=True)
     for path, target in _installed(name, source):
-        merge(path, prefix / target)
-    merge(source, share)
+        merge(path, prefix / target, way)
+    merge(source, share, way)
     inside = source / name  # of ament_python: folders inside of the module are often installed
     if (source / "setup.py").is_file() and inside.is_dir():
         for it in inside.iterdir():
             if it.is_dir():
-                merge(it, share / it.name)
+                merge(it, share / it.name, way)
 
 
-def merge(source: Path, target: Path) -> None:
-    """Link a file, or all files below a folder, where there is none yet."""
+def merge(source: Path, target: Path, way: Way = linked) -> None:
+    """Put a file, or all files below a folder, where there is none yet."""
     if source.is_dir():
         if source.name in (".git", "__pycache__"):
             return
         target.mkdir(parents=True, exist_ok=True)
         for it in source.iterdir():
-            merge(it, target / it.name)
+            merge(it, target / it.name, way)
     elif not os.path.lexists(target):
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.symlink_to(source)
+        way(source, target)
 
 
 def _installed(name: str, source: Path) -> Iterator[tuple[Path, str]]:

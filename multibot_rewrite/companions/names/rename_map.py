@@ -33,7 +33,7 @@ class CompanionNames(NamedTuple):
     """The names that a description declares (not rewritten), the naming, and the robot.
 
     ``own`` are names (kind and text) that arguments of the xacro make another for the robot; ``words``
-    are those that its systems make topics of.
+    are those that its systems make topics of, ``given`` the topics of Gazebo that it gives in full.
     """
 
     declared: Declared
@@ -41,6 +41,7 @@ class CompanionNames(NamedTuple):
     robot: str
     own: Mapping[tuple[str, str], str] = NO_OWN
     words: Stems = NO_WORDS
+    given: frozenset[str] = frozenset()
 
     @property
     def in_full(self) -> dict[str, str]:

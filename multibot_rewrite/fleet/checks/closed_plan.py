@@ -34,6 +34,7 @@ from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.ends import BRIDGE_FILE, bridge_ends
 from multibot_rewrite.producers.evidence.nodes import MANAGER
+from multibot_rewrite.producers.launch.bridges import services_in
 from multibot_rewrite.spelling.bridged_topics import BOTH, once
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import Topic
@@ -51,19 +52,21 @@ def closed_plan(plan: FleetPlan) -> Fleet:
         made = [*companion_files(few), *bridge_outputs(few)]
         gaps = gaps_of(plan, fleet, made)
         rows = [it for it in bridge_outputs(plan) if isinstance(it, OutputFile)]
-        return fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, rows)))
+        return fleet._replace(gaps=gaps, bridged=bridged_by(plan, rows))
 
 
-def bridged_by(texts: Iterable[OutputFile]) -> tuple[Topic, ...]:
-    """What the bridge files among the texts carry."""
-    files = [it for it in texts if it.path.rpartition("/")[2] == BRIDGE_FILE]
+def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...]:
+    """What the bridges of these files carry, but for those of robots that may be real."""
+    files = [it for it in _demanded(plan, texts) if it.path.rpartition("/")[2] == BRIDGE_FILE]
     rows = (end for it in files for end in bridge_ends(it.yaml))
-    return once(
-        Topic(end.name, bridge=(end.role,) if end.role else BOTH, type=end.type) for end in rows
-    )
+    topics = [Topic(it.name, bridge=(it.role,) if it.role else BOTH, type=it.type) for it in rows]
+    if any(it.path == BRIDGE_FILE for it in files):
+        served = (it.end for it in services_in(plan.launched_words).values())
+        topics += (Topic(it.name, bridge=(it.role,), type=it.type) for it in served)
+    return once(topics)
 
 
-def demanded(plan: FleetPlan, texts: Iterable[OutputFile]) -> Iterator[OutputFile]:
+def _demanded(plan: FleetPlan, texts: Iterable[OutputFile]) -> Iterator[OutputFile]:
     """The files without the bridges of robots that may be real, and without that of what all share
     where all may be."""
     maybe = plan.fleet.maybe_real

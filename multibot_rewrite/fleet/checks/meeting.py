@@ -74,7 +74,8 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
         # The table has rules for the names of the nodes that its hardware makes.
         own = (it for it in member.reading.names if not it.of_controllers)
         found[member.robot] = [
-            it for it in own if it.tag != "ros2_control" or it.name not in ruled[member.robot]
+            *(it for it in own if it.tag != "ros2_control" or it.name not in ruled[member.robot]),
+            *member.published,
         ]
     for it in table.runs:
         if it.robot and not it.written:
@@ -99,8 +100,9 @@ def _finding(met: Meeting, member: Member | None, written: Written | None) -> Fi
             there = elements_at(name.element_in(member.source.root), split_path(name.path)[0])
             hint = own_value(sources_of(written, member, there))
             found = found._replace(hint=hint or found.hint)
-        line = line_of(member.source, name.tag, name.number)
-        return found._replace(file=member.source.file, line=line, column=1)
+        source = member.sent if name in member.published else member.source
+        line = line_of(source, name.tag, name.number)
+        return found._replace(file=source.file, line=line, column=1)
     return found._replace(robot=met.robot, node=name.path)
 
 

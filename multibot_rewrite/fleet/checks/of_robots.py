@@ -53,8 +53,6 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
     yield from moved_services(plan)
     yield from named_twice(plan.robots)
     yield from _one_device_each(plan)
-    for found in plan.evidence.values():
-        yield from found.findings
     yield from lacking(plan)
     yield from without_camera(plan)
     yield from _too_near(plan)

@@ -24,6 +24,7 @@ from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.as_planned import is_for_driver, not_as_planned, open_names
 from multibot_rewrite.fleet.checks.as_printed import not_as_commanded, not_as_printed
 from multibot_rewrite.fleet.checks.lacking import LACKING
+from multibot_rewrite.fleet.checks.of_bringup import as_the_vendor_has_it
 from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import loads_hardware, switch_for
@@ -100,7 +101,8 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         packages = {it.package for it in made.starts.every if it.process.is_include}
         notes = (it for it in graph.notes if it.missing not in packages)
         graph = graph._replace(notes=tuple(notes))
-        start = launched(graph, _known(plan))
+        known = _known(plan)
+        start = launched(graph, known)
         seen = start.system
         real = frozenset(it.spec.namespace for it in plan.robots if it.spec.simulator == REAL)
         whole, started = start.with_bridged, made.starts.nodes
@@ -124,6 +126,7 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         if any(it.code == NO_MANAGER.code for it in wrong):
             remedy = _remedy(plan)
             wrong = [it._replace(hint=remedy) if it.code == NO_MANAGER.code else it for it in wrong]
+        wrong = [*as_the_vendor_has_it(plan, index(seen, by_plan), wrong, known)]
         lost = [*_lost(graph, seen, home)]
         for found in wrong:
             texts = (found.file, found.message, found.hint)

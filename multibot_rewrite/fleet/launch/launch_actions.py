@@ -47,7 +47,7 @@ from multibot_rewrite.knowledge.programs import (
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
-from multibot_rewrite.producers.launch.bridges import is_of_images
+from multibot_rewrite.producers.launch.bridges import services_in
 from multibot_rewrite.producers.launch.handed_on import (
     DESCRIPTION,
     SEMANTIC,
@@ -81,7 +81,9 @@ _BY_HAND = (*BY_HAND, "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
 _DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/stacks.md)"
 _NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
+_OTHERWISE = "give it another value behind its file under `launch:`, and build again"
 _NO_NAME = "unnamed"
+_OF_MOVEIT = ("move_group", "servo_node")
 # What of MoveIt's parameters has names of joints, links and controllers.
 _NAMED = ("robot_description", "moveit_simple_controller_manager", "moveit_ros_control_interface")
 # The words of ros2 behind which nodes stand, and those with topics, services and actions.
@@ -120,10 +122,19 @@ def of_robot(
         _where(names),
         params_paths(robot, files),
         starts,
-        tuple(given.left.items()),
+        (*given.left.items(), *_idle(one, robot)),
         not_bridged(robot.spec.name) if any(it.needs for it in relayed) else "",
         tuple(_nodes(given)),
     )
+
+
+def _idle(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
+    """What launch files do not start with the arguments that they are given, each with these."""
+    for it in plan.evidence_of(robot).idle:
+        yield (
+            it.what,
+            f"{it.place.file.rpartition('/')[2]}:{it.place.line} has {it.why}; {_OTHERWISE}",
+        )
 
 
 class _Given(NamedTuple):
@@ -168,8 +179,6 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
     something else."""
     naming, file = given.plan.fleet.naming, given.plan.file
     relayed = {it.run.node for it in relays(given.robot.spec.namespace, naming, file)}
-    handed = given.plan.evidence_of(given.robot).handed_on
-    relayed |= {name for name, it in handed.items() if is_of_images(it.program)}
     for name in given.names.started:
         it = given.facts.get(name)
         if name in relayed or not {name, it.kind if it else ""}.isdisjoint(_BY_HAND):
@@ -217,6 +226,9 @@ def _started(given: _Given, name: str) -> Start:
     words = made.arguments
     if facts.kind == STATIC:
         words = with_frames([path_of(it) for it in words], own)
+    placing = given.plan.evidence_of(given.robot).placing
+    if placing is not None and spawn.is_of_vendor(placing) and made.number == placing.number:
+        words = tuple(spawn.placed_at(words, given.robot.spec.pose))
     return made._replace(
         arguments=(*words, *_options(given, facts)),
         components=tuple(_components(given, name)),
@@ -364,8 +376,11 @@ def _is_listed(given: _Given, name: str) -> bool:
 def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     """Its robot's parameter files, and what no file says of it."""
     robot, facts = given.robot, given.facts[name]
-    found: list[Parameters] = [File(it) for it in _files(given, name)]
-    known = facts.kind
+    files = [File(it) for it in _files(given, name)]
+    known, made = facts.kind, File(path_for(robot, moveit_parameters.FILE))
+    is_launched = name in given.plan.evidence_of(robot).handed_on
+    later = files if is_launched and known in _OF_MOVEIT and made.path in given.files else []
+    found: list[Parameters] = [] if later else [*files]
     if facts.usual:
         found.append(dict(facts.usual))
     values = given.values.get((robot.spec.name, name))
@@ -378,15 +393,15 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     if known == STATE:
         prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
         found.append({"robot_description": Text(_description(robot)), **prefix})
-    if known in ("move_group", "servo_node"):
+    if known in _OF_MOVEIT:
         found.append({"robot_description": Text(_description(robot))})
-        made = File(path_for(robot, moveit_parameters.FILE))
         if made.path in given.files:
             found.append(made)
         elif robot.spec.srdf:
             srdf = Text(path_for(robot, expanded_name(robot.spec.srdf)))
             found.append({moveit_parameters.SEMANTIC: srdf})
-        # Of names those of the files count, of all else what the launch file says.
+        # Of names those of the files count, of all else what the launch file and its files say.
+        found += later
         own = {key: it for key, it in (values or {}).items() if not key.startswith(_NAMED)}
         found += [own] if own and made.path in given.files else []
     if known == LIFECYCLE_MANAGER:
@@ -482,10 +497,10 @@ def _spawned(given: _Given) -> Iterator[Start]:
         return
     (it,) = spawn.in_folder(given.plan)
     made, own = spawn.spawner(it, spawn.is_classic(robot)), given.plan.evidence_of(robot).placing
-    if own is not None:
+    if own is not None and not spawn.is_of_vendor(own):
         delay = own.process.delay if not own.process.event else 0.0
         made = made._replace(number=own.number, process=made.process._replace(delay=delay))
-    yield made
+    yield from [] if spawn.is_of_vendor(own) else [made]
     path = gz_bridge_path(robot)
     if path in given.files:
         spaces = {it.namespace for it in given.names.nodes.values()}
@@ -511,7 +526,8 @@ def of_all(
     shared = (*_shared(plan, names, known, values), *_processes_of_all(plan))
     if BRIDGE_FILE not in files:
         return shared
-    bridge = Start(*_BRIDGE, parameters=({"config_file": File(BRIDGE_FILE)},))
+    rows, served = ({"config_file": File(BRIDGE_FILE)},), services_in(plan.launched_words)
+    bridge = Start(*_BRIDGE, parameters=rows, arguments=tuple(served))
     # It is of no use without the simulator.
     return (bridge._replace(condition=SIMULATOR), *shared) if simulators else (*shared, bridge)
 

@@ -12,7 +12,6 @@ import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.model import InputError
@@ -23,7 +22,7 @@ from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
-from multibot_rewrite.producers.launch.bridges import rows_in_words
+from multibot_rewrite.producers.launch.bridges import files_in, rows_in_words
 from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.of_robot import is_of_robot
 from multibot_rewrite.producers.launch.programs import once_for_all
@@ -63,7 +62,7 @@ def with_launched_files(file: FleetFile) -> LaunchedFiles:
     named = {launch: tuple(_named(spec)) for launch, spec in first.items()}
     found = [_with(it, named.get(it.launch, ())) for it in file.robots]
     bridged = {launch: _bridged(spec) for launch, spec in first.items()}
-    robots = tuple(_with_bridges(it, bridged.get(it.launch, {})) for it, _ in found)
+    robots = tuple(_with_bridges(it, *bridged.get(it.launch, ({}, ()))) for it, _ in found)
     return LaunchedFiles(file._replace(robots=robots), {it.name: notes for it, notes in found})
 
 
@@ -86,9 +85,9 @@ def _given_to(node: LaunchedNode) -> Iterator[ParameterText]:
             yield ParameterText(path, yaml_of(path).text, path)
 
 
-def _bridged(spec: RobotSpec) -> dict[str, str]:
+def _bridged(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
     """The topics in the words of bridges, as files of bridges have them, by the launch file that starts
-    them; the first row of each bridge is in its line there."""
+    them; the first row of each bridge is in its line there. And the files that bridges are told."""
     words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
     found: dict[str, str] = {}
     nodes = launch_of(spec.launch, spec.words[0]).nodes
@@ -98,14 +97,17 @@ def _bridged(spec: RobotSpec) -> dict[str, str]:
             text = found.get(it.place.file, "")
             gap = "\n" * max(it.place.line - 1 - text.count("\n"), 0)
             found[it.place.file] = f"{text}{gap}{rows}"
-    return found
+    files = dict.fromkeys(file for it in nodes for file in files_in(it))
+    return found, tuple(filter(os.path.isfile, files))
 
 
-def _with_bridges(spec: RobotSpec, found: Mapping[str, str]) -> RobotSpec:
-    """The robot with what its launch files bridge, beside the files that it has."""
-    if not found or spec.simulator == REAL:
+def _with_bridges(spec: RobotSpec, found: Mapping[str, str], files: Sequence[str]) -> RobotSpec:
+    """The robot with what its launch files bridge, and the files that it has."""
+    own = spec.companions.get("bridge", ())
+    there = {os.path.realpath(it) for it in own}
+    own = (*own, *(it for it in files if os.path.realpath(it) not in there), *found)
+    if spec.simulator == REAL or own == spec.companions.get("bridge", ()):
         return spec
-    own = (*spec.companions.get("bridge", ()), *found)
     companions = {**spec.companions, "bridge": own}
     return spec._replace(companions=companions, filled=(*spec.filled, *found.items()))
 
@@ -214,21 +216,9 @@ def _with_namespaces(spec: RobotSpec, robots: Collection[str]) -> RobotSpec:
     values = (value.strip("/") for it in spec.launch for _, value in it.arguments)
     words = {*robots, *filter(None, values)}
     nodes = (it for it in launch_of(spec.launch, spec.name).nodes if it.package in _PACKAGES)
-    told = {os.path.basename(name): _below(it, words) for it in nodes for name in _files_of(it)}
+    told = {os.path.basename(name): _below(it, words) for it in nodes for name in files_in(it)}
     found = ((path, told.get(os.path.basename(path), "")) for path in files)
     return spec._replace(bridges_below=tuple((path, below) for path, below in found if below))
-
-
-def _files_of(node: LaunchedNode) -> Iterator[str]:
-    """The files that a bridge is told, and those of which the launch makes another one."""
-    for it in node.parameters:
-        if it.source:
-            yield it.source
-            continue
-        sections = load_yaml(it.text, it.file or node.place.file)
-        for section in sections.values() if isinstance(sections, dict) else ():
-            value = section.get("ros__parameters", {}).get(_FILE, "")
-            yield from [value] if isinstance(value, str) and value else ()
 
 
 def _below(node: LaunchedNode, words: Collection[str]) -> str:

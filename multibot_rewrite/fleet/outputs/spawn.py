@@ -7,7 +7,7 @@ Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spaw
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -21,6 +21,8 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, without_mass
+from multibot_rewrite.producers.launch.programs import program_of, programs
+from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.spelling.bridged_topics import bridged_topics, model_name
 from multibot_rewrite.spelling.start import File, Start, shell_line
 from multibot_rewrite.system.records import PUBLISHES
@@ -141,6 +143,22 @@ def either(it: Spawn, robot: RewrittenRobot) -> str:
     if is_classic(robot):
         return f"{classic}\n# gz-sim: {gz}\n"
     return f"{gz}\n# Gazebo Classic: {classic}\n"
+
+
+def is_of_vendor(own: LaunchedNode | None) -> bool:
+    """Does a program that nobody knows put the robot into its simulator?"""
+    return own is not None and program_of(own) not in programs().spawners
+
+
+def placed_at(words: Sequence[str | File], pose: Pose | None) -> Iterator[str | File]:
+    """Yield the arguments of a spawner with another pose, where they have one."""
+    values = pose._asdict() if pose else {}
+    own = {flag.lstrip("-"): str(values[key]) for key, flag in FLAGS.items() if pose}
+    own |= {key: str(it) for key, it in values.items()}
+    before = ""
+    for word in words:
+        yield own.get(before.lstrip("-"), word) if before[:1] == "-" else word
+        before = word if isinstance(word, str) else ""
 
 
 def _namespaces(robot: RewrittenRobot) -> tuple[list[str], list[str]]:

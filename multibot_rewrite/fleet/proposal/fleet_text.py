@@ -178,6 +178,10 @@ def _launched(it: Bringup) -> Iterator[str]:
     if once:
         yield "Once for all robots; `own_nodes: [NAME]` gives each its own:"
         yield from _some(once)
+    idle = [f"{one.what}: {one.why}" for one in it.graph.idle]
+    if idle:
+        yield "Not started, by its conditions; another value behind its file here starts it:"
+        yield from _some(idle)
     if it.others:
         yield "It starts the most; others start this robot as well:"
         yield from _some([f"--launch {order_text(one, os.curdir)}" for one in it.others])

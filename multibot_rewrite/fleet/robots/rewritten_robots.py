@@ -18,7 +18,7 @@ from multibot_rewrite.description.checks.twice import CARRYING
 from multibot_rewrite.description.library import Rewrite, rewrite_job
 from multibot_rewrite.description.own_ports import numbered, ports_of
 from multibot_rewrite.description.readback.meeting import NUMBERED, SHARED_CODES
-from multibot_rewrite.description.rewriters.made_topics import words_of
+from multibot_rewrite.description.rewriters.made_topics import given_topics, words_of
 from multibot_rewrite.description.sources.job import (
     PARTS,
     FilesRead,
@@ -223,6 +223,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
         simulated_parts = (model or text).template.inventory
         more = words_of(simulated_parts.claims), simulated_parts.topics_in_full
         names = companion_names(declared, naming, robot.tag, own, *more)
+        names = names._replace(given=given_topics(simulated_parts.claims))
         yield RewrittenRobot(
             robot,
             data,

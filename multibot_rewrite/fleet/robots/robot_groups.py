@@ -43,8 +43,9 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         spec = robots[0].spec
         evidence = plan.evidence_of(robots[0])
         facts = tuple(companion_nodes(evidence.nodes, stack_nodes(spec, plan.file)))
-        declared, naming, _, own, words = robots[0].names
+        declared, naming, _, own, words, given = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own, words)
+        context = context._replace(names=context.names._replace(given=given))
         yield RobotGroup(tuple(robots), facts, context._replace(frames=evidence.frames))
 
 

@@ -28,6 +28,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
 from multibot_rewrite.fleet.outputs.output_file import params_of
 from multibot_rewrite.fleet.robots.fitting.fitted import described, fitted, free_nodes
 from multibot_rewrite.fleet.robots.fitting.transforms import (
+    brings_transforms,
     changed_frames,
     fitting_frames,
     is_led_elsewhere,
@@ -56,9 +57,10 @@ from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing, for_a
 from multibot_rewrite.producers.launch.of_robot import (
     NOTHING,
     Launched,
+    without_bridges,
     without_robot,
 )
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
+from multibot_rewrite.producers.launch.records import IdleAction, LaunchedNode, LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
 from multibot_rewrite.spelling.records import Run
@@ -87,7 +89,8 @@ class RobotEvidence(NamedTuple):
     start all of its nodes and no simulator, the arguments of all that they start, the frames that it
     has in the place of defaults, the transforms that a simulator sends, whether a node of its files
     sends one of these, which no bridge file of its own has, what its launch files hand on to nodes, the
-    processes of these that are no nodes, the environment of all, and what places it."""
+    processes of these that are no nodes, the environment of all, what places it, and what they do
+    not start on a condition."""
 
     given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]
@@ -103,6 +106,7 @@ class RobotEvidence(NamedTuple):
     processes: tuple[Passing, ...] = ()
     environment: tuple[tuple[str, str], ...] = ()
     placing: LaunchedNode | None = None
+    idle: tuple[IdleAction, ...] = ()
 
 
 def robot_nodes(
@@ -126,6 +130,7 @@ def robot_nodes(
         stack = (*stack, *_manager_in_plugin(stack, own, member, file.distro))
     known = known_here(known, spec.launch, spec.words[0], file.distro)
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
+    launched = without_bridges(launched) if launched else None
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
     # A controller manager that only a parameter file has is as its usual launch files start it.
@@ -166,7 +171,7 @@ def robot_nodes(
     said = (*notes, *findings, *shared, *processes_not_known(of_launch[1] if of_launch else ()))
     said = said if launched else (*said, *left_idle(marked, given, known))
     arguments = tuple(word for it in started.values() for word in it.arguments)
-    placing = not spec.companions.get("bridge") and sends_too(nodes, free, has.sent)
+    placing = not brings_transforms(spec) and sends_too(nodes, free, has.sent)
     is_placed = placing or is_led_elsewhere(member, spec)
     more = unsimulated, arguments, frames, has.sent, is_placed, *of_launch
     return RobotEvidence(given, known, marked, said, spawned, *more)
@@ -178,7 +183,7 @@ def _of_launch(spec: RobotSpec, launched: Launched, file: FleetFile) -> tuple[An
     processes = tuple(
         it._replace(once=_is_once(it.name, it.once, file)) for it in launched.processes
     )
-    own = launched.handed_on, processes, launched.environment, launched.placing
+    own = launched.handed_on, processes, launched.environment, launched.placing, launched.idle
     return tuple(for_any(it, spec.name) for it in own) if by_name else own
 
 

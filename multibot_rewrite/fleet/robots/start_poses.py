@@ -21,6 +21,7 @@ from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
+from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridge_rows import PLUGINS, rows_of
 from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
@@ -117,7 +118,7 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         says = "already says" if len(locators) == 1 else "already say"
         what = f"its pose is not published, because {nodes} {says} where it is"
         hint, level = "remove the pose: a second parent would make the frame jump", WARNING
-        if robot.spec.simulator not in ("", REAL):
+        if is_simulated(robot):
             hint, level = "the simulator starts it there, which is enough", NOTE
         yield _finding(LOCALISED_ALREADY, robot, what, hint)._replace(level=level)
         return

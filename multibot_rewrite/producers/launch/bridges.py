@@ -2,7 +2,8 @@
 """What a bridge to Gazebo, or a domain_bridge, is told -> its topics, services and nodes in ROS.
 
 Source: ros_gz jazzy 739cb42, ros_gz_bridge/src/parameter_bridge.cpp (``TOPIC@TYPE[GZ_TYPE``, with ``[``
-from Gazebo, ``]`` to Gazebo, ``@`` both; ``SERVICE@TYPE``), bridge_config.cpp (the keys of its file),
+from Gazebo, ``]`` to Gazebo, ``@`` both, and ``@GZ_TOPIC`` behind it where that is called otherwise;
+``SERVICE@TYPE``), bridge_config.cpp (the keys of its file),
 ros_gz_image/src/image_bridge.cpp. ros2/domain_bridge c2523e1, process_cmd_line_arguments.hpp (options,
 then files; ``--from`` and ``--to`` hold for all topics), parse_domain_bridge_yaml_config.cpp (the keys
 of a file), domain_bridge.cpp (``get_node_for_domain``, ``bridge_topic``, ``add_bridges``).
@@ -12,7 +13,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -31,12 +32,15 @@ from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC, End, Node
 
-_ROW = lazy_compile(r"(?P<name>[^@]+)@(?P<type>[\w/]+)(?P<way>[@\[\]]?)(?P<gz>.*)")
+_ROW = lazy_compile(
+    r"(?P<name>[^@]+)@(?P<type>[\w/]+)(?P<way>[@\[\]]?)(?P<gz>[^@]*)(?:@(?P<inside>.+))?"
+)
 _ROLES = {"[": (PUBLISHES,), "]": (SUBSCRIBES,), "@": (PUBLISHES, SUBSCRIBES)}
 _WAYS = {"GZ_TO_ROS": "[", "ROS_TO_GZ": "]", "BIDIRECTIONAL": "@"}
 _IMAGE = "sensor_msgs/msg/Image"
 _BRIDGE = "ros_gz_bridge"
 _BRIDGES = ("ros_gz_bridge/parameter_bridge", "ros_ign_bridge/parameter_bridge")
+_COMPONENT = "ros_gz_bridge/bridge_node"
 _OF_IMAGES = ("ros_gz_image/image_bridge", "ros_ign_image/image_bridge")
 
 
@@ -56,6 +60,28 @@ def bridge_rows(node: LaunchedNode, words: Collection[str]) -> tuple[Endpoint, .
     rules = {f"/{old.lstrip('/')}": new for old, new in node.remappings}
     rows = _told(f"{node.package}/{node.executable}", node.arguments)
     return tuple(end for it in rows for end in _for_any_robot(it.end, rules, words))
+
+
+def services_in(words: Iterable[str]) -> dict[str, Row]:
+    """Return the rows of services among the arguments of programs, each by its argument."""
+    found = ((word, _ROW.fullmatch(word)) for word in words)
+    rows = ((word, [*_of_row(row)]) for word, row in found if row and "/srv/" in row["type"])
+    return {word: row for word, own in rows for row in own}
+
+
+def passes_topics_on(package: str, program: str) -> bool:
+    """Is a program a bridge to a simulator, which the bridges of a build stand for?"""
+    return f"{package}/{program}" in (*_BRIDGES, *_OF_IMAGES, _COMPONENT)
+
+
+def files_in(node: LaunchedNode) -> Iterator[str]:
+    """Return the files that a bridge of a launch file is told; they need not be here."""
+    if passes_topics_on(node.package, node.executable):
+        values = (load_yaml(it.text, it.file or node.place.file) for it in node.parameters)
+        sections = (one for it in values if isinstance(it, dict) for one in it.values())
+        given = [one.get("ros__parameters") for one in sections if isinstance(one, dict)]
+        paths = (str(it.get("config_file") or "") for it in given if isinstance(it, dict))
+        yield from filter(None, paths)
 
 
 def is_bridge(it: Run) -> bool:
@@ -91,12 +117,12 @@ def rows_in_words(
     rows = (_ROW.fullmatch(word) for word in words if program in _BRIDGES)
     found = [it.groups() for it in rows if it and it["way"] and "/srv/" not in it["type"]]
     images = (word for word in words if program in _OF_IMAGES and _is_name(word))
-    found += [(word, _IMAGE, "[", "gz.msgs.Image") for word in images]
+    found += [(word, _IMAGE, "[", "gz.msgs.Image", None) for word in images]
     entries = []
-    for name, type_, way, gz in found:
+    for name, type_, way, gz, inside in found:
         own = expand(name, f"/{above}", "") if above else name
         ros = renamed.get(f"/{own.lstrip('/')}", own)
-        names = {BOTH: name} if ros == name else {ROS: ros, GZ: name}
+        names = {BOTH: name} if ros == (inside or name) else {ROS: ros, GZ: inside or name}
         kinds = {"ros_type_name": type_, "gz_type_name": gz, "direction": ways[way]}
         entries.append(names | kinds)
     return yaml.safe_dump(entries, sort_keys=False) if entries else ""
@@ -104,11 +130,6 @@ def rows_in_words(
 
 def _is_name(word: str) -> bool:
     return bool(word) and "@" not in word and word[0] != "-"
-
-
-def is_of_images(program: Sequence[str]) -> bool:
-    """Is it a bridge of images, which the robot's own bridge stands for?"""
-    return "/".join(program) in _OF_IMAGES
 
 
 def refused_rows(it: Run) -> Iterator[str]:
@@ -140,11 +161,11 @@ def _told(program: str, words: Sequence[str]) -> Iterator[Row]:
 
 
 def _of_row(row: re.Match[str]) -> Iterator[Row]:
-    name, type_, way, _ = row.groups()
+    name, type_, way, _, inside = row.groups()
     if "/srv/" in type_:
         yield Row(Endpoint(SERVICE, SERVES, name, type_), name)
     else:
-        yield from _topics(name, type_, way, name)
+        yield from _topics(name, type_, way, inside or name)
 
 
 def _topics(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:

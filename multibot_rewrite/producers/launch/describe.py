@@ -38,6 +38,7 @@ from multibot_rewrite.producers.launch.kept_paths import (
 from multibot_rewrite.producers.launch.places import place_of
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import (
+    IdleAction,
     LaunchedNode,
     LaunchInclude,
     LaunchNote,
@@ -70,8 +71,8 @@ class Visit(NamedTuple):
     """A visit: the context, what has been found, the files that descriptions name, what an event or a
     timer starts with its visit and the locals that it keeps, the place of what is visited, arguments
     without effect, included files, the environment before the launch, the number of each action that
-    starts a process, whether conditions count, what starts it if not the launch itself, after how many
-    events and seconds, and at which event of which action."""
+    starts a process, what conditions keep out, whether conditions count, what starts it if not the
+    launch itself, after how many events and seconds, and at which event of which action."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -83,6 +84,7 @@ class Visit(NamedTuple):
     includes: list[LaunchInclude]
     before: Mapping[str, str]
     numbers: dict[int, tuple[Any, int]]
+    idle: list[IdleAction]
     every: bool = False
     later: str = ""
     events: int = 0
@@ -100,10 +102,6 @@ class Visit(NamedTuple):
         """Keep what an action starts."""
         self.numbers[id(action)] = (action, len(self.nodes))
         self.nodes.append(it)
-
-    def wants(self, action: Any) -> bool:
-        """Does the condition of an action hold, as far as conditions count?"""
-        return self.every or is_wanted(action, self.context)
 
     def note(self, message: str, parameters: bool = False, file: str = "") -> None:
         """Keep what is not known here: nodes, or only ``parameters`` of one, as those of a ``file``."""

@@ -21,7 +21,7 @@ from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.evidence.nodes import MANAGER, remapped
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.producers.launch.bridges import bridge_rows
+from multibot_rewrite.producers.launch.bridges import bridge_rows, passes_topics_on
 from multibot_rewrite.producers.launch.describe import SIMULATOR, SIMULATORS
 from multibot_rewrite.producers.launch.findings import (
     launch_findings,
@@ -48,6 +48,7 @@ from multibot_rewrite.producers.launch.known_node import (
 )
 from multibot_rewrite.producers.launch.programs import once_for_all, passes, program_of, programs
 from multibot_rewrite.producers.launch.records import (
+    IdleAction,
     LaunchedNode,
     LaunchGraph,
     LaunchNote,
@@ -68,6 +69,7 @@ _WORDS_OF_BUILD = (
 # Packages of launch files alone, and how those of their nodes begin.
 _FAMILIES = {"nav2_bringup": "nav2_"}
 # What is built gives these their descriptions anyway.
+_DESCRIPTION = "robot_description"
 _DESCRIBED = ("robot_state_publisher", "move_group", "servo_node")
 NO_NAME = "the launch file gives it no name"
 NOTHING: Mapping[str, HandedOn] = {}
@@ -91,6 +93,7 @@ class Launched(NamedTuple):
     processes: tuple[Passing, ...] = ()
     environment: tuple[tuple[str, str], ...] = ()
     placing: LaunchedNode | None = None
+    idle: tuple[IdleAction, ...] = ()
 
 
 class _Pair(NamedTuple):
@@ -147,8 +150,17 @@ def with_launched(
         handed,
         passing,
         graph.environment,
-        next((it for it in numbered if program_of(it) in programs().spawners), None),
+        next((it for it in numbered if program_of(it) in programs().spawners), None)
+        or next((numbered[it.number] for it in pairs if _may_spawn(it, handed, release)), None),
+        graph.idle,
     )
+
+
+def _may_spawn(it: _Pair, handed: Mapping[str, HandedOn], release: str) -> bool:
+    """Is a program of the vendor's own called a spawner, and given the robot's description?"""
+    own = handed[it.facts.name]
+    called = "spawn" in it.node.executable.lower() and _is_own(it, release)
+    return called and _DESCRIPTION in (*own.texts, *own.arguments)
 
 
 def _lasting(graph: LaunchGraph) -> LaunchGraph:
@@ -245,6 +257,18 @@ def _under_manager(
         manager = _stripped(it.manager.strip("/"), words)
         rules = (*wide.get(manager, ()), *it.rules)
         yield _stripped(it.full_name.strip("/"), words), it._replace(rules=rules)
+
+
+def without_bridges(launched: Launched) -> Launched:
+    """Return the same without the bridges to a simulator: those of a build carry what they carry."""
+    gone = {
+        name for name, it in launched.started.items() if passes_topics_on(it.package, it.executable)
+    }
+    return launched._replace(
+        nodes=tuple(it for it in launched.nodes if it.name not in gone),
+        given=tuple(it for it in launched.given if it.node not in gone),
+        handed_on={name: it for name, it in launched.handed_on.items() if name not in gone},
+    )
 
 
 def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[NodeFacts]:

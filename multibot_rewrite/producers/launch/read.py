@@ -170,7 +170,7 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     context.extend_locals({"current_launch_file_path": path, **folder})
     context.launch_configurations.update(order.arguments)
     before = dict(context.environment)
-    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, order.every)
+    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, [], order.every)
     unread_of(path, dict(order.arguments), seen)
     visit_all(description, seen)
     declared = _declared(description)
@@ -185,7 +185,9 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     for name in [it for it in context.environment if it not in before]:
         del context.environment[name]
     context.environment.update(before)
-    return found._replace(includes=tuple(seen.includes), environment=own, declared=declared)
+    idle = tuple(dict.fromkeys(seen.idle))
+    more = found._replace(includes=tuple(seen.includes), environment=own, declared=declared)
+    return more._replace(idle=idle)
 
 
 def _lost_variables(seen: Visit, path: str) -> tuple[LaunchNote, ...]:

@@ -115,6 +115,20 @@ class LaunchInclude(NamedTuple):
     arguments: tuple[tuple[str, str], ...]
 
 
+class IdleAction(NamedTuple):
+    """Something that a launch file does not start, since its condition does not hold: ``what`` it is,
+    and the launch arguments that the condition asks for, as they are."""
+
+    place: Place
+    what: str
+    asked: tuple[tuple[str, str], ...]
+
+    @property
+    def why(self) -> str:
+        """Return which arguments decide it."""
+        return ", ".join(f"{name}:={value}" for name, value in self.asked) or "its condition"
+
+
 class LaunchArgument(NamedTuple):
     """An argument that a launch file, or one that it includes, declares: ``default`` is empty where it
     has none that is known before the launch."""
@@ -137,7 +151,7 @@ class LaunchGraph(NamedTuple):
     the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
     launch is not installed and its stand-in read them. ``unread`` are arguments without effect,
     ``environment`` is what they set for all processes. ``declared`` are the arguments that there are,
-    ``read`` is what the launch files themselves read."""
+    ``read`` is what the launch files themselves read, ``idle`` is what conditions keep out."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
@@ -148,6 +162,7 @@ class LaunchGraph(NamedTuple):
     environment: tuple[tuple[str, str], ...] = ()
     declared: tuple[LaunchArgument, ...] = ()
     read: tuple[FileRead, ...] = ()
+    idle: tuple[IdleAction, ...] = ()
 
     @property
     def whole(self) -> bool:
@@ -218,6 +233,7 @@ def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
         tuple({pair: None for it in graphs for pair in it.environment}),
         tuple(one for it in graphs for one in it.declared),
         tuple(one for it in graphs for one in it.read),
+        tuple(one for it in graphs for one in it.idle),
     )
 
 

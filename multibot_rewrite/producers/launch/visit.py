@@ -22,6 +22,7 @@ from multibot_rewrite.producers.launch.describe import (
     text,
 )
 from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset
+from multibot_rewrite.producers.launch.idle import wants
 from multibot_rewrite.producers.launch.includes import (
     included,
     not_here,
@@ -62,6 +63,8 @@ def visit(entity: Any, seen: Visit) -> None:
     here = _at(entity, seen)
     # An include has the path of its file for what is below it; other actions may leave theirs.
     own = _is(entity, _INCLUDE)
+    if not own and _is(entity, *_GIVING):
+        _leave(entity, here)
     apart = seen.every and _is(entity, *_GIVING) and not _holds(entity, seen)
     if own:
         seen.context._push_locals()
@@ -78,6 +81,12 @@ def visit(entity: Any, seen: Visit) -> None:
             seen.context._pop_launch_configurations()
         if own:
             seen.context._pop_locals()
+
+
+def _leave(entity: Any, here: Visit) -> None:
+    """Note a group that is left out: launch itself asks for its condition."""
+    with suppress(Exception):
+        wants(entity, here)
 
 
 def _holds(entity: Any, seen: Visit) -> bool:
@@ -120,7 +129,7 @@ def _execute(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if not seen.wants(entity):
+    if not wants(entity, seen):
         return None
     include = included(entity, seen)
     seen.includes.append(include)
@@ -148,7 +157,7 @@ def _pass(entity: Any, seen: Visit) -> None:
 
 
 def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if not seen.wants(entity):
+    if not wants(entity, seen):
         return None
     # launch/later.py: an action for a robot gets its options when it runs, or others run in its place.
     instead = entity.resolve(seen.context) if type(entity).__name__ == "OfRobot" else None
@@ -159,7 +168,7 @@ def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _container(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if not seen.wants(entity):
+    if not wants(entity, seen):
         return None
     _node(entity, seen)
     host = seen.nodes[-1]
@@ -169,7 +178,7 @@ def _container(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _loaded(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if not seen.wants(entity):
+    if not wants(entity, seen):
         return None
     target = entity._LoadComposableNodes__target_container
     if _is(target, "ComposableNodeContainer"):
@@ -189,7 +198,7 @@ def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit)
 
 
 def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    if seen.wants(entity):
+    if wants(entity, seen):
         for it in process(entity, seen):
             seen.start(entity, it)
         _ended(entity, seen)
@@ -198,7 +207,7 @@ def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
     """The actions of a timer or an event handler wait for the end of the description."""
-    if not seen.wants(entity):
+    if not wants(entity, seen):
         return None
     timer = _is(entity, "TimerAction")
     handler = entity if timer else entity.event_handler
@@ -249,7 +258,7 @@ def _unknown(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if is_unknown(entity):
         # It makes what it starts in code that is not here.
         entity.perform(seen.context)
-    if seen.wants(entity):
+    if wants(entity, seen):
         message = f"what the action {type(entity).__name__} starts is decided only at run time"
         seen.note(message)
     return None

@@ -189,7 +189,9 @@ def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Cav
     nodes = tuple(tokens.nodes(seen.tokens))
     ends = tuple(tokens.endpoints(seen.tokens))
     tf, caveats = seen.tf, [*caveats]
-    heard = frames(tf.transforms(), ends, tf.of_several(), tf.last, tf.rates()) if tf else ()
+    heard = (
+        frames(tf.transforms(), ends, tf.of_several(), tf.last, tf.rates(), tf.ages) if tf else ()
+    )
     if seen.strange:
         text = f"{plural(len(seen.strange), 'token')} left out, not as rmw_zenoh writes them"
         caveats.append(Caveat("strange-token", False, f"{text}: {shorten(seen.strange, FEW)}"))

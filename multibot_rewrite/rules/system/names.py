@@ -20,6 +20,7 @@ from multibot_rewrite.rules.system.instead import (
     listed_in_vain,
     sent_instead,
 )
+from multibot_rewrite.system import words
 from multibot_rewrite.system.index import (
     TF,
     Ends,
@@ -65,7 +66,15 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                     ABSENT, level=WARNING, node=end.node, names=(ends.name,), **where([end]),
                 )  # fmt: skip
         for other_name, (first, *more) in by_kind.items():
-            yield _missed_topic(seen, first, published[other_name], WARNING, more)
+            # A lone sender and a lone reader of what a sensor measures are made for each other. Next to
+            # what a launch file starts there may be a third.
+            other = published[other_name]
+            lone = other.type == first.type and not at_work(other.subscribers)
+            sure = seen.is_live and (
+                words.is_of_a_body(first.type)
+                or (lone and words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK)
+            )
+            yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
 
 
 def _runs(end: End) -> bool:
@@ -215,7 +224,7 @@ def _missed_topic(
     if _is_doubled(other.name, end.name):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
         remaps = (Remap(sender, other.name, end.name),)
-    elif seen.robot(end.name) and not seen.robot(other.name):
+    elif seen.robot(end.name) and not seen.robot(other.name) and other.name not in EVERYBODYS:
         cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
         remaps = tuple(Remap(it, other.name, end.name) for it in nodes_of(other.publishers))
     elif other.type != end.type:
@@ -276,7 +285,8 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
     listed = "" if near else listed_in_vain(seen, end)
     by_type = None if near or listed else sent_instead(seen, end)
     if other := near or (by_type.name if by_type else ""):
-        yield _missed_server(seen, end, lost, other, ERROR if near else WARNING)
+        sure = near or end.kind == ACTION
+        yield _missed_server(seen, end, lost, other, ERROR if sure else WARNING)
     elif listed and end.name.endswith("/change_state"):
         meant = _node_like(seen, listed)
         instead = f"; {meant} runs" if meant else ""
@@ -306,8 +316,12 @@ def _waits(seen: Index, end: End) -> bool:
     doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
-    # Beside other robots it may be one that is not started yet.
-    others = len(seen.robots) > 1
+    # Beside other robots it may be one that is not started yet, if it is not its own.
+    own = seen.robot(end.node)
+    others = len(seen.robots) > 1 and not (own and own == seen.robot(end.name))
+    # What all robots call in vain is so by their make.
+    same = (seen.of_robot(it, end.kind, seen.plain(end.name)) for it in seen.robots if it != own)
+    others = others or any(it and it.clients and not it.servers for it in same)
     return not (doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
 
 

@@ -56,6 +56,12 @@ def _sent_by_systems(member: Member) -> Iterator[tuple[str, Edge]]:
             yield last_word(text_at(host, TF_ELEMENT) or _TF), edge_of(parent, child)
 
 
+def brings_transforms(spec: RobotSpec) -> bool:
+    """Has a bridge file of the robot, or a bridge of its launch files, a row with transforms?"""
+    paths = spec.companions.get("bridge", ())
+    return any(it.end.type == TF_TYPE for path in paths for it in bridge_rows(own_yaml(spec, path)))
+
+
 def _led_elsewhere(spec: RobotSpec) -> set[str]:
     """Return the last words of the simulator's topics with transforms that bridge files of the robot
     have on no tf."""

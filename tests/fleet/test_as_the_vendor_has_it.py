@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is wrong with one robot's launch file is wrong with each robot of the fleet: it is told, and the
+fleet is built. What only the rewrite does, or several robots together, is an error.
+
+Expectations: two robot_localization nodes both publish odometry/filtered and odom -> base_link, in one
+robot as in two (ros_filter.cpp).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from built_faults import edited, in_launch
+from fleet_folder import planned_fleet
+from rule_examples import DESCRIPTION
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks.of_bringup import as_the_vendor_has_it
+from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.producers.launch.running import Knowledge
+from multibot_rewrite.rules.system.sharing import sensor_twice
+from multibot_rewrite.system.index import index
+from multibot_rewrite.system.ownership import whose_by_plan
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
+
+LAUNCH = """\
+from pathlib import Path
+
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+ROBOT = Path(__file__).parent / 'robot.urdf'
+
+
+def ekf(name, **more):
+    values = {'odom0': '/wheel/odom', 'world_frame': 'odom', 'base_link_frame': 'base_link'}
+    return Node(package='robot_localization', executable='ekf_node', name=name,
+                parameters=[{**values, **more}],
+                remappings=[('odometry/filtered', 'odometry/map')] if more else [])
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package='robot_state_publisher', executable='robot_state_publisher',
+             parameters=[{'robot_description': ROBOT.read_text()}]),
+        ekf('ekf_local'),
+        ekf('ekf_global'),
+        ekf('ekf_map', publish_tf=False),
+    ])
+"""
+FLEET = """\
+layout: {}
+{}
+distro: jazzy
+launch: up.launch.py
+simulator: none
+robots:
+  - {{name: robot1, description: robot.urdf}}
+  - {{name: robot2, description: robot.urdf}}
+"""
+LAYOUTS = {
+    "tf-per-robot": "",
+    "frames-per-robot": "affix: prefix",
+    "both": "affix: prefix",
+    "postfix": "affix: postfix",
+}
+TWICE = {"MG325", "MG408"}
+
+
+@pytest.fixture
+def fleet(tmp_path: Path) -> Path:
+    return folder(tmp_path, "both")
+
+
+def folder(path: Path, layout: str) -> Path:
+    (path / "robot.urdf").write_text(DESCRIPTION)
+    (path / "up.launch.py").write_text(LAUNCH)
+    (path / "fleet.yaml").write_text(FLEET.format(layout, LAYOUTS[layout]))
+    return path / "fleet.yaml"
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_what_the_vendor_has_is_told_and_built(
+    layout: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check-launch", str(folder(tmp_path, layout).parent / "up.launch.py")]) == 1
+    capsys.readouterr()
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    lines = capsys.readouterr().err.splitlines()
+    told = [it for it in lines if any(code in it for code in TWICE)]
+    assert len(told) == len(TWICE)
+    assert all("warning: " in it and "for one robot, too" in it for it in told)
+
+
+def test_a_sender_that_the_vendor_has_elsewhere_is_an_error(fleet: Path) -> None:
+    plan = planned_fleet(str(fleet))
+    made = make_outputs(plan, "/any/out")
+    assert {(it.code, it.level) for it in read_back(plan, made, "/any/out")} == {
+        (it, WARNING) for it in TWICE
+    }
+    moved = in_launch(lambda it: it.replace('"odometry/map"', '"odometry/filtered"'))
+    found = {(it.code, it.level) for it in read_back(plan, edited(made, moved), "/any/out")}
+    assert ("MG325", ERROR) in found and ("MG408", WARNING) in found
+
+
+@pytest.mark.parametrize(
+    ("nodes", "level"),
+    [
+        (("/robot1/ekf_local", "/robot1/ekf_global"), WARNING),
+        (("/robot1/ekf_local", "/robot2/ekf_global"), ERROR),
+        (("/robot1/ekf_local", "/robot1/another"), ERROR),
+    ],
+)
+def test_only_the_nodes_of_one_robot_excuse_it(
+    nodes: tuple[str, ...], level: str, fleet: Path
+) -> None:
+    plan = planned_fleet(str(fleet))
+    known = Knowledge(
+        plan.evidence_of(plan.robots[0]).known, load_known_nodes((), "jazzy"), "jazzy"
+    )
+    name = "/robot1/odometry/filtered"
+    ends = (End(TOPIC, PUBLISHES, name, "nav_msgs/msg/Odometry", "", it) for it in nodes)
+    planned = make_outputs(plan, "/any/out").planned
+    seen = index(planned._replace(ends=tuple(ends)), whose_by_plan(planned))
+    given = sensor_twice.finding("both publish it", level=ERROR, names=(name,))
+    (found,) = as_the_vendor_has_it(plan, seen, [given], known)
+    assert found.level == level
