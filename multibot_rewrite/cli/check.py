@@ -61,7 +61,11 @@ def run(options: argparse.Namespace) -> int:
     if parts and not options.bag:
         return _apart(options, plan, parts)
     if options.bag:
-        return _recorded(options, plan)
+        from multibot_rewrite.producers.bags.read import read_bag
+
+        recording = read_bag(options.bag)
+        graph = as_snapshot(recording, plan)
+        return conclude(options, plan, graph, check(plan, graph, counted(recording)))
     graph = live.graph(options, judge=lambda it: check(plan, it, before=before))
     if options.state or answering(graph):
         plan = _with_files(options, plan)
@@ -117,14 +121,6 @@ def _parameters(plan: System) -> dict[str, list[str]]:
     for it in plan.parameters:
         found[it.node].append(it.name)
     return found
-
-
-def _recorded(options: argparse.Namespace, plan: System) -> int:
-    from multibot_rewrite.producers.bags.read import read_bag
-
-    recording = read_bag(options.bag)
-    graph = as_snapshot(recording, plan)
-    return conclude(options, plan, graph, check(plan, graph, counted(recording)))
 
 
 def _check_use(options: argparse.Namespace) -> None:

@@ -37,7 +37,10 @@ _Read = Callable[[Sequence[LaunchOrder]], Launched]
 def run(options: argparse.Namespace) -> int:
     """Read the launch file, make the graph that it would start, report; returns the exit code."""
     orders = orders_of(options, options.words)
-    _check_use(options, orders)
+    check_report(options, printed=False)
+    pictures.check(options)
+    if options.output:
+        check_target(options.output, [*filter(None, [options.plan]), *(it.file for it in orders)])
     plan, own = check.plan_of(options) if options.plan else None, own_nodes(options)
     told = release_told(options.distro) or (plan.release if plan else "")
     read = partial(launched_by, told=told, nodes=own[0], nodl=own[1])
@@ -66,13 +69,6 @@ def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchO
     return [it._replace(trusted=options.trust) for it in orders]
 
 
-def _check_use(options: argparse.Namespace, orders: Sequence[LaunchOrder]) -> None:
-    check_report(options, printed=False)
-    pictures.check(options)
-    if options.output:
-        check_target(options.output, [*filter(None, [options.plan]), *(it.file for it in orders)])
-
-
 def _with_remedies(
     found: Iterable[Finding], orders: Sequence[LaunchOrder], read: _Read
 ) -> list[Finding]:
@@ -97,8 +93,10 @@ def _is_open(it: Finding) -> bool:
 def _argument(orders: Sequence[LaunchOrder], read: _Read) -> str:
     """Return the argument of a launch file with which no manager is missing; empty for none."""
     for name, value in islice(_choices(orders), MOST):
+        given = ((it, [one for one in it.arguments if one[0] != name]) for it in orders)
+        changed = [it._replace(arguments=(*others, (name, value))) for it, others in given]
         with suppress(MultibotError):
-            other = read([_with(it, name, value) for it in orders])
+            other = read(changed)
             if other.models.found and not any(map(_is_missing, judge_launch(other))):
                 return f"add {name}:={value}, with which a manager is started"
     return ""
@@ -112,8 +110,3 @@ def _choices(orders: Sequence[LaunchOrder]) -> Iterator[tuple[str, str]]:
     given = {it for order in orders for it in order.arguments}
     for name in filter(is_called_as_switch, declared):
         yield from ((name, it) for it in ("true", "false") if (name, it) not in given)
-
-
-def _with(it: LaunchOrder, name: str, value: str) -> LaunchOrder:
-    others = (one for one in it.arguments if one[0] != name)
-    return it._replace(arguments=(*others, (name, value)))

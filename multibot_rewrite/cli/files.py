@@ -66,7 +66,12 @@ def _commit(staged: dict[str, str]) -> None:
     try:
         for target, temporary in list(staged.items()):
             with explained(target):
-                _take_place(target, temporary, done)
+                backup = f"{temporary}.old" if os.path.lexists(target) else ""
+                # Noted before it is done: an interrupt in between leaves nothing.
+                done.append((target, backup))
+                if backup:
+                    os.link(target, backup)
+                os.replace(temporary, target)
             del staged[target]
     except BaseException:
         for target, backup in reversed(done):
@@ -78,15 +83,6 @@ def _commit(staged: dict[str, str]) -> None:
         for backup in [it for _, it in done if it]:
             with suppress(OSError):
                 os.unlink(backup)
-
-
-def _take_place(target: str, temporary: str, done: list[tuple[str, str]]) -> None:
-    backup = f"{temporary}.old" if os.path.lexists(target) else ""
-    # Noted before it is done: an interrupt in between leaves nothing.
-    done.append((target, backup))
-    if backup:
-        os.link(target, backup)
-    os.replace(temporary, target)
 
 
 def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
@@ -152,16 +148,12 @@ def explained(path: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise UsageError(f"{path}: cannot be written: {_reason(error, path)}") from None
-
-
-def _reason(error: OSError, path: str) -> str:
-    above = existing_folder(path)
-    if not os.path.isdir(above):
-        return f"{above} is a file, not a folder; choose another output"
-    if os.path.isdir(path):
-        return "it is a folder, name a file in it"
-    return f"{error.strerror or error}, choose another output"
+        above, why = existing_folder(path), f"{error.strerror or error}, choose another output"
+        if not os.path.isdir(above):
+            why = f"{above} is a file, not a folder; choose another output"
+        elif os.path.isdir(path):
+            why = "it is a folder, name a file in it"
+        raise UsageError(f"{path}: cannot be written: {why}") from None
 
 
 def existing_folder(path: str) -> str:

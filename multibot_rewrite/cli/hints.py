@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 
 from multibot_rewrite.base.nearest import CHOICE, extensions, nearest
 from multibot_rewrite.base.other_words import other_words
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.cli.declared.options import Command
 
 # A beginning of so few letters says nothing.
 _BEGUN = 2
@@ -21,8 +20,10 @@ def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: boo
     An option that begins with it comes first. Then its meaning counts: what is known for this command,
     a key of the fleet file, a word of other tools, an option of another command. Its letters come last.
     """
-    if begun := _begun(wrong.lstrip("-"), known):
-        return f"; did you mean '{begun}'?"
+    bare = wrong.lstrip("-")
+    begun = (it for it in known if len(bare) > _BEGUN and it.startswith(f"--{bare}"))
+    if first := next(begun, ""):
+        return f"; did you mean '{first}'?"
     word = f"-{wrong.removeprefix('-').replace('_', '-')}"
     if own := other_words("options").get(f"{command} {word}"):
         return f"; use {own}"
@@ -66,21 +67,10 @@ def _nearest(word: str, known: Iterable[str]) -> str:
     return full.get(next(parts, "") or nearest(word, alike, CHOICE), "")
 
 
-def _begun(word: str, known: Iterable[str]) -> str:
-    """Return the first known option that begins with a word of three letters or more; "" for none."""
-    return next((it for it in known if len(word) > _BEGUN and it.startswith(f"--{word}")), "")
-
-
 def _takers(option: str) -> str:
     """Return the commands that have an option, with a verb: ``multibot init takes``; "" if none has."""
-    names = [name for name, command in _every_command().items() if _has(command, option)]
+    every = {**PROGRAMS, **{f"multibot {name}": it for name, it in COMMANDS.items()}}
+    options = {name: [one for of in it.groups for one in of.options] for name, it in every.items()}
+    names = [name for name, own in options.items() if any(option in it.names for it in own)]
     verb = "takes" if len(names) == 1 else "take"
     return f"{shorten(names)} {verb}" if names else ""
-
-
-def _has(command: Command, option: str) -> bool:
-    return any(option in it.names for group in command.groups for it in group.options)
-
-
-def _every_command() -> Mapping[str, Command]:
-    return {**PROGRAMS, **{f"multibot {name}": it for name, it in COMMANDS.items()}}

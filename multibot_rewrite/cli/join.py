@@ -29,7 +29,14 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _join(options: argparse.Namespace) -> int:
-    parts, samples = _listed(options) if options.words[0].endswith(JOIN) else (_parts(options), 0)
+    first, *others = options.words
+    if first.endswith(JOIN):
+        more = [*others, *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
+        if more:
+            raise UsageError(f"{more[0]} cannot go with {first}: write it into the file")
+        parts, samples = listed_in(first)
+    else:
+        parts, samples = tuple(_parts(options)), 0
     made = join(
         parts,
         vocabulary=options.vocabulary,
@@ -89,7 +96,15 @@ def _split(options: argparse.Namespace) -> int:
 
 def _parts(options: argparse.Namespace) -> list[Part]:
     """The parts as the words name them: each file with the xacro arguments behind it."""
-    files = _files(options.words)
+    files: list[tuple[str, dict[str, str]]] = []
+    for word in options.words:
+        name, is_argument, text = word.partition(":=")
+        if not is_argument:
+            files.append((word, {}))
+        elif not files:
+            raise UsageError(f"{word}: write it behind the xacro that it is for")
+        else:
+            files[-1][1][name] = text
     many = len(files)
     ends = _for_each("--at", options.at, many)
     poses = _for_each("--pose", options.pose, many)
@@ -99,27 +114,6 @@ def _parts(options: argparse.Namespace) -> list[Part]:
         Part(file, at, _numbers(pose), prefix, "", given)
         for (file, given), at, pose, prefix in every
     ]
-
-
-def _files(words: Sequence[str]) -> list[tuple[str, dict[str, str]]]:
-    files: list[tuple[str, dict[str, str]]] = []
-    for word in words:
-        name, is_argument, text = word.partition(":=")
-        if not is_argument:
-            files.append((word, {}))
-        elif not files:
-            raise UsageError(f"{word}: write it behind the xacro that it is for")
-        else:
-            files[-1][1][name] = text
-    return files
-
-
-def _listed(options: argparse.Namespace) -> tuple[Sequence[Part], int]:
-    """The parts that a file lists, which says everything of them, and the poses that are tried."""
-    more = [*options.words[1:], *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
-    if more:
-        raise UsageError(f"{more[0]} cannot go with {options.words[0]}: write it into the file")
-    return listed_in(options.words[0])
 
 
 def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:

@@ -186,8 +186,9 @@ def print_bytes(data: bytes) -> None:
         raise UsageError("standard output is closed; name a file with -o")
     try:
         # A program gets the bytes; a terminal would obey some of them.
-        shown = _shown(data) if sys.stdout.isatty() else data
-        sys.stdout.buffer.write(shown)
+        if sys.stdout.isatty():
+            data = for_terminal(data.decode("utf-8", "surrogateescape")).encode()
+        sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
     except OSError as error:
         # Python would complain again when it closes standard output.
@@ -195,10 +196,6 @@ def print_bytes(data: bytes) -> None:
         if isinstance(error, BrokenPipeError):
             raise
         raise UsageError(f"standard output: cannot be written: {error.strerror}") from None
-
-
-def _shown(data: bytes) -> bytes:
-    return for_terminal(data.decode("utf-8", "surrogateescape")).encode()
 
 
 def print_lines(lines: Iterable[object]) -> None:

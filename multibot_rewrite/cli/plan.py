@@ -46,7 +46,10 @@ def run(options: argparse.Namespace) -> int:
     if any(map(_LAUNCH.fullmatch, [options.input, *options.words[:1]])):
         return _of_launch(options)
     fleet.check_use(options, printed=not goes_to_file(options))
-    alone = _is_alone(options)
+    # A robot that is called nothing; a layout, or rules, are for one with a name.
+    unnamed = not options.input.endswith(fleet.FLEET_FILES) and not robots(options)
+    named = given_options(options, {"layout": "--layout"}) or options.form != PLAN
+    alone = unnamed and not named
     if alone:
         options.words, options.layout = [ALONE], LAYOUT_ALONE
     made = fleet.build(options)
@@ -60,12 +63,6 @@ def run(options: argparse.Namespace) -> int:
     else:
         deliver_rules(options, made)
     return STOPPED if failed else DONE
-
-
-def _is_alone(options: argparse.Namespace) -> bool:
-    """Is it the plan of a robot that is called nothing? A layout, or rules, are for one with a name."""
-    unnamed = not options.input.endswith(fleet.FLEET_FILES) and not robots(options)
-    return unnamed and options.form == PLAN and not given_options(options, {"layout": "--layout"})
 
 
 def _note_coverage(options: argparse.Namespace, held: Coverage) -> None:

@@ -51,7 +51,11 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
         raise UsageError("--undo and --in-place take one robot at a time")
     check_report(options, printed=not (options.output or options.in_place))
     is_one = options.form == CHANGES
-    _check_path(options.output, "" if is_one else PLACEHOLDER)
+    known = "" if is_one else PLACEHOLDER
+    unknown = [it for it in re.findall(r"\{[^{}]*\}", options.output or "") if it != known]
+    if unknown:
+        hint = f"only {known} is filled in" if known else "one file serves all robots"
+        raise UsageError(f"--output {options.output}: unknown placeholder {unknown[0]}, {hint}")
     if len(names) > 1 and not (is_one or options.diff or PLACEHOLDER in (options.output or "")):
         ending = os.path.splitext(options.input)[1] or ".urdf"
         hint = f"-o out/, or -o 'out/{{robot}}{ending}'"
@@ -77,13 +81,6 @@ def _check_together(options: argparse.Namespace) -> None:
         )
     if options.in_place and (options.input == "-" or is_xacro(options.input)):
         raise UsageError("--in-place needs a URDF file, not standard input or xacro")
-
-
-def _check_path(path: str | None, known: str) -> None:
-    unknown = [word for word in re.findall(r"\{[^{}]*\}", path or "") if word != known]
-    if unknown:
-        hint = f"only {known} is filled in" if known else "one file serves all robots"
-        raise UsageError(f"--output {path}: unknown placeholder {unknown[0]}, {hint}")
 
 
 def _check_targets(options: argparse.Namespace, targets: list[str]) -> None:

@@ -18,7 +18,6 @@ from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, s
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
 from multibot_rewrite.knowledge.nodl.writing import NodlFile, file_name
 from multibot_rewrite.knowledge.stacks import built_in
@@ -40,7 +39,6 @@ from multibot_rewrite.system.records import (
     TOPIC,
     ZENOH,
     Caveat,
-    Environment,
     System,
     answering,
     clocks,
@@ -97,9 +95,18 @@ def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
 def report(snapshot: System) -> Iterator[str | Grid]:
     """What is printed: how it was looked, a row a node, a tf topic, a header, a node's answer."""
     yield _headline(snapshot)
-    short = _short_processes(snapshot)
+    # Small numbers in place of the process groups; nothing where the group is not known.
+    groups = sorted({node.process for node in snapshot.nodes} - {""})
+    short = {"": "", **{group: str(number) for number, group in enumerate(groups, 1)}}
     counts = Counter((end.node, end.role, end.kind) for end in snapshot.ends)
-    rows = [(node.name, short[node.process], *_cells(counts, node.name)) for node in snapshot.nodes]
+    rows = [
+        (
+            it.name,
+            short[it.process],
+            *(str(counts[it.name, role, kind]) for _, kind, role in COLUMNS),
+        )
+        for it in snapshot.nodes
+    ]
     if rows:
         yield ""
         yield Grid(("node", "process", *(column for column, _, _ in COLUMNS)), rows)
@@ -127,36 +134,21 @@ def _state_rows(snapshot: System, nodes: Iterable[str]) -> Iterator[tuple[str, .
         yield node, states.get(node, ""), timed.get(node, ""), listed
 
 
-def _cells(counts: Counter[tuple[str, str, str]], node: str) -> Iterator[str]:
-    for _, kind, role in COLUMNS:
-        yield str(counts[node, role, kind])
-
-
-def _short_processes(snapshot: System) -> dict[str, str]:
-    """Small numbers in place of the process groups; nothing where the group is not known."""
-    groups = sorted({node.process for node in snapshot.nodes} - {""})
-    return {"": "", **{group: str(number) for number, group in enumerate(groups, 1)}}
-
-
 def _headline(snapshot: System) -> str:
     around = snapshot.environment
     nodes, many = len(snapshot.nodes), around.participants
     seen = len(machines(snapshot))
     where = f" on {seen} machines" if seen > 1 else ""
     why = "no change any more" if around.settled == QUIET else around.settled
-    return (
-        f"{plural(nodes, 'node')} in {plural(many, 'participant')}{where}"
-        f" after {around.seconds:.1f} s ({why});"
-        f" domain {around.domain}{_reach(around)}, {around.rmw}"
-    )
-
-
-def _reach(around: Environment) -> str:
-    """How the look was made: Zenoh has a router in place of a discovery range."""
+    # Zenoh has a router in place of a discovery range.
     router = f", router {around.discovery_server}" if around.rmw == ZENOH else ""
     range_ = f", range {around.range}" if around.range else ""
     peers = f", peers {' '.join(around.static_peers)}" if around.static_peers else ""
-    return f"{router}{range_}{peers}"
+    return (
+        f"{plural(nodes, 'node')} in {plural(many, 'participant')}{where}"
+        f" after {around.seconds:.1f} s ({why});"
+        f" domain {around.domain}{router}{range_}{peers}, {around.rmw}"
+    )
 
 
 NODES, NODL = "nodes", "nodl"
@@ -186,7 +178,9 @@ def write_nodes(options: argparse.Namespace, graph: System) -> int:
     as_nodl = is_nodl(options)
     stack = options.stack or "learned"
     if as_nodl:
-        remarks += _write_nodl(options, _as_nodl(options, graph, learned, library))
+        in_json = (options.output or "").endswith(".json")
+        made = [to_nodl(it, graph, namespace, library, in_json) for it in learned]
+        remarks += _write_nodl(options, made)
     else:
         deliver(options, to_nodes_yaml(learned, stack, library).encode(), editors.NODES)
     for remark in remarks:
@@ -204,13 +198,6 @@ def is_nodl(options: argparse.Namespace) -> bool:
         form = f"--form {options.form}"
         raise UsageError(f"{options.output} is the name of a NoDL file; leave out {form}")
     return named or options.form == NODL
-
-
-def _as_nodl(
-    options: argparse.Namespace, graph: System, learned: Sequence[LearnedNode], library: NodeLibrary
-) -> list[NodlFile]:
-    in_json = (options.output or "").endswith(".json")
-    return [to_nodl(it, graph, options.namespace or "/", library, in_json) for it in learned]
 
 
 def _write_nodl(options: argparse.Namespace, found: Sequence[NodlFile]) -> Iterator[str]:

@@ -49,11 +49,10 @@ def render(parts: Iterable[str | Grid], width: int | None = None, colour: bool =
 
 
 def _lines(part: str | Grid, width: int | None, colour: bool) -> Iterable[str]:
-    return [one_line(part)] if isinstance(part, str) else _table(_shown(part), width, colour)
-
-
-def _shown(grid: Grid) -> Grid:
-    return grid._replace(rows=[[one_line(cell) for cell in row] for row in grid.rows])
+    if isinstance(part, str):
+        return [one_line(part)]
+    rows = [[one_line(cell) for cell in row] for row in part.rows]
+    return _table(part._replace(rows=rows), width, colour)
 
 
 def _table(grid: Grid, width: int | None, colour: bool) -> Iterator[str]:
@@ -69,7 +68,7 @@ def _table(grid: Grid, width: int | None, colour: bool) -> Iterator[str]:
 
 def _fitted(grid: Grid, width: int | None) -> list[int] | None:
     """The width of each column; None where names would have to be cut."""
-    columns = [[name, *cells] for name, cells in zip(grid.columns, _transposed(grid), strict=True)]
+    columns = [*zip(grid.columns, *grid.rows, strict=True)]
     natural = [max(map(len, cells)) for cells in columns]
     least = [max(len(it) for cell in cells for it in _pieces(cell)) for cells in columns]
     room = sum(natural) if width is None else width - len(GAP) * (len(columns) - 1)
@@ -82,10 +81,6 @@ def _fitted(grid: Grid, width: int | None) -> list[int] | None:
         least[at] += more
         left -= more
     return least
-
-
-def _transposed(grid: Grid) -> list[tuple[str, ...]]:
-    return list(zip(*grid.rows, strict=True)) if grid.rows else [() for _ in grid.columns]
 
 
 def _pieces(cell: str) -> list[str]:

@@ -45,7 +45,11 @@ def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
 
         recording = read_bag(options.bag)
         return report_on(options, diagnose(as_snapshot(recording), counted(recording)))
-    views = live.graphs(options, domains) if domains else _saved(options)
+    views: Mapping[int, System] = live.graphs(options, domains) if domains else {}
+    if not domains and len(options.snapshot) > 1:
+        from multibot_rewrite.producers.snapshot_file import read_by_domain
+
+        views = read_by_domain(options.snapshot)
     if len(views) > 1:
         return _report_on_domains(options, views)
     saved = next(iter(views.values()), None)
@@ -53,26 +57,13 @@ def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
     return report_on(options, diagnose(live.with_states(options, seen)))
 
 
-def _saved(options: argparse.Namespace) -> Mapping[int, System]:
-    """The snapshots of several files by domain; empty for the live graph or one file."""
-    if len(options.snapshot) < 2:
-        return {}
-    from multibot_rewrite.producers.snapshot_file import read_by_domain
-
-    return read_by_domain(options.snapshot)
-
-
 def _report_on_domains(options: argparse.Namespace, views: Mapping[int, System]) -> int:
     _check_folders(options, views)
     each = {it: diagnose(live.with_states(live.at(options, it), views[it])) for it in sorted(views)}
     for domain, one in each.items():
         note(options, f"domain {domain}: {next(survey(one))}")
-    return _report(options, diagnose_domains(each), [*_empty(each)], each)
-
-
-def _empty(each: Mapping[int, Diagnosis]) -> Iterator[str]:
-    for domain, one in each.items():
-        yield from (f"domain {domain}: {it}" for it in _nothing_seen(one.graph))
+    empty = [f"domain {at}: {it}" for at, one in each.items() for it in _nothing_seen(one.graph)]
+    return _report(options, diagnose_domains(each), empty, each)
 
 
 def _check_use(options: argparse.Namespace, domains: Sequence[int] = ()) -> None:
