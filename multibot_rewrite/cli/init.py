@@ -59,7 +59,10 @@ def run(options: argparse.Namespace) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     asked_number(options)
-    _check_names(options)
+    names = options.robots
+    if names and options.count:
+        raise UsageError("--robots and --count: give one of them")
+    check_robot_names(names)
     _check_output(options)
     wanted = _wanted(options)
     seen = _quietly(wanted, see)
@@ -140,13 +143,6 @@ def _launch(options: argparse.Namespace) -> tuple[LaunchOrder, ...] | None:
     return (order._replace(trusted=options.trust),)
 
 
-def _check_names(options: argparse.Namespace) -> None:
-    names = options.robots
-    if names and options.count:
-        raise UsageError("--robots and --count: give one of them")
-    check_robot_names(names)
-
-
 def _check_arguments(made: Proposal, wanted: Wanted) -> None:
     """Raise UsageError for a value that no xacro of the fleet takes; an SRDF may be one that does."""
     taken = {name for it in made.members for name, _ in it.looked.arguments}
@@ -181,8 +177,7 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
             options,
             f"wrote {options.output}: {what}; next: multibot build {options.output} -o out/",
         )
-    started = [who.partition(" ")[0] for _, _, who in made.started]
-    if started:
+    if started := [who.partition(" ")[0] for _, _, who in made.started]:
         listed = shorten(started, _NAMED)
         note(options, f"started by launch files and not by this fleet: {listed}")
     for it in made.members:

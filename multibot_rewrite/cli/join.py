@@ -82,8 +82,7 @@ def _write(
 def _split(options: argparse.Namespace) -> int:
     if len(options.words) != 1:
         raise UsageError("--undo takes one file, which multibot join made")
-    given = next((it for it in _OF_PARTS if getattr(options, it)), None)
-    if given:
+    if given := next((it for it in _OF_PARTS if getattr(options, it)), None):
         raise UsageError(f"--{given} is for joining, it cannot go with --undo")
     if not goes_to_file(options):
         raise UsageError("several files are made: name a folder for them with -o parts/")

@@ -18,7 +18,6 @@ from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.proposal.launches import said_of
 from multibot_rewrite.producers.launch.programs import once_for_all
 
-_COLUMNS = ("for", "process", "place", "files", "why")
 _EACH = "each robot"
 
 
@@ -43,7 +42,7 @@ def run(options: argparse.Namespace, path: str) -> int:
         deliver(options, json_bytes({"processes": [it._asdict() for it in rows]}))
     else:
         shown = [(*it[:3], ", ".join(it.files), it.why) for it in rows]
-        deliver_report(options, (Grid(_COLUMNS, shown),))
+        deliver_report(options, (Grid(("for", "process", "place", "files", "why"), shown),))
     return DONE
 
 

@@ -71,7 +71,11 @@ def graph(
         from multibot_rewrite.producers.snapshot_file import read_snapshots
 
         saved = read_snapshots(options.snapshot)
-        _check_domain(options, saved)
+        # A ``--domain`` is that of a saved graph, if it says its own.
+        around, asked = saved.environment, vars(options).get("domain")
+        if asked is not None and around.rmw and asked != around.domain:
+            what = f"{options.snapshot[0]} is a graph of domain {around.domain}"
+            raise UsageError(f"--domain {asked}: {what}; leave it out")
         return saved
     if getattr(options, "bag", None):
         from multibot_rewrite.producers.bags.read import read_bag
@@ -92,14 +96,6 @@ def graph(
 
         asked = asked._replace(shows=judge is not None and is_screen(sys.stderr))
         return observe(asked, environ(options.domain), tell)
-
-
-def _check_domain(options: argparse.Namespace, saved: System) -> None:
-    """Raise UsageError for a ``--domain`` that is not that of a saved graph, if it says its own."""
-    around, asked = saved.environment, vars(options).get("domain")
-    if asked is not None and around.rmw and asked != around.domain:
-        what = f"{options.snapshot[0]} is a graph of domain {around.domain}"
-        raise UsageError(f"--domain {asked}: {what}; leave it out")
 
 
 def so_far(seen: System, judge: Judge | None) -> str:

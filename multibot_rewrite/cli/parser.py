@@ -183,7 +183,12 @@ def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
         parser.error(f"unknown option {wrong}{hint}")
     options, unknown = parser.parse_known_intermixed_args(words)
     if unknown:
-        hint = "; a list is written A,B" if _is_behind_list(unknown[0], words, parser) else ""
+        # Is the nearest option before a word one that takes a list?
+        word = unknown[0]
+        before = words[: words.index(word)] if word in words else words
+        name = next((it for it in reversed(before) if it.startswith("-")), "")
+        lists = (it for it in parser._actions if isinstance(it, argparse._ExtendAction))
+        hint = "; a list is written A,B" if any(name in it.option_strings for it in lists) else ""
         what = _kind_of(unknown[0], parser.prog) or f"{' '.join(unknown)}{hint}"
         parser.error(f"unexpected {what}")
     options.program = parser.prog.partition(" ")[0]
@@ -214,14 +219,6 @@ def _kind_of(word: str, program: str) -> str:
     except (OSError, ValueError):
         return ""
     return ""
-
-
-def _is_behind_list(word: str, words: Sequence[str], parser: Parser) -> bool:
-    """Is the nearest option before a word one that takes a list?"""
-    before = words[: words.index(word)] if word in words else words
-    name = next((it for it in reversed(before) if it.startswith("-")), "")
-    lists = (it for it in parser._actions if isinstance(it, argparse._ExtendAction))
-    return any(name in it.option_strings for it in lists)
 
 
 def _first_unknown_option(words: Sequence[str], known: Collection[str]) -> str:

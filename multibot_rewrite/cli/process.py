@@ -48,24 +48,19 @@ def start(command: Command, words: Sequence[str], prog: str = "") -> int:
     options = parsed(make_parser(command, prog), words)
     try:
         run = import_module(f"{__package__}.{command.module}").run
-        _catch_interrupts()
+        # From here on something may be half written: Ctrl-C is an exception. Before that it ends a
+        # process at once (``entry``), since an import makes other errors of it: lxml's is an
+        # ImportError. A shell's job in the background has SIG_IGN; a process is ours where
+        # ``guarded`` has set SIGTERM.
+        ours = signal.getsignal(signal.SIGTERM) is signal.default_int_handler
+        if ours and signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
         check_there(options)
         code: int = run(options)
     except RewriteRefused as error:
         code = _refused(options, error)
     detail(options, f"{time.monotonic() - begun:.1f} s")
     return code
-
-
-def _catch_interrupts() -> None:
-    """From here on something may be half written: Ctrl-C is an exception. Before that it ends a process
-    at once (``entry``), since an import makes other errors of it: lxml's is an ImportError.
-
-    A shell's job in the background has SIG_IGN; a process is ours where ``guarded`` has set SIGTERM.
-    """
-    ours = signal.getsignal(signal.SIGTERM) is signal.default_int_handler
-    if ours and signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:

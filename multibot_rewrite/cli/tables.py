@@ -58,7 +58,12 @@ def _lines(part: str | Grid, width: int | None, colour: bool) -> Iterable[str]:
 def _table(grid: Grid, width: int | None, colour: bool) -> Iterator[str]:
     widths = _fitted(grid, width)
     if widths is None:
-        yield from _as_lines(grid)
+        # A line for each cell, an empty one between rows.
+        longest = max(map(len, grid.columns))
+        for number, row in enumerate(grid.rows):
+            yield from [""] * (number > 0)
+            cells = zip(grid.columns, row, strict=True)
+            yield from (f"{name.ljust(longest)}  {text}" for name, text in cells if text)
         return
     head = next(_row(grid.columns, grid, widths))
     yield f"\033[1m{head.rstrip()}\033[0m" if colour else head
@@ -107,15 +112,6 @@ def _row(row: Sequence[str], grid: Grid, widths: Sequence[int]) -> Iterator[str]
             text.rstrip().rjust(width) if name in NUMBERS else text.rstrip().ljust(width)
             for text, name, width in cells
         )
-
-
-def _as_lines(grid: Grid) -> Iterator[str]:
-    """A line for each cell, an empty one between rows."""
-    longest = max(map(len, grid.columns))
-    for number, row in enumerate(grid.rows):
-        yield from [""] * (number > 0)
-        cells = zip(grid.columns, row, strict=True)
-        yield from (f"{name.ljust(longest)}  {text}" for name, text in cells if text)
 
 
 def json_bytes(value: object) -> bytes:

@@ -17,12 +17,11 @@ if TYPE_CHECKING:
 
 # Kinds that ``--separator SEP`` without a kind is for.
 OF_DESCRIPTION = tuple(kind for kind in SEPARATORS if kind not in ROS_SEPARATORS)
-_AS_THEY_ARE = ("layout", "affix", "topics")
 
 
 def policy(options: argparse.Namespace) -> Policy:
     """The naming policy that the options ask for, as ``make_naming`` takes it; only what is given."""
-    given = {name: getattr(options, name) for name in _AS_THEY_ARE}
+    given = {name: getattr(options, name) for name in ("layout", "affix", "topics")}
     words: Policy = {name: value for name, value in given.items() if value is not None}  # type: ignore[assignment]
     if options.separator:
         words["separators"] = separators(options)
@@ -99,8 +98,7 @@ def xacro_args(options: argparse.Namespace) -> dict[str, str]:
 
 def arguments_alone(options: argparse.Namespace) -> dict[str, str]:
     """The xacro arguments, of a command that takes no other words; raises UsageError for these."""
-    others = plain_words(options)
-    if others:
+    if others := plain_words(options):
         raise UsageError(f"{others[0]!r} is one word too many; xacro arguments are NAME:=VALUE")
     return xacro_args(options)
 

@@ -71,8 +71,7 @@ def _notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]:
     for robot in robots:
         if nothing := bare(robot.model):
             yield f"{robot.name}: {nothing}"
-        off = list(moved(robot.model.joints, robot.transforms))
-        if off:
+        if off := list(moved(robot.model.joints, robot.transforms)):
             yield (
                 f"{robot.name}: on tf, fixed joints are not as in the description"
                 f" ({shorten(off, SEVERAL)}): robot_state_publisher has another description, or another"

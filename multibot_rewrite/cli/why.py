@@ -15,8 +15,6 @@ from multibot_rewrite.companions.named_file import is_beside
 from multibot_rewrite.description.library import explain
 from multibot_rewrite.description.reports.explain import Explanation
 
-EXAMPLE_ROBOT = "robot1"
-
 
 def run(options: argparse.Namespace) -> int:
     """Print an explanation of every value on the line."""
@@ -25,7 +23,7 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError(f"--why is for descriptions, {path} is none; --diff shows what changes")
     # The file is in the option: what stands first is a robot or a xacro argument.
     options.words[:0] = [options.input] if options.input else []
-    robot = next(iter(robots(options)), EXAMPLE_ROBOT)
+    robot = next(iter(robots(options)), "robot1")
     options.vocabulary = [*configured_vocabulary(path), *options.vocabulary]
     found = explain(path, line, robot, **rewriting(options))
     if not found:

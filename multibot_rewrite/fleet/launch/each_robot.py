@@ -65,7 +65,8 @@ def functions(robots: Sequence[RobotStarts]) -> list[Function]:
         return [found[0]._replace(title="start")]
     titles: list[str] = []
     for own in found:
-        titles.append(_unused(own.title, titles))
+        every = (own.title if number == 1 else f"{own.title}_{number}" for number in count(1))
+        titles.append(next(it for it in every if it not in titles))
     return [own._replace(title=title) for own, title in zip(found, titles, strict=True)]
 
 
@@ -92,8 +93,7 @@ def _shape(it: Any, field: str = "") -> object:
 
 def _named(it: Sequence[Any]) -> Iterator[tuple[str, Any]]:
     """Yield the items, each with its field; that of an argument of a program is the flag before it."""
-    fields = getattr(it, "_fields", None)
-    if fields:
+    if fields := getattr(it, "_fields", None):
         yield from zip(fields, it, strict=True)
         return
     before = ""
@@ -217,8 +217,3 @@ def _any_of(texts: Sequence[str], what: str) -> str:
 
 def _title(word: str) -> str:
     return f"start_{re.sub(r'[^0-9a-zA-Z_]', '_', word)}"
-
-
-def _unused(title: str, titles: Sequence[str]) -> str:
-    every = (title if number == 1 else f"{title}_{number}" for number in count(1))
-    return next(it for it in every if it not in titles)

@@ -91,7 +91,6 @@ _OF_NODES, _OF_NAMES = ("lifecycle", "param", "control", "node"), ("topic", "ser
 # Where the first name stands behind ros2, its verb and what that does; what ends a command of a shell.
 _FIRST, _NEXT = 3, ("&&", "||", ";", "|", "&")
 _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
-_DOMAIN_BRIDGE = ("domain_bridge", "domain_bridge")
 
 
 def of_robot(
@@ -116,10 +115,11 @@ def of_robot(
         *(it for it in relayed if it.needs),
         *(it._replace(condition=SIMULATOR) for it in _spawned(given)),
     )
+    spaces = {it.namespace for it in names.nodes.values() if it.namespace != "/"}
     return RobotStarts(
         robot.spec.name,
         os.path.basename(robot.spec.description),
-        _where(names),
+        f"namespace {min(spaces, key=len)}" if spaces else "the root namespace",
         params_paths(robot, files),
         starts,
         (*given.left.items(), *_idle(one, robot)),
@@ -167,11 +167,6 @@ def _nodes(given: _Given) -> Iterator[str]:
     for name in given.running:
         yield names.full_name(name)
         yield from (names.full_name(it) for it in names.inside(name) if it not in given.left)
-
-
-def _where(names: NodeNames) -> str:
-    spaces = {it.namespace for it in names.nodes.values() if it.namespace != "/"}
-    return f"namespace {min(spaces, key=len)}" if spaces else "the root namespace"
 
 
 def _left(given: _Given) -> Iterator[tuple[str, str]]:
@@ -232,7 +227,8 @@ def _started(given: _Given, name: str) -> Start:
     return made._replace(
         arguments=(*words, *_options(given, facts)),
         components=tuple(_components(given, name)),
-        brought_up=is_unmanaged(facts, given.release) and not _is_listed(given, name),
+        brought_up=is_unmanaged(facts, given.release)
+        and not any(name in listed for listed in given.names.managed.values()),
     )
 
 
@@ -366,11 +362,6 @@ def _options(given: _Given, facts: NodeFacts) -> Iterator[str | File]:
     if facts.kind == CARTOGRAPHER and files:
         folder, _, name = path_for(given.robot, files[0]).rpartition("/")
         yield from ("-configuration_directory", File(folder), "-configuration_basename", name)
-
-
-def _is_listed(given: _Given, name: str) -> bool:
-    """Does a lifecycle manager bring it up?"""
-    return any(name in listed for listed in given.names.managed.values())
 
 
 def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
@@ -514,7 +505,7 @@ def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[St
     path = bridge_path(robot.spec.namespace)
     if path in files:
         name = bridge_name(robot.spec.namespace)
-        yield Start(*_DOMAIN_BRIDGE, "", name, arguments=(File(path),))
+        yield Start("domain_bridge", "domain_bridge", "", name, arguments=(File(path),))
 
 
 def of_all(
@@ -523,24 +514,20 @@ def of_all(
     """What runs once for all robots: the bridge of the clock, and nodes that all of them share."""
     names = names_of(plan.fleet.table, "")
     known = {it.name: it for one in plan.evidence.values() for it in one.nodes}
-    shared = (*_shared(plan, names, known, values), *_processes_of_all(plan))
-    if BRIDGE_FILE not in files:
-        return shared
-    rows, served = ({"config_file": File(BRIDGE_FILE)},), services_in(plan.launched_words)
-    bridge = Start(*_BRIDGE, parameters=rows, arguments=tuple(served))
-    # It is of no use without the simulator.
-    return (bridge._replace(condition=SIMULATOR), *shared) if simulators else (*shared, bridge)
-
-
-def _processes_of_all(plan: FleetPlan) -> list[Start]:
-    """The processes that run once, each once."""
+    # The processes that run once, each once.
     found: list[Start] = []
     for robot in plan.robots:
         for it in (one for one in plan.evidence_of(robot).processes if one.once):
             made = _process(it.node, robot.spec.name, "", None)
             made = made._replace(number=-1, process=made.process._replace(after=-1))
             found += [] if made in found else [made]
-    return found
+    shared = (*_shared(plan, names, known, values), *found)
+    if BRIDGE_FILE not in files:
+        return shared
+    rows, served = ({"config_file": File(BRIDGE_FILE)},), services_in(plan.launched_words)
+    bridge = Start(*_BRIDGE, parameters=rows, arguments=tuple(served))
+    # It is of no use without the simulator.
+    return (bridge._replace(condition=SIMULATOR), *shared) if simulators else (*shared, bridge)
 
 
 def _shared(

@@ -24,7 +24,6 @@ from multibot_rewrite.fleet.launch.starts import (
 )
 from multibot_rewrite.spelling.start import File, in_order
 
-_NAME = "name"
 # What ament_flake8 allows, and robots of which each has its line to drive.
 WIDTH, _DRIVING = 99, 4
 # The names that it imports where it uses them, in this order.
@@ -145,7 +144,7 @@ def _shell(line: str) -> Iterator[str]:
 
 def _function(it: Function) -> Iterator[str]:
     """Yield the function that starts a robot, or each of several."""
-    own = (_NAME, *it.parameters) if len(it.calls) > 1 else ()
+    own = ("name", *it.parameters) if len(it.calls) > 1 else ()
     yield f"def {it.title}({', '.join(own)}):"
     yield f'    """Start {comment(it.starts.description)} in {comment(it.starts.where)}."""'
     yield from _robot(it.starts)

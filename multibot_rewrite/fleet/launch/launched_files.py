@@ -127,12 +127,18 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
         there = taken.setdefault(os.path.basename(it.path), it.path)
         text = yaml_of(it.path).text
         if os.path.realpath(there) != it.path:
-            notes.append(_has_other(it, there))
+            message = f"the launch gives a node {it.path}; {there} is rewritten in its place"
+            hint = "give the launch what is written for the robot, or give one of them another name"
+            file, line, *_ = it.place
+            notes.append(NOT_REWRITTEN.finding(message, hint, file=file, line=line))
         elif _SUBSTITUTED not in text or _is_filled(it, text, spec):
             own += [] if there in own else [there]
             filled += [(there, it.text)] if _SUBSTITUTED in text else []
         elif there not in own:
-            notes.append(_unfilled(it))
+            message = f"the launch fills {_SUBSTITUTED}...) in {it.path}; it is not rewritten"
+            hint = "write it out for one robot without a prefix, and list that file under params"
+            file, line, *_ = it.place
+            notes.append(NOT_REWRITTEN.finding(message, hint, level=WARNING, file=file, line=line))
     companions = {**spec.companions, PARAMS: tuple(own)} if own else spec.companions
     return spec._replace(companions=companions, filled=(*spec.filled, *filled)), notes
 
@@ -147,20 +153,6 @@ def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
     same = len(it.text.splitlines()) == len(text.splitlines())
     named = {word for word in spec.words if word in it.text and word not in text}
     return same and not named and _SUBSTITUTED not in it.text
-
-
-def _unfilled(it: _Named) -> Finding:
-    message = f"the launch fills {_SUBSTITUTED}...) in {it.path}; it is not rewritten"
-    hint = "write it out for one robot without a prefix, and list that file under params"
-    file, line, *_ = it.place
-    return NOT_REWRITTEN.finding(message, hint, level=WARNING, file=file, line=line)
-
-
-def _has_other(it: _Named, there: str) -> Finding:
-    message = f"the launch gives a node {it.path}; {there} is rewritten in its place"
-    hint = "give the launch what is written for the robot, or give one of them another name"
-    file, line, *_ = it.place
-    return NOT_REWRITTEN.finding(message, hint, file=file, line=line)
 
 
 def with_one_map(file: FleetFile) -> FleetFile:

@@ -13,7 +13,7 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.fleet.fleet import FRAME_PREFIX
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, node_sources
+from multibot_rewrite.fleet.robots.robot_nodes import node_sources
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
@@ -24,21 +24,17 @@ def launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
     """Those of the first robot of each kind."""
     for key, found in plan.evidence.items():
         robot = next(it for it in plan.robots if node_sources(it.spec) == key)
-        given = _prefix_of(found)
+        # What its own robot_state_publisher gets; there may be another one, as of a dock.
+        every = [it for it in found.given if it.fact.known == STATE_PUBLISHER]
+        own = next((it for it in every if it.node == STATE_PUBLISHER), None)
+        publisher = own or (every[0] if len(every) == 1 else None)
+        given = publisher.values.get(FRAME_PREFIX) if publisher else None
         # What is in a parameter file is rewritten there.
         if given and given.place.file in robot.spec.companions.get("params", ()):
             continue
         prefix = str(given.value).strip("/") if given else ""
         if given and prefix != robot.frame_prefix.strip("/"):
             yield _finding(robot, given, prefix)
-
-
-def _prefix_of(found: RobotEvidence) -> Given | None:
-    """What its own robot_state_publisher gets; there may be another one, as of a dock."""
-    every = [it for it in found.given if it.fact.known == STATE_PUBLISHER]
-    own = next((it for it in every if it.node == STATE_PUBLISHER), None)
-    publisher = own or (every[0] if len(every) == 1 else None)
-    return publisher.values.get(FRAME_PREFIX) if publisher else None
 
 
 def _finding(robot: RewrittenRobot, given: Given, prefix: str) -> Finding:

@@ -21,7 +21,6 @@ _VALUED = (
     *("-v", "-z", "--seed", "--iterations", "--physics-engine", "--render-engine"),
     *("--render-engine-server", "--render-engine-gui", "--network-role"),
 )
-_CLIENT = "gzclient"
 
 
 class Simulator(NamedTuple):
@@ -38,9 +37,15 @@ def launched_simulator(file: FleetFile) -> Simulator:
     """The simulator of the first robot whose launch files start one."""
     for spec in file.robots:
         nodes = launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ()
-        started = [it for it in nodes if _is_simulator(it)]
+        started = [it for it in nodes if it.executable == SIMULATOR and it.package in SIMULATORS]
         if started:
-            return _simulator(started, any(_is_client(it) for it in nodes))
+            words = [word for own in started for word in own.arguments]
+            worlds = [one for own in started for one in world_files(own)]
+            world = worlds[0] if worlds else ""
+            if started[0].package == CLASSIC:
+                return Simulator(world, (), any(_is_client(it) for it in nodes), True)
+            headless = _SERVER in words and _WINDOW not in words
+            return Simulator(world, tuple(dict.fromkeys(_options(words))), headless)
     return Simulator()
 
 
@@ -55,22 +60,8 @@ def with_launched_world(file: FleetFile) -> FleetFile:
     return file._replace(simulator_world=own.world, world_place=place)
 
 
-def _is_simulator(it: LaunchedNode) -> bool:
-    return it.executable == SIMULATOR and it.package in SIMULATORS
-
-
 def _is_client(it: LaunchedNode) -> bool:
-    return not it.package and os.path.basename(it.executable) == _CLIENT
-
-
-def _simulator(started: Sequence[LaunchedNode], has_client: bool) -> Simulator:
-    words = [word for it in started for word in it.arguments]
-    worlds = [one for it in started for one in world_files(it)]
-    world = worlds[0] if worlds else ""
-    if started[0].package == CLASSIC:
-        return Simulator(world, (), has_client, True)
-    headless = _SERVER in words and _WINDOW not in words
-    return Simulator(world, tuple(dict.fromkeys(_options(words))), headless)
+    return not it.package and os.path.basename(it.executable) == "gzclient"
 
 
 def _options(words: Sequence[str]) -> Iterator[str]:

@@ -146,7 +146,19 @@ def _kind(it: Start) -> str:
 
 def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
     if it.package:
-        yield from _of_node(it, own)
+        for name in ("package", "executable", "plugin", "namespace", "name"):
+            if text := getattr(it, name):
+                yield f"{name}={value(text)},"
+        if it.arguments:
+            yield from lines("arguments=", [*_pairs(it.arguments)], ",")
+        count = len(own.files)
+        common = count > 0 and it.parameters[:count] == own.files
+        first, rest = ([Code("*params")], it.parameters[count:]) if common else ([], it.parameters)
+        yield from lines("parameters=", [*first, *rest, own.clock], ",")
+        if it.remappings:
+            yield "remappings=["
+            yield from (f"    ({value(old)}, {value(new)})," for old, new in it.remappings)
+            yield "],"
     else:
         yield from lines("cmd=", [*_pairs((it.executable, *it.arguments))], ",")
     if it.environment:
@@ -164,37 +176,16 @@ def _with_rest(name: Any, text: Any) -> Any:
     return text if isinstance(text, Code) else with_rest(text, rest)
 
 
-def _of_node(it: Start, own: OfRobot) -> Iterator[str]:
-    for name in ("package", "executable", "plugin", "namespace", "name"):
-        if text := getattr(it, name):
-            yield f"{name}={value(text)},"
-    if it.arguments:
-        yield from lines("arguments=", [*_pairs(it.arguments)], ",")
-    count = len(own.files)
-    common = count > 0 and it.parameters[:count] == own.files
-    first, rest = ([Code("*params")], it.parameters[count:]) if common else ([], it.parameters)
-    yield from lines("parameters=", [*first, *rest, own.clock], ",")
-    if it.remappings:
-        yield "remappings=["
-        yield from (f"    ({value(old)}, {value(new)})," for old, new in it.remappings)
-        yield "],"
-
-
 def lines(before: str, it: Any, after: str = "") -> list[str]:
     """Return the lines of a value: one if that is short, else those of its items."""
     line = f"{before}{value(it)}{after}"
-    if _is_short(line) or not isinstance(it, Mapping | list):
+    if len(re.sub(r"\d", "", line)) <= _SHORT or not isinstance(it, Mapping | list):
         return [line]
     first, last = "{}" if isinstance(it, Mapping) else "[]"
     pairs = it.items() if isinstance(it, Mapping) else ((None, one) for one in it)
     inner = [lines("" if key is None else f"{value(key)}: ", one) for key, one in pairs]
     below = (f"    {line}" for one in inner for line in (*one[:-1], f"{one[-1]},"))
     return [f"{before}{first}", *below, f"{last}{after}"]
-
-
-def _is_short(text: str) -> bool:
-    """Does it stay in one line? Robots that only a number tells apart look the same."""
-    return len(re.sub(r"\d", "", text)) <= _SHORT
 
 
 def _pairs(words: Iterable[str | File]) -> Iterator[Code]:

@@ -96,8 +96,7 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
     # What is not said is simulated where a launch file does it.
     wanted = robot.is_simulated or not robot.simulator
     for simulated in (wanted, *([] if robot.simulator else [not wanted])):
-        fits = [it for it in read if _is_simulated(it.graph) == simulated]
-        if fits:
+        if fits := [it for it in read if _is_simulated(it.graph) == simulated]:
             first, *others = sorted(fits, key=lambda it: (_tries(it, simulated), _rank(it)))
             return Bringup(first.order, first.graph, simulated, tuple(it.order for it in others))
     return None

@@ -94,7 +94,9 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
     }
     sections = dict(_sections(_fitting(robot, found, release, left), left))
     idle = _controllers_of_others(robot, sections)
-    left |= idle | _bridges_of_others(robot, found)
+    left |= idle
+    if robot.simulator == NO_SIMULATOR:
+        left |= dict.fromkeys(found.bridge, "the description has nothing for a simulator")
     files |= {"bridge": tuple(it for it in files["bridge"] if it not in left)}
     sections = {path: names for path, names in sections.items() if path not in idle}
     files["params"] = tuple(sections)
@@ -127,13 +129,6 @@ def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]
     if robot.simulator == NO_SIMULATOR:
         reason = "the description has no <ros2_control>"
     return {path: reason for path, names in sections.items() if _MANAGER in names}
-
-
-def _bridges_of_others(robot: Looked, found: Found) -> dict[str, str]:
-    """Bridges to a simulator, beside a description that has nothing for one."""
-    if robot.simulator != NO_SIMULATOR:
-        return {}
-    return dict.fromkeys(found.bridge, "the description has nothing for a simulator")
 
 
 def moveit_beside(robot: Looked, srdf: str, found: Found, left: dict[str, str]) -> tuple[str, ...]:
@@ -203,8 +198,7 @@ def _sections(
     out."""
     before: dict[str, str] = {}
     for path, names, *_ in read:
-        again = sorted(names & before.keys())
-        if again:
+        if again := sorted(names & before.keys()):
             left[path] = f"{os.path.basename(before[again[0]])} has parameters of {again[0]}, too"
             continue
         before |= dict.fromkeys(names, path)

@@ -39,7 +39,7 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
     yield from (f"# {note}" for note in it.notes)
     for key, choice in it.keys.items():
         yield ""
-        yield f"# {_sentence(choice.why)}"
+        yield f"# {choice.why[:1].upper()}{choice.why[1:]}"
         if key == "layout":
             yield "# The other layouts:"
             others = (layout for layout in LAYOUTS if layout.name != choice.value)
@@ -109,10 +109,6 @@ def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
             yield os.path.relpath(path, folder), left[path]
 
 
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
 def _block(key: str, value: Any) -> Iterator[str]:
     if not isinstance(value, dict):
         yield f"{key}: {_flow(value)}"
@@ -178,8 +174,7 @@ def _launched(it: Bringup) -> Iterator[str]:
     if once:
         yield "Once for all robots; `own_nodes: [NAME]` gives each its own:"
         yield from _some(once)
-    idle = [f"{one.what}: {one.why}" for one in it.graph.idle]
-    if idle:
+    if idle := [f"{one.what}: {one.why}" for one in it.graph.idle]:
         yield "Not started, by its conditions; another value behind its file here starts it:"
         yield from _some(idle)
     if it.others:
@@ -199,8 +194,7 @@ def _needed(it: Looked) -> Iterator[str]:
     arguments = dict(it.arguments)
     if it.switch:
         yield f"{it.switch} is the switch between the simulated and the real robot"
-    found = [name for name in it.needed if name in arguments]
-    if found:
+    if found := [name for name in it.needed if name in arguments]:
         yield f"It needs {', '.join(found)}; init chose a value: is it right?"
 
 

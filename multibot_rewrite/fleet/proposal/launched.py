@@ -42,7 +42,7 @@ def companions_launched(
     handed = "\n".join(value for it in lost for _, value in it.arguments)
     params = [it for it in found.params if it in found.meant or os.path.realpath(it) in handed]
     params += _of_stacks(companions_of(robot, found, release), asked, release) if asked else []
-    starts, makes = _starts_moveit(graph), _makes_moveit(bringup)
+    starts, makes = any(it.executable == _MOVEIT for it in graph.nodes), _makes_moveit(bringup)
     srdf = ""
     if starts or makes:
         read = {it.file for it in graph.read}
@@ -60,10 +60,6 @@ def _words(graph: LaunchGraph) -> Iterator[str]:
     """The words and texts that nodes get, in which the files that they read are named."""
     yield from (word for it in graph.nodes for word in it.arguments)
     yield from graph.texts
-
-
-def _starts_moveit(graph: LaunchGraph) -> bool:
-    return any(it.executable == _MOVEIT for it in graph.nodes)
 
 
 def _makes_moveit(it: Bringup) -> bool:

@@ -275,17 +275,13 @@ def _companions(it: Looked, found: Found, release: str, wanted: Wanted) -> Compa
 
 def _member(it: Looked, beside: Companions, names: tuple[str, ...], reach: Reach) -> Member:
     own = with_controllers(it, beside.files.get("params", ()), reach)
-    return Member(own, beside, names, _radius(own))
+    assert own.root is not None
+    return Member(own, beside, names, reach_of(own.root) or UNKNOWN_RADIUS)
 
 
 def _others(found: Found, robots: Sequence[Looked]) -> tuple[str, ...]:
     taken = {path for it in robots for path in it.files}
     return tuple(it for it in found.descriptions if it not in taken)
-
-
-def _radius(it: Looked) -> float:
-    assert it.root is not None
-    return reach_of(it.root) or UNKNOWN_RADIUS
 
 
 # The release that parameter files were written for, by the parameters and the classes of plugins that

@@ -108,7 +108,13 @@ def see(wanted: Wanted) -> Seen:
         return looked
 
     if {*found.descriptions} & {*map(os.path.normpath, wanted.paths)}:
-        return _named(wanted, found, look_at_all(found.descriptions), look_at)
+        # The descriptions that were named; beside one alone stand those that share its folder.
+        named = look_at_all(found.descriptions)
+        _refuse([it for it in named if not it.links], "")
+        if len(named) > 1:
+            return Seen(found, named, True)
+        beside = [look_at(it) for it in _partners(named[0], found)]
+        return Seen(found, [_with_partner(named[0], beside, wanted)], True, (), named)
     launched = look_at_all(launched_descriptions(found))
     if not any(it.fault or _is_robot(it) for it in launched):
         return _likeliest(wanted, found, look_at_all(found.descriptions))
@@ -119,17 +125,6 @@ def see(wanted: Wanted) -> Seen:
 
 def _is_robot(it: Looked) -> bool:
     return it.links > 0 and acts(it)
-
-
-def _named(
-    wanted: Wanted, found: Found, named: list[Looked], look_at: Callable[[str], Looked]
-) -> Seen:
-    """The descriptions that were named; beside one alone stand those that share its folder."""
-    _refuse([it for it in named if not it.links], "")
-    if len(named) > 1:
-        return Seen(found, named, True)
-    beside = [look_at(it) for it in _partners(named[0], found)]
-    return Seen(found, [_with_partner(named[0], beside, wanted)], True, (), named)
 
 
 def _likeliest(

@@ -6,9 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import BoundNode, expand, resolve_bound
-from multibot_rewrite.description.readback.xml import read_xml, root_of
+from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.evidence.hardware import claims_of, exported
 from multibot_rewrite.producers.launch.bridges import bridged_by
@@ -54,8 +53,7 @@ def passed_on(it: Run, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Ed
 def _made(it: Run) -> Iterable[Edge]:
     if publishes_a_tree(it):
         return tree_of(it) or ()
-    prefix = prefix_of(it)
-    return _below(prefix, sent_by(it.fact, ""))
+    return _below(prefix_of(it), sent_by(it.fact, ""))
 
 
 def _below(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
@@ -66,8 +64,7 @@ def prefix_of(it: Run) -> str:
     """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
     ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
     prefix = it.value("tf_prefix")
-    switch = it.fact.prefix_switch
-    if switch:
+    if switch := it.fact.prefix_switch:
         own = it.value("tf_frame_prefix") or it.namespace
         prefix = "" if it.value(switch) is False else own
     bare = str(prefix or "").strip("/")
@@ -94,18 +91,17 @@ def interfaces_of(
 ) -> Iterator[Interface]:
     """Of controllers whose manager has a known description; ``published`` is what each topic has."""
     nodes = [*nodes]
-    texts = {it.full_name: _description(it, published) for it in nodes if is_manager(it)}
+    texts = {it.full_name: _description(it, published) for it in nodes if it.fact.known == MANAGER}
     for manager, text in texts.items():
-        yield from _exports(manager, text, graph)
+        root = root_of(text)
+        for own in exported(root, file_of(graph, text)) if root is not None else ():
+            yield Interface(own.kind, own.name, manager, EXPORTS, own.place)
     known = {it.process for it in nodes if texts.get(it.full_name)}
     for it in nodes:
         if it.process in known and it.fact.is_controller:
-            yield from _claims(it)
-
-
-def is_manager(it: Run) -> bool:
-    """Is it a controller manager?"""
-    return it.fact.known == MANAGER
+            for claim in claims_of(it.fact.claims, it):
+                place = claim.place if claim.place and claim.place.file else it.place
+                yield Interface(claim.kind, claim.name, it.full_name, CLAIMS, place)
 
 
 def _description(it: Run, published: Mapping[str, str]) -> str:
@@ -118,20 +114,3 @@ def _description(it: Run, published: Mapping[str, str]) -> str:
     rules = {old.lstrip("/~"): new for old, new in it.rules}
     topic = rules.get(_DESCRIPTION, _DESCRIPTION)
     return published.get(expand(topic, it.namespace, it.name), "")
-
-
-def _exports(manager: str, text: str, graph: LaunchGraph) -> Iterator[Interface]:
-    if not text:
-        return
-    try:
-        root = read_xml(text.encode(), "")
-    except InputError:
-        return
-    for it in exported(root, file_of(graph, text)):
-        yield Interface(it.kind, it.name, manager, EXPORTS, it.place)
-
-
-def _claims(it: Run) -> Iterator[Interface]:
-    for claim in claims_of(it.fact.claims, it):
-        place = claim.place if claim.place and claim.place.file else it.place
-        yield Interface(claim.kind, claim.name, it.full_name, CLAIMS, place)

@@ -38,9 +38,7 @@ _ROW = lazy_compile(
 _ROLES = {"[": (PUBLISHES,), "]": (SUBSCRIBES,), "@": (PUBLISHES, SUBSCRIBES)}
 _WAYS = {"GZ_TO_ROS": "[", "ROS_TO_GZ": "]", "BIDIRECTIONAL": "@"}
 _IMAGE = "sensor_msgs/msg/Image"
-_BRIDGE = "ros_gz_bridge"
 _BRIDGES = ("ros_gz_bridge/parameter_bridge", "ros_ign_bridge/parameter_bridge")
-_COMPONENT = "ros_gz_bridge/bridge_node"
 _OF_IMAGES = ("ros_gz_image/image_bridge", "ros_ign_image/image_bridge")
 
 
@@ -71,7 +69,7 @@ def services_in(words: Iterable[str]) -> dict[str, Row]:
 
 def passes_topics_on(package: str, program: str) -> bool:
     """Is a program a bridge to a simulator, which the bridges of a build stand for?"""
-    return f"{package}/{program}" in (*_BRIDGES, *_OF_IMAGES, _COMPONENT)
+    return f"{package}/{program}" in (*_BRIDGES, *_OF_IMAGES, "ros_gz_bridge/bridge_node")
 
 
 def files_in(node: LaunchedNode) -> Iterator[str]:
@@ -86,7 +84,7 @@ def files_in(node: LaunchedNode) -> Iterator[str]:
 
 def is_bridge(it: Run) -> bool:
     """Does the node pass topics of a simulator on?"""
-    known = it.fact.kind == _BRIDGE
+    known = it.fact.kind == "ros_gz_bridge"
     return known or it.program in (*_BRIDGES, *_OF_IMAGES)
 
 

@@ -41,14 +41,8 @@ from multibot_rewrite.producers.launch.records import (
 from multibot_rewrite.producers.launch.spawners import controller_files
 from multibot_rewrite.system.records import Place
 
-_ENDS = (".yaml", ".yml")
 _HEAD = lazy_compile(rb"^structure:", re.MULTILINE)
 _KEPT_TEXT = ("pkg", "exec", "plugin", "node_name", "container")
-
-
-def is_system_model(path: str) -> bool:
-    """Is it a system model? A launch file in YAML has ``launch:`` instead."""
-    return path.endswith(_ENDS) and _HEAD.search(read_file(path)) is not None
 
 
 def read_system_model(path: str) -> LaunchGraph:
@@ -129,7 +123,8 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
     Raises InputError for a file that cannot be read.
     """
     refuse_others(read_file(order.file), order.file, LAUNCH)
-    if is_system_model(order.file):
+    # A launch file in YAML has ``launch:`` in place of what a system model begins with.
+    if order.file.endswith((".yaml", ".yml")) and _HEAD.search(read_file(order.file)) is not None:
         return read_system_model(order.file)
     if os.environ.get(_INSIDE):
         return LaunchGraph()

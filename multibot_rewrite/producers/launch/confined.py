@@ -41,7 +41,6 @@ from multibot_rewrite.producers.launch.records import LaunchOrder
 
 # What the loader of Linux reads for a library.
 _LIBRARIES = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache")
-_DEVICES = ("/dev/null", "/dev/urandom")
 # Variables that are no secret, beside those that xacro sees.
 _PLAIN = (
     "COLUMNS",
@@ -57,7 +56,6 @@ _PLAIN = (
     "LINES",
     "PYTHONPATH",
 )
-_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 NOT_FENCED = (
     "a launch file is a program, and this system has not both Landlock and seccomp to fence it in;"
     " --trust runs it without (SECURITY.md)"
@@ -83,7 +81,7 @@ def confine(order: LaunchOrder, folder: str, more: Sequence[str], seconds: float
         del os.environ[name]
     os.environ.__class__ = type("Environ", (type(os.environ),), {"__getitem__": _asked(hidden)})
     # A library that may start no thread would end the process.
-    os.environ |= dict.fromkeys(_THREADS, "1")
+    os.environ |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     # They would change files that are only read; what copies files asks for them.
     vars(os).update(dict.fromkeys(("chmod", "utime", "listxattr"), _nothing))
 
@@ -107,7 +105,10 @@ def _asked(hidden: set[str]) -> Callable[[Any, str], str]:
 
 
 def _readable(access: Access) -> Iterator[str]:
-    yield from _beside(access)
+    # The files in the folder of the launch file, which may be a home.
+    for folder in access.beside:
+        with os.scandir(folder or os.curdir) as found:
+            yield from (it.path for it in found if it.name[0] != "." and it.is_file())
     yield from access.roots
     for prefix in access.sourced:
         yield prefix
@@ -117,14 +118,7 @@ def _readable(access: Access) -> Iterator[str]:
             yield from (os.path.join(above, it) for it in ("src", "build"))
     yield from sys.path
     yield from (sysconfig.get_path(it) for it in ("stdlib", "platstdlib"))
-    yield from (*_LIBRARIES, *_DEVICES)
-
-
-def _beside(access: Access) -> Iterator[str]:
-    """The files in the folder of the launch file, which may be a home."""
-    for folder in access.beside:
-        with os.scandir(folder or os.curdir) as found:
-            yield from (it.path for it in found if it.name[0] != "." and it.is_file())
+    yield from (*_LIBRARIES, "/dev/null", "/dev/urandom")
 
 
 START, SEND, READ, END = "start", "send", "read", "end"

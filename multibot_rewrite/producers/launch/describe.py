@@ -392,16 +392,11 @@ def _parameters(own: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
 
 def parameters(given: Any, here: Visit) -> Iterator[ParameterText]:
     """A parameter file, or values, that an action gives its node."""
-    for it in _each(given):
-        yield from _evaluated(it, here)
-
-
-def _each(given: Any) -> Iterator[Any]:
-    """The values one by one: one that cannot be told does not hide the others."""
-    if isinstance(given, dict):
-        yield from ({name: value} for name, value in given.items())
-    else:
-        yield given
+    # Values one by one: one that cannot be told does not hide the others.
+    for it in given.items() if isinstance(given, dict) else ():
+        yield from _evaluated(dict([it]), here)
+    if not isinstance(given, dict):
+        yield from _evaluated(given, here)
 
 
 def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
@@ -443,20 +438,16 @@ def _of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterText]:
     rest = {name: value for name, value in found.items() if name not in gone}
     if rest or not found:
         yield _values(rest)
-    _keep_files(rest.values(), here)
+    # Keep the parameter files that plugins in descriptions name: they may be gone when these are
+    # read.
+    for text_ in (it for it in rest.values() if isinstance(it, str)):
+        for path in _OF_PLUGIN.findall(text_):
+            here.files.update((path, it) for it in _file(path, here))
 
 
 def _is_gone(text_: str) -> bool:
     """Does it name what the launch makes? A description may do so: it is rewritten."""
     return GONE in real_paths(text_) and "<" not in text_
-
-
-def _keep_files(values: Iterable[Any], here: Visit) -> None:
-    """Keep the parameter files that plugins in descriptions name: they may be gone when these are
-    read."""
-    for text_ in (it for it in values if isinstance(it, str)):
-        for path in _OF_PLUGIN.findall(text_):
-            here.files.update((path, it) for it in _file(path, here))
 
 
 def _values(values: Any) -> ParameterText:
@@ -481,8 +472,7 @@ def _given(
 ) -> Iterator[ParameterText]:
     for path in files:
         yield from _file(path, here)
-    written = params_text(values)
-    if written:
+    if written := params_text(values):
         yield ParameterText("", written)
 
 

@@ -20,7 +20,6 @@ LINE = "multibot_line"
 _SEPARATOR, _CHILDREN = "-sep", "children"
 # What libxml2 says of it, by its release.
 _TOO_DEEP = (etree.ErrorTypes.ERR_RESOURCE_LIMIT, etree.ErrorTypes.ERR_INTERNAL_ERROR)
-_TEXT = "tag:yaml.org,2002:str"
 
 
 class Entity:
@@ -62,7 +61,11 @@ def root_of(data: bytes, file: str) -> Entity:
     if data.lstrip().startswith(b"<"):
         root = _of_xml(_parsed(data))
     else:
-        root = _of_document(compose_yaml(data.decode(), file))
+        node = compose_yaml(data.decode(), file)
+        if not isinstance(node, yaml.MappingNode) or len(node.value) != 1:
+            raise RuntimeError("Expected only one root")
+        ((key, body),) = node.value
+        root = _of_yaml(str(key.value), line_of(key), body)
     if root.tag != "launch":
         raise RuntimeError("Expected 'launch' as root tag")
     return root
@@ -83,13 +86,6 @@ def _of_xml(element: etree._Element) -> Entity:
         values[name] = values[name].split(values.pop(f"{name}{_SEPARATOR}"))
     below = [_of_xml(it) for it in element if isinstance(it.tag, str)]
     return Entity(str(element.tag), int(str(element.sourceline or 0)), values, below)
-
-
-def _of_document(node: yaml.Node | None) -> Entity:
-    if not isinstance(node, yaml.MappingNode) or len(node.value) != 1:
-        raise RuntimeError("Expected only one root")
-    ((key, body),) = node.value
-    return _of_yaml(str(key.value), line_of(key), body)
 
 
 def _of_yaml(tag: str, line: int, node: yaml.Node) -> Entity:
@@ -130,4 +126,4 @@ def _plain(node: yaml.Node) -> Any:
         return [_plain(it) for it in node.value]
     if isinstance(node, yaml.MappingNode):
         return {str(key.value): _plain(it) for key, it in node.value}
-    return node.value if node.tag == _TEXT else load_yaml(node.value, A_VALUE)
+    return node.value if node.tag == "tag:yaml.org,2002:str" else load_yaml(node.value, A_VALUE)

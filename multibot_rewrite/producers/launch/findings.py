@@ -40,12 +40,10 @@ def launch_findings(
         yield NOT_WHOLE.finding(STOOD_IN, "", **_place(place))._replace(level=NOTE)
     for note in graph.notes:
         hint = "the nodes that it starts are not in the plan"
-        hint = (
-            f"{hint}; build starts it in each robot's namespace"
-            if note.missing in included
-            else hint
-        )
-        hint = _WITHOUT_VALUES if note.parameters else hint
+        if note.parameters:
+            hint = _WITHOUT_VALUES
+        elif note.missing in included:
+            hint = f"{hint}; build starts it in each robot's namespace"
         yield NOT_WHOLE.finding(note.message, hint, **_place(note.place))
     for node in graph.nodes:
         for key in dict.fromkeys(it.untold for it in node.parameters if it.untold):

@@ -11,7 +11,7 @@ import os
 import re
 import shlex
 from collections.abc import Collection, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from typing import Any
 
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
@@ -150,21 +150,15 @@ def given(include: Any, context: Any) -> dict[str, str]:
     """
     found = {}
     for name, value in include.launch_arguments or ():
-        with _not_known():
+        # What only a run tells, or would fail in one for another reason, is passed over.
+        try:
             key = text(name, context)
             found[key] = ""
             found[key] = text(value, context)
+        except Exception as error:
+            if is_no_text(error):
+                raise
     return found
-
-
-@contextmanager
-def _not_known() -> Iterator[None]:
-    """Passes over what only a run tells, or would fail in one for another reason."""
-    try:
-        yield
-    except Exception as error:
-        if is_no_text(error):
-            raise
 
 
 def path_of(include: Any, context: Any) -> str:

@@ -158,14 +158,10 @@ def _keeping(made: Callable[[Any, Any], Any], read: Callable[[Any], Any]) -> Cal
         path = made(self, context)
         if str(path) not in getattr(context, _MADE_OF, {}):
             # What is read may be made as well, and kept meanwhile.
-            source = _text(read(self), context)
-            setattr(context, _MADE_OF, getattr(context, _MADE_OF, {}) | {str(path): source})
+            source = read(self)
+            if not isinstance(source, str | os.PathLike):
+                source = of_launch("utilities").perform_substitutions(context, source)
+            setattr(context, _MADE_OF, getattr(context, _MADE_OF, {}) | {str(path): str(source)})
         return path
 
     return keeping
-
-
-def _text(path: Any, context: Any) -> str:
-    if isinstance(path, str | os.PathLike):
-        return str(path)
-    return str(of_launch("utilities").perform_substitutions(context, path))

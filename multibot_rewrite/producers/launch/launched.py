@@ -137,13 +137,9 @@ def sensors_of(models: Iterable[InSimulator]) -> list[SensorFrame]:
 NOT_WHOLE, NOT_KNOWN = "launch-not-whole", "node-not-known"
 
 
-def of_simulator(graph: LaunchGraph, models: Models) -> tuple[Caveat, ...]:
+def of_simulator(graph: LaunchGraph, models: Models) -> Iterator[Caveat]:
     """What makes the view of a simulator incomplete."""
-    return (*_of_models(models), *_of_worlds(graph, models))
-
-
-def _of_models(models: Models) -> Iterator[Caveat]:
-    """Plugins of a spawned model are nodes, which a robot brings with it."""
+    # Plugins of a spawned model are nodes, which a robot brings with it.
     for it in models.lost[:1]:
         text = "nodes that plugins of a spawned model make are not known: its description is not"
         yield Caveat(NOT_WHOLE, True, f"{it.place}: {text}")
@@ -152,10 +148,7 @@ def _of_models(models: Models) -> Iterator[Caveat]:
         listed = shorten(list(dict.fromkeys(unknown)), SEVERAL)
         text = f"what these plugins of spawned models start is not known: {listed}"
         yield Caveat(NOT_KNOWN, True, f"{text}; describe them (docs/add-a-plugin.md)")
-
-
-def _of_worlds(graph: LaunchGraph, models: Models) -> Iterator[Caveat]:
-    """A world may have robots in it, which nobody spawns."""
+    # A world may have robots in it, which nobody spawns.
     alone = not models.lost and not any(it.spawned for it in models.found)
     for it in graph.nodes:
         for file in world_files(it):

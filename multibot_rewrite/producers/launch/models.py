@@ -37,9 +37,7 @@ _GIVEN = ParameterText(
 # names none (gz-sim src/systems: diff_drive, ackermann_steering, mecanum_drive, tracked_vehicle;
 # OdometryPublisher.cc:283).
 _PARENTS = {"frame_id": "tf", "odom_frame": "pose"}
-_CHILDREN = ("child_frame_id", "robot_base_frame")
 _TF, _CLASSIC_TF = "tf_topic", "/tf"
-_FRAME = "frame_name"
 
 
 class Published(NamedTuple):
@@ -157,7 +155,7 @@ def frames_of_plugins(models: Iterable[Model]) -> dict[str, str]:
     (gazebo_ros_pkgs ros2 gazebo_ros/src/utils.cpp, SensorFrameID)."""
     found = {}
     for reading in (it.reading for it in models if it.spawned):
-        frames = {it.number: it.name for it in reading.names if it.path == _FRAME}
+        frames = {it.number: it.name for it in reading.names if it.path == "frame_name"}
         for node in (it for it in reading.nodes if it.number in frames):
             found[expand(node.name, node.namespace or "/", "")] = frames[node.number]
     return found
@@ -196,7 +194,7 @@ def _sent(model: Model) -> Iterator[tuple[str, Edge]]:
         del plugins[number]
     for own in plugins.values():
         parent = next((it for it in _PARENTS if it in own), "")
-        child = next((own[it] for it in _CHILDREN if it in own), "")
+        child = next((own[it] for it in ("child_frame_id", "robot_base_frame") if it in own), "")
         if parent and child:
             topic = own.get(_TF, f"/model/{model.name}/{_PARENTS[parent]}")
             yield topic, edge_of(own[parent], child)

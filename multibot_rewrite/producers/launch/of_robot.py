@@ -313,7 +313,8 @@ def _pair(
         shared=bool(facts.shared or once_for_all(it)) and not is_of_robot(it.namespace, words),
         when=it.later or unnamed,
         container=_below(it.container, "", words),
-        origin=_origin(it.place),
+        # Without its folder: a plan is the same from every working directory.
+        origin=Origin(place=Place(os.path.basename(it.place.file), it.place.line)),
         is_known=facts.is_known or bool(rows),
     )
     return _Pair(it, found, number)
@@ -322,15 +323,12 @@ def _pair(
 def _unknown(it: LaunchedNode, name: str) -> NodeFacts:
     """What a launch file says of a node that nobody knows: what runs it, and its rules."""
     run = {"component": it.executable} if it.container else {"programs": (it.executable,)}
-    return UNKNOWN._replace(name=name, package=it.package, endpoints=_named_by(it), **run)
-
-
-def _named_by(it: LaunchedNode) -> tuple[Endpoint, ...]:
-    """What the rules of a node that nobody knows name: topics, as far as anybody can say."""
+    # Its rules name topics, as far as anybody can say.
     own = (old for old, _ in it.remappings if not check_topic_name(old))
     # It may send or read transforms: under these rules they are its robot's.
     names = dict.fromkeys((*own, *(f"/{topic}" for topic in TF_TOPICS)))
-    return tuple(Endpoint(TOPIC, "", old) for old in names)
+    ends = tuple(Endpoint(TOPIC, "", old) for old in names)
+    return UNKNOWN._replace(name=name, package=it.package, endpoints=ends, **run)
 
 
 def _only_named(it: LaunchedNode, facts: NodeFacts, name: str) -> Iterator[Endpoint]:
@@ -356,11 +354,6 @@ def _below(namespace: str, name: str, words: Collection[str]) -> str:
     """The name of a node as a stack has it: without the robot's namespace."""
     tokens = [*(it for it in namespace.split("/") if it), *([name] if name else [])]
     return "/".join(tokens[1:] if len(tokens) > 1 and tokens[0] in words else tokens)
-
-
-def _origin(place: Place) -> Origin:
-    # Without its folder: a plan is the same from every working directory.
-    return Origin(place=Place(os.path.basename(place.file), place.line))
 
 
 def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
@@ -398,14 +391,11 @@ def _controllers(
         for it in given_nodes(documents, parameters):
             name = _stripped(it.node, words)
             if name in places:
-                found[name] = _joined(found.get(name, it), it)
+                # As it is started, with the type that a manager of any namespace declares.
+                one = found.get(name, it)
+                found[name] = one if one.program else it._replace(values=one.values)
         for name, it in found.items():
             yield _placed(it, places[name])._replace(node=name, host_name=above)
-
-
-def _joined(one: Run, other: Run) -> Run:
-    """A controller as it is started, with the type that a manager of any namespace declares."""
-    return one if one.program else other._replace(values=one.values)
 
 
 def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:

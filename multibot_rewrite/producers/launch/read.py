@@ -164,7 +164,15 @@ class _Share(FindPackageShare):
 
 
 def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
-    _check_given(description, order)
+    # Without an argument that the file itself has to be given it is not read.
+    for it, includes in getattr(description, ASKED)():
+        free = (
+            order.every
+            or it.default_value is not None
+            or getattr(it, "_conditionally_included", False)
+        )
+        if not free and not includes and it.name not in dict(order.arguments):
+            raise UnreadableError(f"it has to be given {it.name}; write {it.name}:=VALUE after it")
     context, path = of_launch().LaunchContext(noninteractive=True), os.path.abspath(order.file)
     folder = {"current_launch_file_directory": os.path.dirname(path)}
     context.extend_locals({"current_launch_file_path": path, **folder})
@@ -178,16 +186,20 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
         seen.note(it, parameters=True)
     notes = tuple(dict.fromkeys(_with_unset(seen.notes, path)))
     files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
-    found = LaunchGraph(tuple(seen.nodes), notes, files, unread=ignored)
     own = tuple(changed_environment(seen).items())
-    found = found._replace(notes=(*notes, *_lost_variables(seen, path)))
+    notes = (*notes, *_lost_variables(seen, path))
     # The environment of launch is that of its process, and the file may be read again.
     for name in [it for it in context.environment if it not in before]:
         del context.environment[name]
     context.environment.update(before)
-    idle = tuple(dict.fromkeys(seen.idle))
-    more = found._replace(includes=tuple(seen.includes), environment=own, declared=declared)
-    return more._replace(idle=idle)
+    return LaunchGraph(
+        *(tuple(seen.nodes), notes, files),
+        unread=ignored,
+        includes=tuple(seen.includes),
+        environment=own,
+        declared=declared,
+        idle=tuple(dict.fromkeys(seen.idle)),
+    )
 
 
 def _lost_variables(seen: Visit, path: str) -> tuple[LaunchNote, ...]:
@@ -231,23 +243,7 @@ def _described(order: LaunchOrder) -> Any:
     source = sources.AnyLaunchDescriptionSource(os.path.abspath(order.file))
     made = source.get_launch_description(of_launch().LaunchContext(noninteractive=True))
     if not hasattr(made, ASKED):
-        what = f"its generate_launch_description() returns {_what(made)}"
-        raise UnreadableError(f"{what}; return a LaunchDescription")
+        what = "nothing" if made is None else f"a value of type {type(made).__name__}"
+        text = f"its generate_launch_description() returns {what}; return a LaunchDescription"
+        raise UnreadableError(text)
     return made
-
-
-def _what(made: object) -> str:
-    return "nothing" if made is None else f"a value of type {type(made).__name__}"
-
-
-def _check_given(description: Any, order: LaunchOrder) -> None:
-    """Raises UnreadableError without an argument that the file itself has to be given."""
-    found = getattr(description, ASKED)()
-    for it, includes in found:
-        free = (
-            order.every
-            or it.default_value is not None
-            or getattr(it, "_conditionally_included", False)
-        )
-        if not free and not includes and it.name not in dict(order.arguments):
-            raise UnreadableError(f"it has to be given {it.name}; write {it.name}:=VALUE after it")

@@ -27,7 +27,14 @@ class RosArguments(NamedTuple):
 
 def ros_arguments(words: Sequence[str]) -> RosArguments:
     """What rcl reads in these words."""
-    own, given = _split(words)
+    own: list[str] = []
+    given: list[str] = []
+    inside = False
+    for word in words:
+        if word in ("--ros-args", "--"):
+            inside = word == "--ros-args"
+        else:
+            (given if inside else own).append(word)
     flags = list(pairwise(given))
     rules = [_pair(text) for flag, text in flags if flag in _RULE and ":=" in text]
     named = dict(rules)
@@ -50,18 +57,6 @@ def ros2_run(words: Sequence[str]) -> tuple[str, str, tuple[str, ...]] | None:
         # --prefix is the one option with a value.
         after = after[2:] if after[0] == "--prefix" else after[1:]
     return (after[0], after[1], tuple(after[2:])) if len(after) > 1 else None
-
-
-def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    own: list[str] = []
-    given: list[str] = []
-    inside = False
-    for word in words:
-        if word in ("--ros-args", "--"):
-            inside = word == "--ros-args"
-        else:
-            (given if inside else own).append(word)
-    return own, given
 
 
 def _pair(text: str) -> tuple[str, str]:

@@ -108,7 +108,9 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     for model in models.found:
         made = managers(model, dict(graph.files))
         if model.spawned and controller_way(known.release).process_wide:
-            made = iter([_of_process(it, first) for it in made])
+            # All managers of a program have the rules of the process, which are those of the first.
+            rules = ((it, first.setdefault(it.executable, it.remappings)) for it in made)
+            made = (it._replace(remappings=own) for it, own in rules)
         # A description may be published, and spawned from its file.
         lost = asked if model.spawned else asked - {it.full_name for it in found}
         wanted = [it for it in made if model.spawned or full_name(it, None) in lost]
@@ -122,12 +124,6 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     alone = [it for it in spawned if it.manager not in by_name]
     nodes, more = (*found, *controllers), (*notes, *_without_manager(alone))
     return Running(nodes, more, models, {it.topic: it.text for it in descriptions}, spawned)
-
-
-def _of_process(manager: LaunchedNode, first: dict[str, Rules]) -> LaunchedNode:
-    """A manager with the rules of the process, which are those of the ``first`` one of its program."""
-    rules = first.setdefault(manager.executable, manager.remappings)
-    return manager._replace(remappings=rules)
 
 
 def _apart(found: Sequence[Run], unsure: Collection[str]) -> Iterator[Run]:

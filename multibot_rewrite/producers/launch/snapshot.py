@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.rosnames import BoundNode, resolve_bound
+from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.knowledge.declared import is_known
@@ -100,9 +100,10 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     parts = [it._replace(edges=(*it.edges, *of_plugins.get(it.name, ()))) for it in parts]
     bridged = bridged_domains(nodes)
     every_note = (*graph.notes, *notes, *bridged.notes)
-    more = (*_caveats(every_note, nodes), *_of_bridges(nodes, inside))
-    lost = of_simulator(graph, models)
-    caveats = (*_stood_in(graph), *_refused(refused), *more, *lost)
+    caveats = (
+        *_caveats(graph.stood_in, every_note, nodes, refused, inside),
+        *of_simulator(graph, models),
+    )
     system = System(
         tuple(_nodes(nodes, parts)),
         tuple(_without_own_time([end for part in parts for end in part.endpoints])),
@@ -137,7 +138,9 @@ def _parts(nodes: Sequence[Run], inside: Sent) -> tuple[list[_Part], list[str]]:
     while lazy and heard != (now := frozenset(_read(parts))):
         heard = now
         for at in lazy:
-            parts[at] = _part(_listened_to(nodes[at], heard), inside)
+            it = nodes[at]
+            bound = bound_of(it.name, it.namespace, it.rules)
+            parts[at] = _part(it._replace(fact=as_heard(it.fact, heard, bound)), inside)
     return parts, refused
 
 
@@ -145,11 +148,6 @@ def _read(parts: Iterable[_Part]) -> Iterator[str]:
     """The topics that somebody subscribes to."""
     ends = (it for part in parts for it in part.endpoints if it.sure == RUNS)
     yield from (it.name for it in ends if it.role == SUBSCRIBES)
-
-
-def _listened_to(it: Run, heard: Collection[str]) -> Run:
-    bound = bound_of(it.name, it.namespace, it.rules)
-    return it._replace(fact=as_heard(it.fact, heard, bound))
 
 
 def _heard(nodes: Iterable[Run], sensors: Sequence[SensorFrame]) -> Iterator[Heard]:
@@ -196,18 +194,19 @@ def _nodes(running: Iterable[Run], parts: Iterable[_Part]) -> Iterator[Node]:
         yield from (Node(name, it.process, place=it.place, known=known) for name in own)
 
 
-def _stood_in(graph: LaunchGraph) -> Iterator[Caveat]:
-    if graph.stood_in:
+def _caveats(
+    stood_in: bool,
+    notes: Iterable[LaunchNote],
+    nodes: Sequence[Run],
+    refused: Sequence[str],
+    inside: Sent,
+) -> Iterator[Caveat]:
+    """What of the launch is not known."""
+    if stood_in:
         yield Caveat(NOT_WHOLE, False, STOOD_IN)
-
-
-def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
-    if nodes:
-        text = f"rcl refuses {plural(len(nodes), 'node')}: {shorten(nodes)}"
+    if refused:
+        text = f"rcl refuses {plural(len(refused), 'node')}: {shorten(refused)}"
         yield Caveat(REFUSED, True, text)
-
-
-def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Caveat]:
     # What several nodes lack is said once, where the first one does.
     first: dict[str, Place] = {}
     for note in (it for it in notes if not it.fails):
@@ -222,22 +221,16 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Cave
         hint = f"describe them in a file of nodes (--nodes, docs/stacks.md){or_read()}"
         text = f"{plural(len(unknown), 'node')} not known, with all topics and frames: {listed}"
         yield Caveat(NOT_KNOWN, True, f"{text}; {hint}")
-    yield from _partly(it for it in nodes if it.is_known and it.fact.untold)
+    partly = [it for it in nodes if it.is_known and it.fact.untold]
+    if partly:
+        told = shorten([f"{it.full_name} ({it.fact.untold[0].text})" for it in partly])
+        text = f"{plural(len(partly), 'node')} known in part, by their source: {told}"
+        yield Caveat(NOT_KNOWN, True, text)
     treeless = [it.full_name for it in nodes if publishes_a_tree(it) and tree_of(it) is None]
     if treeless:
         text = f"the description is not known, so neither are its frames: {shorten(treeless)}"
         yield Caveat(NO_TREE, True, text)
 
-
-def _partly(nodes: Iterable[Run]) -> Iterator[Caveat]:
-    """What the source of nodes does not tell."""
-    texts = [f"{it.full_name} ({it.fact.untold[0].text})" for it in nodes]
-    if texts:
-        text = f"{plural(len(texts), 'node')} known in part, by their source: {shorten(texts)}"
-        yield Caveat(NOT_KNOWN, True, text)
-
-
-def _of_bridges(nodes: Sequence[Run], inside: Sent) -> Iterator[Caveat]:
     bridges = [it.full_name for it in nodes if not {*_tf_topics(it)} <= inside.keys()]
     if bridges:
         text = f"the transforms that the simulator sends are not known: {shorten(bridges)}"
@@ -256,18 +249,15 @@ def _part(it: Run, inside: Sent) -> _Part:
     name = f"{bound.namespace.rstrip('/')}/{bound.node}"
     bound_of(it.name, it.process_namespace, it.process_rules)
     own = () if is_bridge(it) else ends_of(with_names(it))
-    ends = [*own, *_bridged(it, name, bound)]
+    ends = [*own]
+    for end, _ in bridged_by(it):
+        full = resolve_bound(end.name, end.kind, bound)
+        ends.append(End(end.kind, end.role, full, end.type, "", name, None, it.process))
     if it.value(SIM_TIME) is True and all(end.name != CLOCK for end in ends):
         ends.append(End(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
     return _Part(
         name, tuple(each_once(ends)), (*edges_of(it, bound), *passed_on(it, bound, inside))
     )
-
-
-def _bridged(it: Run, name: str, bound: BoundNode) -> Iterator[End]:
-    for end, _ in bridged_by(it):
-        full = resolve_bound(end.name, end.kind, bound)
-        yield End(end.kind, end.role, full, end.type, "", name, None, it.process)
 
 
 def _without_own_time(ends: Sequence[End]) -> Iterator[End]:

@@ -75,7 +75,10 @@ def add_empty(name: str, folder: str) -> None:
 def add_file(error: BaseException, folder: str) -> bool:
     """Make the file empty that could not be read of such a package: what is in it is not known. False
     for another error."""
-    lost = _not_found(error)
+    # launch has its own error around what a launch file raises (jazzy invalid_launch_file_error.py).
+    lost: BaseException | None = error
+    while lost is not None and not isinstance(lost, FileNotFoundError):
+        lost = lost.__cause__
     path = str(lost.filename or "") if lost else ""
     share = os.path.join(folder, NOT_INSTALLED, "share", "")
     if not path.startswith(share):
@@ -83,14 +86,6 @@ def add_file(error: BaseException, folder: str) -> bool:
     os.makedirs(os.path.dirname(path), exist_ok=True)
     with open(path, "xb"):
         return True
-
-
-def _not_found(error: BaseException | None) -> FileNotFoundError | None:
-    """The file that was not there; launch has its own error around what a launch file raises
-    (launch jazzy invalid_launch_file_error.py)."""
-    while error is not None and not isinstance(error, FileNotFoundError):
-        error = error.__cause__
-    return error
 
 
 def _search(prefix: str) -> None:
@@ -107,18 +102,11 @@ def _shared(name: str, prefix: str) -> str:
 
 def packages_for(file: str, roots: Iterable[str]) -> dict[str, str]:
     """Return the folders of the packages that a launch file finds as sources, by their names."""
-    return dict(_packages(file, roots))
-
-
-def _packages(file: str, roots: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Name and folder of every package; the first of a name comes last."""
     own, around = package_of(file), sources_around(file)
     below = packages_below((*roots, *([around] if around else ())))
-    for name, folders in below.items():
-        path = os.path.abspath(folders[0])
-        if os.path.isfile(os.path.join(path, MANIFEST)):
-            yield name, path
-    yield from [own] if own else []
+    found = {name: os.path.abspath(folders[0]) for name, folders in below.items()}
+    found = {it: path for it, path in found.items() if os.path.isfile(f"{path}/{MANIFEST}")}
+    return found | dict([own] if own else [])
 
 
 ROOTS = "source its workspace, or give the folder of its sources with --roots (launch_roots:)"

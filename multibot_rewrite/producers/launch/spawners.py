@@ -20,7 +20,6 @@ from multibot_rewrite.system.records import Place
 SPAWNER = "controller_manager/spawner"
 _ONE = "--controller"
 _TIMES = ("--controller-manager-timeout", "--switch-timeout", "--service-call-timeout")
-_SWITCHES = ("--load-only", "--activate-as-group", "--unload-on-kill", "--switch-asap")
 
 
 class Spawned(NamedTuple):
@@ -144,7 +143,7 @@ def _further(given: argparse.Namespace) -> Iterator[str]:
     for flag in _TIMES:
         if value := getattr(given, flag[2:].replace("-", "_"), None):
             yield from (flag, value)
-    for flag in _SWITCHES:
+    for flag in ("--load-only", "--activate-as-group", "--unload-on-kill", "--switch-asap"):
         if getattr(given, flag[2:].replace("-", "_"), False):
             yield flag
 

@@ -60,18 +60,23 @@ def visit_all(entity: Any, seen: Visit) -> None:
 
 def visit(entity: Any, seen: Visit) -> None:
     """Visit an entity and what is below it; what cannot be visited becomes a note."""
-    here = _at(entity, seen)
+    file = seen.context.get_locals_as_dict().get("current_launch_file_path", seen.place.file)
+    here = seen._replace(place=place_of(entity, file))
     # An include has the path of its file for what is below it; other actions may leave theirs.
     own = _is(entity, _INCLUDE)
     if not own and _is(entity, *_GIVING):
-        _leave(entity, here)
+        # Note a group that is left out: launch itself asks for its condition.
+        with suppress(Exception):
+            wants(entity, here)
     apart = seen.every and _is(entity, *_GIVING) and not _holds(entity, seen)
     if own:
         seen.context._push_locals()
     if apart:
         seen.context._push_launch_configurations()
     try:
-        for below in _handler(entity)(entity, here) or ():
+        known, kinds = _handlers(), (it.__name__ for it in type(entity).__mro__)
+        handle = next((known[it] for it in kinds if it in known), _unknown)
+        for below in handle(entity, here) or ():
             visit(below, here)
     except (Exception, SystemExit) as error:
         # A launch file is a program: it may raise anything.
@@ -81,12 +86,6 @@ def visit(entity: Any, seen: Visit) -> None:
             seen.context._pop_launch_configurations()
         if own:
             seen.context._pop_locals()
-
-
-def _leave(entity: Any, here: Visit) -> None:
-    """Note a group that is left out: launch itself asks for its condition."""
-    with suppress(Exception):
-        wants(entity, here)
 
 
 def _holds(entity: Any, seen: Visit) -> bool:
@@ -112,12 +111,6 @@ def _failed(entity: Any, error: BaseException, here: Visit) -> None:
     here.failed(error, message, fails=is_certain(error, here.place.file))
 
 
-def _at(entity: Any, seen: Visit) -> Visit:
-    """The visit at the place of this entity."""
-    file = seen.context.get_locals_as_dict().get("current_launch_file_path", seen.place.file)
-    return seen._replace(place=place_of(entity, file))
-
-
 def _is(entity: Any, *names: str) -> bool:
     return any(it.__name__ in names for it in type(entity).__mro__)
 
@@ -134,22 +127,18 @@ def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
     include = included(entity, seen)
     seen.includes.append(include)
     if is_unknown(entity.launch_arguments):
-        _hand_on(entity, seen)
+        # Give an include all that is set: a package that is not here makes its arguments. What it
+        # has to be given, and nothing sets, is empty.
+        source = entity.launch_description_source
+        asked = getattr(source.get_launch_description(seen.context), ASKED)()
+        needed = {it.name: "" for it, _ in asked if it.default_value is None}
+        own = "launch_arguments" in vars(entity)
+        name = "launch_arguments" if own else "_IncludeLaunchDescription__launch_arguments"
+        setattr(entity, name, tuple({**needed, **seen.context.launch_configurations}.items()))
+        seen.note("a package that is not here makes the arguments of the include", parameters=True)
     found = _execute(entity, seen)
     unread_of(path_of(entity, seen.context), dict(include.arguments), seen)
     return found
-
-
-def _hand_on(entity: Any, seen: Visit) -> None:
-    """Give an include all that is set: a package that is not here makes its arguments. What it has to
-    be given, and nothing sets, is empty."""
-    source = entity.launch_description_source
-    asked = getattr(source.get_launch_description(seen.context), ASKED)()
-    needed = {it.name: "" for it, _ in asked if it.default_value is None}
-    own = "launch_arguments" in vars(entity)
-    name = "launch_arguments" if own else "_IncludeLaunchDescription__launch_arguments"
-    setattr(entity, name, tuple({**needed, **seen.context.launch_configurations}.items()))
-    seen.note("a package that is not here makes the arguments of the include", parameters=True)
 
 
 def _pass(entity: Any, seen: Visit) -> None:
@@ -279,8 +268,3 @@ def _handlers() -> Mapping[str, Handler]:
         **dict.fromkeys(("ExecuteLocal", "ExecuteProcess"), _process),
         **dict.fromkeys(("RegisterEventHandler", "TimerAction"), _later),
     }
-
-
-def _handler(entity: Any) -> Handler:
-    known, kinds = _handlers(), (it.__name__ for it in type(entity).__mro__)
-    return next((known[it] for it in kinds if it in known), _unknown)

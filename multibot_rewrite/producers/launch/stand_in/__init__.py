@@ -66,7 +66,9 @@ def inside() -> dict[str, str]:
 @contextmanager
 def standing_in(**more: Mapping[str, Any]) -> Iterator[None]:
     """``import launch`` finds the stand-in inside, and all else what it found before."""
-    made = {name: _module(name, it) for name, it in _all(more).items()}
+    found: dict[str, Mapping[str, Any]] = {**contents(), **more}
+    every = {name: found[package] for name, package in inside().items()} | found
+    made = {name: _module(name, it) for name, it in every.items()}
     for name, module in made.items():
         package, _, last = name.rpartition(".")
         if package and not hasattr(made[package], last):
@@ -87,11 +89,6 @@ def standing_in(**more: Mapping[str, Any]) -> Iterator[None]:
 def is_stood_in() -> bool:
     """Does ``import launch`` find the stand-in?"""
     return sys.modules.get("launch") is not None and not hasattr(sys.modules["launch"], "__file__")
-
-
-def _all(more: Mapping[str, Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
-    found: dict[str, Mapping[str, Any]] = {**contents(), **more}
-    return {name: found[package] for name, package in inside().items()} | found
 
 
 def _module(name: str, content: Mapping[str, Any]) -> ModuleType:

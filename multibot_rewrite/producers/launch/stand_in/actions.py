@@ -200,7 +200,11 @@ class IncludeLaunchDescription(Action):
         context.extend_locals({"current_launch_file_path": path, **folder})
         given = [text_of(context, name) for name, _ in self.launch_arguments]
         for it, above in description.get_launch_arguments_with_include_launch_description_actions():
-            _ask_for(it, [*given, *(name for one in above for name in one.names_without_context())])
+            known = [*given, *(name for one in above for name in one.names_without_context())]
+            if it.default_value is None and it.name not in known:
+                what = f"missing required argument '{it.name}' (description: '{it.told}')"
+                said = f"Included launch description {what}, given: [{', '.join(known)}]"
+                raise RuntimeError(said)
         told = [SetLaunchConfiguration(*it) for it in self.launch_arguments]
         return [*told, description]
 
@@ -242,13 +246,6 @@ def _declare(
         if hasattr(it, "get_sub_entities") and getattr(it, "condition", None) is None:
             own = (it,) if isinstance(it, IncludeLaunchDescription) else ()
             _declare(it.get_sub_entities(), (*above, *own), found)
-
-
-def _ask_for(argument: DeclareLaunchArgument, given: list[str]) -> None:
-    if argument.default_value is not None or argument.name in given:
-        return
-    what = f"missing required argument '{argument.name}' (description: '{argument.told}')"
-    raise RuntimeError(f"Included launch description {what}, given: [{', '.join(given)}]")
 
 
 class LaunchDescriptionSource:

@@ -22,7 +22,6 @@ from multibot_rewrite.producers.launch.stand_in.values import TextSubstitution
 
 Reader = Callable[[Any], Any]
 _TYPES = {"int": int, "float": float, "bool": bool, "str": str}
-_OF_ROS_1 = ("env", "machine", "param", "remap", "rosparam", "test")
 _KINDS = {"yaml", *_TYPES, *(f"list_of_{it}" for it in _TYPES)}
 
 
@@ -48,7 +47,7 @@ def description_in(path: str) -> Any:
 def _made(entity: Entity) -> Any:
     """The action of an entity."""
     form = forms().get(entity.tag)
-    if entity.tag in _OF_ROS_1:
+    if entity.tag in ("env", "machine", "param", "remap", "rosparam", "test"):
         raise RuntimeError(f"Unrecognized entity of the type: {entity.tag}")
     if form is None:
         return _unread(entity.tag)
@@ -131,10 +130,6 @@ def _taken(entity: Entity, *names: str) -> list[Any]:
     return found
 
 
-def _parameters(entities: list[Entity]) -> list[Any]:
-    return [_parameter(it) for it in entities]
-
-
 def _parameter(entity: Entity) -> Any:
     if "from" not in entity.values:
         return dict([_named_value(entity)])
@@ -170,19 +165,11 @@ def _typed(value: Any, kind: str) -> Any:
     return load_yaml(value, A_VALUE) if value else value
 
 
-def _components(entities: list[Entity]) -> list[Any]:
-    return [_component(it) for it in entities]
-
-
 def _component(entity: Entity) -> Any:
     condition = _condition(entity)
     made = _built(entity, forms()["composable_node"])
     made._condition = condition
     return made
-
-
-def _shut_down(_: Any) -> list[Any]:
-    return [import_module("launch.actions").Shutdown()]
 
 
 _MODULES = {
@@ -192,15 +179,16 @@ _MODULES = {
     "loops": f"{__package__}.processes",
 }
 _READERS: Mapping[str, Reader] = {
-    **{"": _parts, "text": str, "truth": _truth, "words": _words, "end": _shut_down}
+    **{"": _parts, "text": str, "truth": _truth, "words": _words},
+    "end": lambda _: [import_module("launch.actions").Shutdown()],
 }
 _named = _pairs("name", "value")
 _BELOW: Mapping[str, Reader] = {
     **dict.fromkeys(("arg", "env", "extra_arg"), _named),
     "choice": lambda found: [str(*_taken(it, "value")) for it in found],
-    "composable_node": _components,
+    "composable_node": lambda found: [_component(it) for it in found],
     "keep": lambda found: {tuple(name): value for name, value in _named(found)},
-    "param": _parameters,
+    "param": lambda found: [_parameter(it) for it in found],
     "remap": _pairs("from", "to"),
 }
 

@@ -26,8 +26,6 @@ from multibot_rewrite.producers.launch.stand_in.values import (
     text_of,
 )
 
-_POSE = ("x", "y", "z", "roll", "pitch", "yaw")
-
 
 class _OfFile(Kept, Substitution):
     """Something that is made of a file; ``name`` is that file, as there."""
@@ -114,7 +112,7 @@ class ParseMultiRobotPose:
 
     def value(self) -> dict[str, dict[str, float]]:
         pairs = (it.split("=") for it in self._text.split(";"))
-        none = dict.fromkeys(_POSE, 0.0)
+        none = dict.fromkeys(("x", "y", "z", "roll", "pitch", "yaw"), 0.0)
         return {it[0].strip(): none | load_yaml(it[1], A_VALUE) for it in pairs if len(it) == 2}
 
 

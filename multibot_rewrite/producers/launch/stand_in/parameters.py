@@ -136,23 +136,20 @@ def value_of(context: LaunchContext, value: Any, name: Text) -> Any:
     if hasattr(value, "evaluate"):
         return value.evaluate(context)
     if isinstance(value, list | tuple):
-        return _listed(context, value, name)
+        # Values of one type; those that have none in common are texts.
+        kinds = {type(it) for it in value}
+        if kinds == {int, float}:
+            return [float(it) for it in value]
+        texts = [
+            it if isinstance(it, _PLAIN) else load_yaml(text_of(context, it), A_VALUE)
+            for it in value
+        ]
+        if not _are_alike(texts):
+            raise TypeError(f'{_UNIFORM} Got inconsistent input for "{text_of(context, name)}"')
+        return texts
     if not isinstance(value, _PLAIN):
         raise _no_value(value)
     return value
-
-
-def _listed(context: LaunchContext, values: list[Any] | tuple[Any, ...], name: Text) -> list[Any]:
-    """Values of one type; those that have none in common are texts."""
-    kinds = {type(it) for it in values}
-    if kinds == {int, float}:
-        return [float(it) for it in values]
-    texts = [
-        it if isinstance(it, _PLAIN) else load_yaml(text_of(context, it), A_VALUE) for it in values
-    ]
-    if not _are_alike(texts):
-        raise TypeError(f'{_UNIFORM} Got inconsistent input for "{text_of(context, name)}"')
-    return texts
 
 
 def _are_alike(values: list[Any]) -> bool:
@@ -169,19 +166,15 @@ def _is_substituted(value: Any) -> bool:
 def _read(text: str, name: str) -> Any:
     """The text of a substitution as YAML has it."""
     wrapped = "try wrapping it in launch_ros.parameter_descriptions.ParameterValue"
+    hint = f"If the parameter is meant to be a string, {wrapped}(value, value_type=str)"
     try:
         found = load_yaml(text, A_VALUE) if text else ""
     except InputError:
         what = f"Unable to parse the value of parameter {name} as yaml."
-        raise TypeError(
-            f"{what} If the parameter is meant to be a string, {wrapped}(value, value_type=str)"
-        ) from None
+        raise TypeError(f"{what} {hint}") from None
     if isinstance(found, list):
         if not _are_alike(found):
             raise TypeError(f'{_UNIFORM} Got inconsistent input for "{name}"')
     elif not isinstance(found, _PLAIN):
-        what = f'{_KINDS} Got {type(found)} for "{name}".'
-        raise TypeError(
-            f"{what} If the parameter is meant to be a string, {wrapped}(value, value_type=str)"
-        )
+        raise TypeError(f'{_KINDS} Got {type(found)} for "{name}". {hint}')
     return found

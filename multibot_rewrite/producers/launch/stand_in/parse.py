@@ -27,7 +27,6 @@ _TEXTS, _WORDS = (
 _WORDS[""] = re.compile(r"(?:[^\\$'\" ()]|\\.|\$(?!\())+", re.DOTALL)
 
 
-_OF_ROS_1 = ("arg", "find", "optenv")
 # Those that are not made of their words one by one.
 _OTHERWISE: Mapping[str, Callable[..., Any]] = {
     "command": lambda line, *_: values.Command(line),
@@ -57,8 +56,7 @@ def _parts(text: str, at: int, plain: re.Pattern[str], quote: str) -> tuple[Part
     """Texts and substitutions from a place on, and where they end."""
     parts: Parts = []
     while True:
-        found = plain.match(text, at)
-        if found:
+        if found := plain.match(text, at):
             parts.append(values.TextSubstitution(text=_ESCAPED.sub(r"\1", found[0])))
             at = found.end()
         elif text.startswith("$(", at):
@@ -72,7 +70,7 @@ def _placed(text: str, at: int, quote: str) -> tuple[Any, int]:
     """The substitution whose name begins here."""
     found = _NAME.match(text, at)
     name = found[0] if found else ""
-    if name in _OF_ROS_1:
+    if name in ("arg", "find", "optenv"):
         raise ValueError(f"Unknown substitution: {name}")
     if name not in known():
         raise ValueError(f"$({text[at : at + 40]}: this substitution needs launch itself")

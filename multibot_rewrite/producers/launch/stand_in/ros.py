@@ -27,7 +27,6 @@ from multibot_rewrite.producers.launch.stand_in.values import (
     text_of,
 )
 
-_OF_NODE = ("executable", "name", "namespace")
 _LISTED = ("parameters", "remappings", "ros_arguments", "arguments")
 
 
@@ -46,7 +45,7 @@ class Node(ExecuteProcess):
         # By the names that launch_ros keeps them under.
         listed = {it: vars(self)[it] or () for it in _LISTED}
         listed["parameters"] = [flat(it) for it in listed["parameters"]]
-        own = {f"node_{it}": vars(self)[it] for it in _OF_NODE}
+        own = {f"node_{it}": vars(self)[it] for it in ("executable", "name", "namespace")}
         own |= {"package": vars(self)["package"], **listed}
         vars(self).update({f"_Node__{key}": it for key, it in own.items()})
 

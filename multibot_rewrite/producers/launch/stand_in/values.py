@@ -136,16 +136,11 @@ def normalize_to_list_of_substitutions(subs: Any) -> list[Any]:
         return [TextSubstitution(text=subs)]
     if hasattr(subs, "perform"):
         return [subs]
-    return [_normal(it) for it in subs]
-
-
-def _normal(it: Any) -> Any:
-    if isinstance(it, str | Path):
-        return TextSubstitution(text=it)
-    if hasattr(it, "perform"):
-        return it
-    only = "when only 'str' or 'launch.Substitution' were expected"
-    raise TypeError(f"Failed to normalize given item of type '{type(it)}', {only}.")
+    for it in (subs := [*subs]):
+        if not isinstance(it, str | Path) and not hasattr(it, "perform"):
+            only = "when only 'str' or 'launch.Substitution' were expected"
+            raise TypeError(f"Failed to normalize given item of type '{type(it)}', {only}.")
+    return [it if hasattr(it, "perform") else TextSubstitution(text=it) for it in subs]
 
 
 def perform_substitutions(context: LaunchContext, subs: list[Any]) -> str:
