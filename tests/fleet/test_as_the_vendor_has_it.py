@@ -129,3 +129,29 @@ def test_only_the_nodes_of_one_robot_excuse_it(
     given = sensor_twice.finding("both publish it", level=ERROR, names=(name,))
     (found,) = as_the_vendor_has_it(plan, seen, [given], known)
     assert found.level == level
+
+
+FAULT = """local_costmap:
+  local_costmap:
+    ros__parameters:
+      height: 3.0
+"""
+READER = """Node(package='nav2_controller', executable='controller_server',
+             name='controller_server', parameters=[str(ROBOT.parent / 'nav2.yaml')]),
+        ekf('ekf_map'"""
+
+
+@pytest.mark.parametrize("by_launch", [True, False])
+def test_a_fault_of_a_file_of_the_vendor_is_told_and_built(
+    by_launch: bool, fleet: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The costmap does not come up with it, in one robot as in two; of other files it is an error."""
+    (fleet.parent / "nav2.yaml").write_text(FAULT)
+    (fleet.parent / "up.launch.py").write_text(LAUNCH.replace("ekf('ekf_map'", READER))
+    if not by_launch:
+        text = FLEET.format("both", LAYOUTS["both"]).replace("launch: up.launch.py\n", "")
+        fleet.write_text(f"{text}stack: [nav2]\ncompanions: {{params: [nav2.yaml]}}\n")
+    code = main(["build", str(fleet), "-o", str(fleet.parent / "out")])
+    (told,) = (it for it in capsys.readouterr().err.splitlines() if "MB120" in it)
+    assert "nav2.yaml:4:" in told and ("for one robot, too" in told) is by_launch
+    assert (code == 0) is by_launch
