@@ -40,7 +40,9 @@ def as_the_vendor_has_it(
     specs = {it.spec.namespace: it.spec for it in plan.robots if it.spec.launch}
     alone = cache(lambda robot: _errors_of(specs[robot], seen, known))
     for it in found:
-        robots = _robots(it, seen) & specs.keys() if it.level == ERROR else ()
+        # What names no robot, as the interfaces of its hardware, is asked of all.
+        about = (_robots(it, seen) or specs.keys()) if it.level == ERROR else set[str]()
+        robots = about & specs.keys()
         if robots and all(_is_in(alone(robot), it, seen, robot) for robot in robots):
             yield _as_known(it)
         else:
