@@ -27,7 +27,14 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
     write. An annotation that is not in ``READERS`` is a KeyError where ``checked`` is used.
     """
     takes, title = signature(call), f"{call.__qualname__}()"
-    readers = {it.name: _reader(it) for it in takes.parameters.values()}
+    readers: dict[str, Reader] = {}
+    for it in takes.parameters.values():
+        if it.name == "self":
+            readers[it.name] = lambda _, value: value
+        else:
+            read = READERS[it.annotation]
+            several = it.kind is Parameter.VAR_POSITIONAL
+            readers[it.name] = _every(read) if several else read
     named = [it for it in takes.parameters.values() if it.kind is not Parameter.VAR_POSITIONAL]
     names = {it.name for it in named}
     needed = {it.name for it in named if it.default is Parameter.empty}
@@ -56,26 +63,12 @@ def _bound(takes: Signature, title: str, args: tuple[Any, ...], kwargs: dict[str
     known = [name for name in takes.parameters if name != "self"]
     for name in kwargs:
         if name not in known:
-            raise UsageError(f"{title} has no argument {name!r}; {_meant(name, known)}")
+            hint = did_you_mean_one_of(name, known) or f"it takes {', '.join(known)}"
+            raise UsageError(f"{title} has no argument {name!r}; {hint}")
     try:
         return takes.bind(*args, **kwargs)
     except TypeError as error:
         raise UsageError(f"{title}: {error}; it takes {', '.join(known)}") from None
-
-
-def _meant(name: str, known: list[str]) -> str:
-    return did_you_mean_one_of(name, known) or f"it takes {', '.join(known)}"
-
-
-def _reader(parameter: Parameter) -> Reader:
-    if parameter.name == "self":
-        return _any
-    read = READERS[parameter.annotation]
-    return _every(read) if parameter.kind is Parameter.VAR_POSITIONAL else read
-
-
-def _any(what: str, value: object) -> object:
-    return value
 
 
 def _every(read: Reader) -> Reader:

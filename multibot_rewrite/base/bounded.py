@@ -214,12 +214,9 @@ def _loader() -> type[yaml.SafeLoader]:
         construct = base.yaml_constructors[_TAG + kind]
         loader.add_constructor(_TAG + kind, _checked(construct, kind))
     for tag, read in ANGLES.items():
-        loader.add_constructor(tag, _checked(partial(_angle, read), tag))
+        construct = partial(lambda read, own, node: read(float(own.construct_scalar(node))), read)
+        loader.add_constructor(tag, _checked(construct, tag))
     return loader  # type: ignore[no-any-return]
-
-
-def _angle(read: Callable[[float], float], loader: Any, node: yaml.Node) -> float:
-    return read(float(loader.construct_scalar(node)))
 
 
 @cache
@@ -258,18 +255,14 @@ def _checked(construct: Any, kind: str) -> Any:
 
 def _check_bounds(text: str) -> None:
     """Raise yaml's ComposerError for what nests or repeats too much."""
-    if _is_harmless(text):
+    # A quick look, which suffices for nearly all files.
+    flow = text.count("[") + text.count("{")
+    aliases = "*" in text and "&" in text
+    if flow < MAX_DEPTH and not aliases and not re.search(_INDENTED, text):
         return
     import yaml
 
     _check_events(yaml.parse(text, Loader=_loader()))
-
-
-def _is_harmless(text: str) -> bool:
-    """A quick look, which suffices for nearly all files."""
-    flow = text.count("[") + text.count("{")
-    aliases = "*" in text and "&" in text
-    return flow < MAX_DEPTH and not aliases and not re.search(_INDENTED, text)
 
 
 def _check_events(events: Iterable[yaml.Event]) -> None:

@@ -71,17 +71,14 @@ def git(where: str, *words: str, given: bytes = b"") -> bytes:
     the repository is run. Of a submodule this holds only where git is asked in its folder: its filters
     are its own.
     """
-    return _git(where, _filters(where), words, given)
-
-
-def _filters(where: str) -> dict[str, str]:
-    """The filters of a repository, switched off: git would run them on each file that it compares."""
     try:
         listed = _git(where, {}, ("config", "--null", "--name-only", "--get-regexp", _FILTERS))
     except subprocess.CalledProcessError:  # it has none, or is no repository
-        return {}
-    names = os.fsdecode(listed).split("\0")
-    return {it: _NO_FILTER.get(it.rpartition(".")[2], "") for it in names if it}
+        listed = b""
+    names = filter(None, os.fsdecode(listed).split("\0"))
+    # The filters are switched off: git would run them on each file that it compares.
+    filters = {it: _NO_FILTER.get(it.rpartition(".")[2], "") for it in names}
+    return _git(where, filters, words, given)
 
 
 def _git(where: str, more: Mapping[str, str], words: Sequence[str], given: bytes = b"") -> bytes:

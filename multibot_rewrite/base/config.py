@@ -84,7 +84,11 @@ def parse(path: str, data: bytes) -> dict[str, object]:
     toml = _parser(path)
     try:
         text = data.decode()
-        _check_keys(path, text)
+        # Python's parser takes the square of a key's parts.
+        for number, each in enumerate(text.splitlines(), 1):
+            if each.count(".") > _PARTS:
+                what = f"a line with more than {_PARTS} dots"
+                raise UsageError(f"{path}:{number}: {what}; write several")
         found: dict[str, object] = toml.loads(text)
         return found
     except UnicodeDecodeError as error:
@@ -117,13 +121,6 @@ def _broken(toml: Any) -> type[Exception]:
     name = "TOMLDecodeError" if hasattr(toml, "TOMLDecodeError") else "TomlDecodeError"
     error: type[Exception] = getattr(toml, name)
     return error
-
-
-def _check_keys(path: str, text: str) -> None:
-    """Python's parser takes the square of a key's parts."""
-    for number, line in enumerate(text.splitlines(), 1):
-        if line.count(".") > _PARTS:
-            raise UsageError(f"{path}:{number}: a line with more than {_PARTS} dots; write several")
 
 
 def listed_files(where: str, folder: str, listed: object) -> tuple[str, ...]:

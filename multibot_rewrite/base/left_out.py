@@ -52,7 +52,8 @@ def _ignored(tree: str, paths: list[str]) -> list[str]:
     from multibot_rewrite.base.child import git
 
     # The real folder: git refuses a path that a link leads out of the tree by its text.
-    named = {_in_tree(path): path for path in paths}
+    halves = ((path, os.path.split(os.path.abspath(path))) for path in paths)
+    named = {os.path.join(os.path.realpath(above), name): path for path, (above, name) in halves}
     try:
         asked = b"\0".join(map(os.fsencode, named))
         found = git(tree, "check-ignore", "-z", "--stdin", given=asked)
@@ -63,11 +64,6 @@ def _ignored(tree: str, paths: list[str]) -> list[str]:
             return []
         found = error.stdout
     return [named[it] for it in map(os.fsdecode, found.split(b"\0")) if it in named]
-
-
-def _in_tree(path: str) -> str:
-    folder, name = os.path.split(os.path.abspath(path))
-    return os.path.join(os.path.realpath(folder), name)
 
 
 @cache

@@ -76,7 +76,13 @@ def well_formed(source: bytes) -> Mended:
     if root is None:
         return Mended(text, 0, 0)
     at = root.end() - (2 if root[0].endswith(b"/>") else 1)
-    missing = _missing(text, root[0])
+    # Declarations for all prefixes that the root does not declare: an inner one counts below it.
+    tags = (it[0] for it in _PART.finditer(text) if _is_tag(it[0]))
+    used = {prefix for tag in tags for prefix in _PREFIXED.findall(_VALUE.sub(b"", tag))}
+    left = sorted(used - _KEPT - set(_BOUND.findall(root[0])))
+    left = left if len(left) <= MAX_PREFIXES else []
+    uris = ((it, NAMESPACES.get(it.decode(), UNBOUND + it.decode())) for it in left)
+    missing = b"".join(b' xmlns:%s="%s"' % (prefix, uri.encode()) for prefix, uri in uris)
     return Mended(text[:at] + missing + text[at:], at, len(missing))
 
 
@@ -107,35 +113,17 @@ def _mended(part: re.Match[bytes], first: int) -> tuple[bytes, str]:
         inner = text[4:-3]
         wrong = text.endswith(b"-->") and (b"--" in inner or inner.endswith(b"-"))
         return b"<!--%s-->" % inner.replace(b"-", b"=") if wrong else text, DASHES
-    if text.startswith(b"<?xml") and part.end() <= first and not _is_first(part):
+    start = len(_BOM) if part.string.startswith(_BOM) else 0
+    if text.startswith(b"<?xml") and part.end() <= first and part.start() != start:
         return b" " * len(text), LATE
     if not _is_tag(text) or b"xmlns" not in text:
         return text, ""
-    return _unspaced(text), DEFAULT
-
-
-def _is_first(part: re.Match[bytes]) -> bool:
-    return part.start() == (len(_BOM) if part.string.startswith(_BOM) else 0)
-
-
-def _unspaced(tag: bytes) -> bytes:
-    """A start tag without its default namespace; a value may hold the same words."""
-    values = _VALUE.sub(lambda it: b'"' + b"x" * (len(it[0]) - 2) + b'"', tag)
+    # Without its default namespace; a value may hold the same words.
+    values = _VALUE.sub(lambda it: b'"' + b"x" * (len(it[0]) - 2) + b'"', text)
     found = _SPACED.search(values)
-    if found is None:
-        return tag
-    return tag[: found.start()] + b" " * len(found[0]) + tag[found.end() :]
-
-
-def _missing(source: bytes, root: bytes) -> bytes:
-    """Declarations for all prefixes that the root does not declare: an inner one counts below it."""
-    tags = (it[0] for it in _PART.finditer(source) if _is_tag(it[0]))
-    used = {prefix for tag in tags for prefix in _PREFIXED.findall(_VALUE.sub(b"", tag))}
-    left = sorted(used - _KEPT - set(_BOUND.findall(root)))
-    if len(left) > MAX_PREFIXES:
-        return b""
-    uris = ((it, NAMESPACES.get(it.decode(), UNBOUND + it.decode())) for it in left)
-    return b"".join(b' xmlns:%s="%s"' % (prefix, uri.encode()) for prefix, uri in uris)
+    if found:
+        text = text[: found.start()] + b" " * len(found[0]) + text[found.end() :]
+    return text, DEFAULT
 
 
 def _is_tag(part: bytes) -> bool:

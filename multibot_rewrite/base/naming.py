@@ -170,7 +170,10 @@ def make_naming(
     active = _active(chosen, strategy, _separators(separators or {}))
     if groups == "keep":
         active.pop("group", None)
-    _check_run_time(chosen, side, active)
+    if chosen.at_run_time and (side != PREFIX or active["frame"] != "/"):
+        # What nodes do is one way: RViz puts a slash behind its TF Prefix (tf_link_updater.cpp).
+        what = "affix: prefix" if side != PREFIX else "frame=/"
+        raise UsageError(f"in layout {chosen.name} nodes put robot1/ before frames: use {what}")
     return Naming(
         chosen,
         side,
@@ -180,14 +183,6 @@ def make_naming(
         frozenset(name.strip("/") for name in shared_topics)
         | (frozenset() if chosen.tf_per_robot else frozenset(TF_TOPICS)),
     )
-
-
-def _check_run_time(layout: Layout, side: str, separators: Mapping[str, str]) -> None:
-    """What nodes do at run time is one way: RViz puts a slash behind its TF Prefix
-    (tf_link_updater.cpp)."""
-    if layout.at_run_time and (side != PREFIX or separators["frame"] != "/"):
-        what = "affix: prefix" if side != PREFIX else "frame=/"
-        raise UsageError(f"in layout {layout.name} nodes put robot1/ before frames: use {what}")
 
 
 def find_layout(word: str) -> Layout:

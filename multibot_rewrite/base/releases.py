@@ -173,14 +173,13 @@ def is_release_words(words: str) -> bool:
         found = list(_terms(words))
     except UsageError:
         return False
-    return bool(found) and all(_is_term(it) for it in found)
-
-
-def _is_term(term: re.Match[str]) -> bool:
-    """``<=`` and ``+`` exclude each other; a version is always ``VERSION+``."""
-    if term["release"] not in RELEASES or (term["until"] and term["on"]):
-        return False
-    return not term["version"] or bool(term["on"])
+    # ``<=`` and ``+`` exclude each other; a version is always ``VERSION+``.
+    return bool(found) and all(
+        it["release"] in RELEASES
+        and not (it["until"] and it["on"])
+        and (not it["version"] or bool(it["on"]))
+        for it in found
+    )
 
 
 def _terms(words: str) -> Iterator[re.Match[str]]:

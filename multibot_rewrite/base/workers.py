@@ -90,7 +90,9 @@ class WorkerPool(Generic[_Item, _Made]):
             while True:
                 pickle.dump(self.work(self.items[pickle.load(inbox)]), outbox)
                 outbox.flush()
-                _collect()
+                # Free xacro's trees, whose nodes refer to each other: rarely, and all at once.
+                if gc.get_count()[0] > MOST_LEFT:
+                    gc.collect()
         finally:
             os._exit(0)
 
@@ -103,7 +105,10 @@ class WorkerPool(Generic[_Item, _Made]):
             self._send(fd, waiting, busy)
         for number in range(len(self.items)):
             while number not in done:
-                for fd in _ready(busy):
+                poll = select.poll()
+                for fd in busy:
+                    poll.register(fd, select.POLLIN)
+                for fd, _ in poll.poll():
                     which = busy.pop(fd)
                     done[which], free = self._answer(fd, which)
                     self._send(free, waiting, busy)
@@ -173,19 +178,6 @@ def worker_pool(
         yield result
     finally:
         result.stop()
-
-
-def _ready(busy: dict[int, int]) -> list[int]:
-    poll = select.poll()
-    for fd in busy:
-        poll.register(fd, select.POLLIN)
-    return [fd for fd, _ in poll.poll()]
-
-
-def _collect() -> None:
-    """Free xacro's trees, whose nodes refer to each other: rarely, and all at once."""
-    if gc.get_count()[0] > MOST_LEFT:
-        gc.collect()
 
 
 def _limit_memory() -> None:

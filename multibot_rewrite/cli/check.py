@@ -50,22 +50,32 @@ def run(options: argparse.Namespace) -> int:
 
         return unplanned.run(options, several)
     _check_use(options)
-    plan = plan_of(options)
+    plan, before = plan_of(options), _before(options)
     parts = _looked_at(options, plan, several)
     if options.watch:
         if len(parts) == 1:
             ((domain, plan),) = parts.items()
             options, parts = live.at(options, domain), {}
-        return _watch(options, _with_files(options, plan) if options.state else plan, [*parts])
+        plan = _with_files(options, plan) if options.state else plan
+        return _watch(options, plan, [*parts], before)
     if parts and not options.bag:
         return _apart(options, plan, parts)
     if options.bag:
         return _recorded(options, plan)
-    graph = live.graph(options, judge=lambda it: check(plan, it))
+    graph = live.graph(options, judge=lambda it: check(plan, it, before=before))
     if options.state or answering(graph):
         plan = _with_files(options, plan)
     graph = live.with_states(options, graph, _parameters(plan))
-    return conclude(options, plan, graph, check(plan, graph))
+    return conclude(options, plan, graph, check(plan, graph, before=before))
+
+
+def _before(options: argparse.Namespace) -> System | None:
+    """Return the earlier look that PLAN is; None for a plan or a fleet file."""
+    if recognised(read_file(options.plan, MAX_FLEET_BYTES)) != SNAPSHOT:
+        return None
+    from multibot_rewrite.producers.snapshot_file import read_snapshot
+
+    return read_snapshot(options.plan)
 
 
 def _looked_at(
@@ -208,13 +218,18 @@ def _gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
     return [it for it in found if it not in unsent]
 
 
-def _watch(options: argparse.Namespace, plan: System, domains: Sequence[int] = ()) -> int:
+def _watch(
+    options: argparse.Namespace,
+    plan: System,
+    domains: Sequence[int] = (),
+    before: System | None = None,
+) -> int:
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
 
     def look(views: Mapping[int, System]) -> tuple[System, Coverage, Sequence[Finding]]:
         graph = side_by_side(views)
-        found = check_domains(plan, views) if domains else check(plan, graph)
+        found = check_domains(plan, views) if domains else check(plan, graph, before=before)
         return graph, coverage(plan, graph), found
 
     last = follow(look, live.watched(options, _parameters(plan), domains))

@@ -126,7 +126,12 @@ def _entries(
 
 def _named(document: YamlText, context: Context, entries: Iterable[BridgeEntry]) -> NamedFile:
     names = tuple(site for it in entries for site in _sites(it))
-    others = tuple(site for it in entries for site in _others(it.node))
+    others = tuple(
+        site_at(value, "", text_in(row, key), key)
+        for row in (row_of(it.node) for it in entries)
+        for key, (_, value) in row.items()
+        if key in KEYS and key not in (BOTH, ROS, GZ, FRAME) and is_text(value)
+    )
     return NamedFile(
         BRIDGE, document.file, document.text, context, {}, names, others, document=document
     )
@@ -145,13 +150,6 @@ def _sites(entry: BridgeEntry) -> Iterator[Site]:
             yield site_at(row[gz][1], kind, name, gz)
     if text_in(row, FRAME):
         yield site_at(row[FRAME][1], "frame", text_in(row, FRAME), FRAME)
-
-
-def _others(node: yaml.Node) -> Iterator[Site]:
-    """Values at keys that hold no text of their own."""
-    for key, (_, value) in row_of(node).items():
-        if key in KEYS and key not in (BOTH, ROS, GZ, FRAME) and is_text(value):
-            yield site_at(value, "", text_in(row_of(node), key), key)
 
 
 def _refuse(document: YamlText) -> None:
@@ -204,13 +202,22 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
         return name
     if made := _made_parts(context, name):
         return _of_words(context, name, made)
+
+    def part(found: re.Match[str]) -> str:
+        kind, name = found.groups()
+        known = is_declared(context.names, kind, name)
+        return f"{kind}/{spell(context.names, kind, name) if known else name}"
+
     if found and found[0].lstrip("/") not in context.names.given:
-        return found["above"] + MODEL_SLOT + PART.sub(lambda it: _part(context, it), rest)
+        return found["above"] + MODEL_SLOT + PART.sub(part, rest)
     bare = name.strip("/")
     if bare in WORLD or bare.startswith("world/"):
         return name
-    base, ending = _family(name, gz_type) if context.topics.naming.topics == POSTFIX else (name, "")
-    return spell(context.topics, "topic", base, namespaced=False) + ending
+    # gz-sim puts a lidar's or depth camera's points below the topic that the description names.
+    is_below = context.topics.naming.topics == POSTFIX and "PointCloud" in gz_type
+    base = name.removesuffix("/points") if is_below else name
+    base = base or name
+    return spell(context.topics, "topic", base, namespaced=False) + name[len(base) :]
 
 
 def _made_parts(context: Context, name: str) -> list[NamePart]:
@@ -232,21 +239,6 @@ def _of_words(context: Context, name: str, parts: Sequence[NamePart]) -> str:
     return name
 
 
-def _part(context: Context, found: re.Match[str]) -> str:
-    """A link, joint or sensor in a topic; one that the description does not declare stays."""
-    kind, name = found.groups()
-    known = is_declared(context.names, kind, name)
-    return f"{kind}/{spell(context.names, kind, name) if known else name}"
-
-
-def _family(name: str, gz_type: str) -> tuple[str, str]:
-    """gz-sim puts a lidar's or depth camera's points below the topic that the description names."""
-    base, _, last = name.rpartition("/")
-    return (
-        (base, "/points") if base and last == "points" and "PointCloud" in gz_type else (name, "")
-    )
-
-
 def _splices(document: YamlText, entry: BridgeEntry) -> Iterator[Splice]:
     ends = ", " if entry.node.flow_style else newline(document) + " " * entry.node.start_mark.column
     for key, node in pairs(entry.node):
@@ -260,19 +252,13 @@ def _splices(document: YamlText, entry: BridgeEntry) -> Iterator[Splice]:
         elif key.value == BOTH and entry.new_ros != node.value:
             yield replaced(node, entry.new_ros)
         elif key.value in names:
-            yield from _side(entry, key.value, node, names, ends)
-
-
-def _side(
-    entry: BridgeEntry, key: str, node: yaml.ScalarNode, names: Mapping[str, str], ends: str
-) -> Iterator[Splice]:
-    """One side's name, and the other's if the file leaves it out because it is the same."""
-    other = GZ if key == ROS else ROS
-    new = entry.new_ros if key == ROS else entry.new_gz
-    single = not text_of(entry.node, other) and entry.new_ros != entry.new_gz
-    if single or new != node.value:
-        text = names[key] + (f"{ends}{other}: {names[other]}" if single else "")
-        yield Splice(node.start_mark.index, node.end_mark.index, text)
+            # The other side's name, too, if the file leaves it out because it is the same.
+            other = GZ if key.value == ROS else ROS
+            new = entry.new_ros if key.value == ROS else entry.new_gz
+            single = not text_of(entry.node, other) and entry.new_ros != entry.new_gz
+            if single or new != node.value:
+                text = names[key.value] + (f"{ends}{other}: {names[other]}" if single else "")
+                yield Splice(node.start_mark.index, node.end_mark.index, text)
 
 
 def _only(document: YamlText, kept: Sequence[BridgeEntry]) -> list[Splice]:

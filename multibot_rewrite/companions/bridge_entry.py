@@ -92,18 +92,11 @@ def faults(node: yaml.Node) -> Iterator[RowFault]:
         hint = did_you_mean_one_of(direction, DIRECTIONS)
         message = f"the bridge has no direction {direction!r}: {_OUT}"
         yield RowFault(row["direction"][1], message, hint)
-    lacks = _lacks(row)
-    if lacks:
-        yield RowFault(node, f"the row has no {lacks}: {_OUT}", f"add {lacks}")
-
-
-def _lacks(row: Row) -> str:
-    """What the bridge asks of an entry of topics."""
-    if text_in(row, SERVICE):
-        return ""
+    lacks = " and ".join(it for it in TYPES if not text_in(row, it))
     if not any(text_in(row, it) for it in (BOTH, ROS, GZ)):
-        return ROS
-    return " and ".join(it for it in TYPES if not text_in(row, it))
+        lacks = ROS
+    if lacks and not text_in(row, SERVICE):
+        yield RowFault(node, f"the row has no {lacks}: {_OUT}", f"add {lacks}")
 
 
 def below(name: str, above: str) -> str:

@@ -76,7 +76,10 @@ def splices_of(text: str, file: str, made: Iterable[tuple[Site, str]]) -> Iterat
     for site, new in made:
         _, other = values.setdefault(site.slot.start, {}).setdefault(site.at, (site, new))
         if other != new:
-            raise InputError(_two(file, site, other, new))
+            kinds = f"two kinds of name, {other!r} and {new!r}"
+            what = f"{file}:{site.line}: an alias uses {site.text!r} as {kinds};"
+            what = what.replace(NAMESPACE_SLOT, "ROBOT").replace(TAG_SLOT, "ROBOT")
+            raise InputError(f"{what} write the value out in both places")
     for parts in values.values():
         slot = next(iter(parts.values()))[0].slot
         value = slot.value
@@ -84,15 +87,6 @@ def splices_of(text: str, file: str, made: Iterable[tuple[Site, str]]) -> Iterat
             value = value[:at] + new + (value[at + site.size :] if site.size >= 0 else "")
         if value != slot.value and not slot.is_block:
             yield written(text, file, slot, value)
-
-
-def _two(file: str, site: Site, *names: str) -> str:
-    one, other = names
-    kinds = f"two kinds of name, {one!r} and {other!r}"
-    told = f"{file}:{site.line}: an alias uses {site.text!r} as {kinds};"
-    for slot in (NAMESPACE_SLOT, TAG_SLOT):
-        told = told.replace(slot, "ROBOT")
-    return f"{told} write the value out in both places"
 
 
 def written(text: str, file: str, slot: Slot, new: str) -> Splice:

@@ -6,7 +6,7 @@ alone.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.behavior_tree.rewrite import named_tree, rewrite_behavior_tree
 from multibot_rewrite.companions.bridge import read_bridge, rewrite_bridge
 from multibot_rewrite.companions.bridge_entry import MODEL_SLOT
-from multibot_rewrite.companions.context import Context, FileTemplate, fill_template
+from multibot_rewrite.companions.context import Context, fill_template
 from multibot_rewrite.companions.lua import read_lua, rewrite_lua
 from multibot_rewrite.companions.moveit.file_kind import find_kind
 from multibot_rewrite.companions.moveit.rewrite import read_moveit, rewrite_moveit
@@ -36,7 +36,6 @@ from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spe
 from multibot_rewrite.companions.params.rewrite import read_params, rewrite_params
 from multibot_rewrite.companions.rviz.rewrite import read_rviz, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import RvizRobot
-from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -114,23 +113,21 @@ def rewrite_alone(
     first; what a bridge carries for all robots is in that of the first. Raises InputError for a file
     that its reader rejects."""
     if kind == RVIZ:
-        text, named, found = _shown(data, file, context, robot)
+        document = read_yaml(data, file)
+        names, topics = (it._replace(robot=robot) for it in (context.names, context.topics))
+        texts, found = rewrite_rviz(document, [RvizRobot(robot, names, topics)])
+        text, named = texts[0].text, read_rviz(document, context)
     else:
-        made, template = _made(kind, data, file, context, not number)
+        if kind == BRIDGE:
+            bridge = rewrite_bridge(read_yaml(data, file), context)
+            made, template = bridge.own, bridge.own.template if number else bridge.whole
+        else:
+            made = made_for_any(kind, data, file, context)
+            template = made.template
         text = fill_template(template, robot, robot, number).replace(MODEL_SLOT, robot)
         named, found = made.file, made.findings
     kept = _kept(named, read_named(kind, text.encode(), file, _of(context, robot)), robot)
     return OneFile(text, named, found, kept)
-
-
-def _made(
-    kind: str, data: bytes, file: str, context: Context, first: bool
-) -> tuple[Companion, FileTemplate]:
-    if kind == BRIDGE:
-        bridge = rewrite_bridge(read_yaml(data, file), context)
-        return bridge.own, bridge.whole if first else bridge.own.template
-    made = made_for_any(kind, data, file, context)
-    return made, made.template
 
 
 def _of(context: Context, robot: str) -> Context:
@@ -147,25 +144,13 @@ def _of(context: Context, robot: str) -> Context:
 def _kept(before: NamedFile, after: NamedFile, robot: str) -> int:
     """How many names that the description declares are not those of the robot in the result."""
     names = before.context.names._replace(robot=robot)
-    wanted = Counter(spell(names, it.kind, it.text) for it in _declared(before))
-    return (wanted - Counter(it.text for it in after.names)).total()
-
-
-def _declared(file: NamedFile) -> Iterator[Site]:
-    names = file.context.names
-    yield from (
-        it for it in file.names if it.kind in _PARTS and is_declared(names, it.kind, it.text)
+    wanted = Counter(
+        spell(names, it.kind, it.text)
+        for it in before.names
+        if it.kind in _PARTS and is_declared(names, it.kind, it.text)
     )
+    return (wanted - Counter(it.text for it in after.names)).total()
 
 
 # Names that are spelled without regard to the node.
 _PARTS = frozenset(("link", "joint", "frame", "sensor", "gpio"))
-
-
-def _shown(
-    data: bytes, file: str, context: Context, robot: str
-) -> tuple[str, NamedFile, tuple[Finding, ...]]:
-    document = read_yaml(data, file)
-    names, topics = (it._replace(robot=robot) for it in (context.names, context.topics))
-    texts, found = rewrite_rviz(document, [RvizRobot(robot, names, topics)])
-    return texts[0].text, read_rviz(document, context), found

@@ -94,7 +94,12 @@ def join(
     pairs = zip(given, texts, strict=True)
     made = join_texts([GivenPart(it, text.data, text.file) for it, text in pairs], tree)
     found = _with_beside(given, made, tree, trust, samples)
-    return found._replace(notes=(*_unread(given, texts), *found.notes))
+    unread = (
+        f"{text.file}: no file of the xacro has the argument {name}"
+        for it, text in zip(given, texts, strict=True)
+        for name in (text.known.lacks(sorted(it.xacro_args)) if text.known else ())
+    )
+    return found._replace(notes=(*unread, *found.notes))
 
 
 def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Joined:
@@ -113,14 +118,30 @@ def _with_beside(
     given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool, samples: int = 0
 ) -> Joined:
     """With the files beside the parts."""
-    semantics = _semantics(given, made, tree, trust, samples)
-    files = _controllers(given, made, tree)
+    has_srdf = any(it.srdf for it in given)
+    srdfs, controllers, configs = [], [], []
+    for it, part in zip(given, (it.part for it in made.parts), strict=True):
+        before = _without_prefix(part, tree) if it.controllers or it.rviz else part.inventory
+        srdf = _srdf(it, it.srdf, trust) if has_srdf and it.srdf is not None else None
+        srdfs.append(
+            spelled_srdf(part, srdf.data, srdf.file, tree) if srdf else PartSemantics(part, b"", "")
+        )
+        controllers += [part_file(read_file(at), at, before, part.prefix) for at in it.controllers]
+        if it.rviz:
+            configs.append(part_rviz(read_file(it.rviz), it.rviz, before, part.name, part.prefix))
+    semantics = joined_srdf(srdfs, made.data, samples) if has_srdf else JoinedSemantics(b"", ())
+    files = joined_files(controllers) if controllers else JoinedFile(b"", ())
+    rviz = joined_rviz(configs) if configs else JoinedFile(b"", ())
     moveit = joined_moveit(_moveit(given, made, tree, trust))
-    names = tuple(it.part.name for it in made.parts)
-    rviz = _rviz(given, made, tree)
+    named = {it.part.name: read(it.text, it.part.file, tree.vocabulary).names for it in made.parts}
+    met = (
+        f"{said(f'{it.robot} and {it.other}', it.name, it.twin)};"
+        " a prefix changes no topics, nodes and ports"
+        for it in meetings(named, prefixing())
+    )
     told = (f"{file}: {what}" for file, what in moveit.notes)
     notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *told, *rviz.notes)
-    notes = (*notes, *_met(made, tree))
+    notes, names = (*notes, *met), tuple(it.part.name for it in made.parts)
     return Joined(
         made.data, semantics.data, files.data, names, notes, made.findings, moveit.files, rviz.data
     )
@@ -135,13 +156,6 @@ def split(source: Source, *, vocabulary: Iterable[str] = (), distro: str = "") -
     return split_text(read_in.data, read_in.file, tree)
 
 
-def _unread(given: Sequence[Part], texts: Sequence[SourceText]) -> Iterator[str]:
-    """Arguments that no file of a part's xacro has."""
-    for it, text in zip(given, texts, strict=True):
-        for name in text.known.lacks(sorted(it.xacro_args)) if text.known else ():
-            yield f"{text.file}: no file of the xacro has the argument {name}"
-
-
 def _relative(made: JoinedText) -> Iterator[str]:
     """Meshes and pictures that are looked up from the folder of a part's file."""
     for it in made.parts:
@@ -152,21 +166,6 @@ def _relative(made: JoinedText) -> Iterator[str]:
             what = f"{file}: {found[0]!r} is looked up from the folder of the file"
             more = f", and {len(found) - 1} more" if len(found) > 1 else ""
             yield f"{what}{more}; write package://NAME/..."
-
-
-def _semantics(
-    given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool, samples: int
-) -> JoinedSemantics:
-    if not any(it.srdf for it in given):
-        return JoinedSemantics(b"", ())
-    parts = []
-    for it, mounted in zip(given, made.parts, strict=True):
-        if it.srdf is None:
-            parts.append(PartSemantics(mounted.part, b"", ""))
-            continue
-        read_in = _srdf(it, it.srdf, trust)
-        parts.append(spelled_srdf(mounted.part, read_in.data, read_in.file, tree))
-    return joined_srdf(parts, made.data, samples)
 
 
 def _srdf(part: Part, srdf: Source, trust: bool) -> SourceText:
@@ -189,30 +188,3 @@ def _moveit(
 
 def _without_prefix(part: ReadPart, tree: Tree) -> Inventory:
     return collect(read_document(part.data, part.file), tree)
-
-
-def _rviz(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFile:
-    found = []
-    for it, mounted in zip(given, made.parts, strict=True):
-        part = mounted.part
-        if it.rviz:
-            before = _without_prefix(part, tree)
-            found.append(part_rviz(read_file(it.rviz), it.rviz, before, part.name, part.prefix))
-    return joined_rviz(found) if found else JoinedFile(b"", ())
-
-
-def _controllers(given: Sequence[Part], made: JoinedText, tree: Tree) -> JoinedFile:
-    files = []
-    for it, mounted in zip(given, made.parts, strict=True):
-        part, before = mounted.part, _without_prefix(mounted.part, tree)
-        files += [part_file(read_file(at), at, before, part.prefix) for at in it.controllers]
-    return joined_files(files) if files else JoinedFile(b"", ())
-
-
-def _met(made: JoinedText, tree: Tree) -> Iterator[str]:
-    """Topics, nodes and frames that two parts have in the running system."""
-    vocabulary = tree.vocabulary
-    named = {it.part.name: read(it.text, it.part.file, vocabulary).names for it in made.parts}
-    for it in meetings(named, prefixing()):
-        what = said(f"{it.robot} and {it.other}", it.name, it.twin)
-        yield f"{what}; a prefix changes no topics, nodes and ports"

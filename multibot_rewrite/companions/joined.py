@@ -98,20 +98,14 @@ def part_file(data: bytes, file: str, part: Inventory, prefix: str) -> PartFile:
     naming = prefixing((*PREFIXED, "node"), PREFIX)
     naming = naming._replace(own={("node", it): None for it in shared})
     made = raw_sections(prefixed(PARAMS, data, file, part, part.declared, naming, prefix))
-    return PartFile(file, tuple(_kept(made, before, shared)), shared)
-
-
-def _kept(
-    made: Iterable[RawSection], before: Iterable[RawSection], shared: frozenset[str]
-) -> Iterator[RawSection]:
-    """What a rewrite adds for a node of each robot has no place in one that serves all."""
+    # What a rewrite adds for a node of each robot has no place in one that serves all.
     there = {it.path: {key.value for key, _ in pairs(it.body)} for it in before}
     for it in made:
-        known = there.get(it.path, ())
         if _node(it) in shared - {MANAGER}:
+            known = there.get(it.path, ())
             it.body.value = [pair for pair in pairs(it.body) if pair[0].value in known]
-        if known or _node(it) not in shared:
-            yield it
+    kept = (it for it in made if there.get(it.path) or _node(it) not in shared)
+    return PartFile(file, tuple(kept), shared)
 
 
 def prefixed(
@@ -145,10 +139,15 @@ def _shared(sections: Sequence[RawSection]) -> Iterator[str]:
 
 def joined_files(files: Sequence[PartFile]) -> JoinedFile:
     """All files as one; raises InputError for a controller that two of them have."""
-    _check_meeting(files)
     sections: dict[str, RawSection] = {}
     notes: list[str] = []
+    known: dict[str, str] = {}
     for it in files:
+        for name in controller_types(it.sections):
+            if name in known and name not in it.shared:
+                what = f"controller {name!r} is in {known[name]}, too"
+                raise InputError(f"{it.file}: {what}; give the part a prefix of its own")
+            known[name] = it.file
         for one in it.sections:
             key = MANAGER if _node(one) == MANAGER else one.path
             if key not in sections:
@@ -157,26 +156,14 @@ def joined_files(files: Sequence[PartFile]) -> JoinedFile:
             first = sections[key]
             for what in added(first.body, one.body, f"{first.path}."):
                 notes.append(f"{it.file}: {what}")
-    root = yaml.MappingNode("tag:yaml.org,2002:map", [_written(it) for it in sections.values()])
+    rows = []
+    for one in sections.values():
+        key = one.keys[0].value if len(one.keys) == 1 else f"/{one.path}"
+        below = yaml.ScalarNode("tag:yaml.org,2002:str", PARAMETERS)
+        body = yaml.MappingNode("tag:yaml.org,2002:map", [(below, one.body)])
+        rows.append((yaml.ScalarNode("tag:yaml.org,2002:str", key), body))
+    root = yaml.MappingNode("tag:yaml.org,2002:map", rows)
     return JoinedFile(joined_text((it.file for it in files), root), tuple(notes))
-
-
-def _check_meeting(files: Sequence[PartFile]) -> None:
-    known: dict[str, str] = {}
-    for it in files:
-        for name in controller_types(it.sections):
-            if name in known and name not in it.shared:
-                what = f"controller {name!r} is in {known[name]}, too"
-                raise InputError(f"{it.file}: {what}; give the part a prefix of its own")
-            known[name] = it.file
-
-
-def _written(it: RawSection) -> tuple[yaml.Node, yaml.Node]:
-    first = it.keys[0].value
-    key = first if len(it.keys) == 1 else f"/{it.path}"
-    name = yaml.ScalarNode("tag:yaml.org,2002:str", PARAMETERS)
-    body = yaml.MappingNode("tag:yaml.org,2002:map", [(name, it.body)])
-    return yaml.ScalarNode("tag:yaml.org,2002:str", key), body
 
 
 def added(into: yaml.MappingNode, more: yaml.MappingNode, at: str) -> Iterator[str]:
@@ -240,8 +227,14 @@ def joined_moveit(files: Iterable[PartMoveit]) -> JoinedMoveit:
     for it in files:
         if it.kind == OF_SERVO:
             notes.append((it.file, "it is for one group of one servo_node, and left out"))
-        elif isinstance(root := _body(it), yaml.MappingNode):
-            every.setdefault(_name(it), []).append((it.file, root))
+            continue
+        whole, above = it.document.root, ABOVE.get(it.kind)
+        root = next((value for key, value in entries(whole) if key.value == above), whole)
+        # A pipeline is told by the name of its file.
+        file = os.path.basename(it.file)
+        name = file if it.kind == PLANNING else f"{_CALLED.get(it.kind, it.kind)}.yaml"
+        if isinstance(root, yaml.MappingNode):
+            every.setdefault(name, []).append((it.file, root))
     made = {}
     for name, roots in every.items():
         _spell_alike([root for _, root in roots])
@@ -264,19 +257,6 @@ def _spell_alike(roots: Sequence[yaml.MappingNode]) -> None:
             manager = yaml.ScalarNode("tag:yaml.org,2002:str", SIMPLE)
             root.value = [it for it in root.value if it not in below]
             root.value.append((manager, yaml.MappingNode("tag:yaml.org,2002:map", below)))
-
-
-def _body(it: PartMoveit) -> yaml.Node | None:
-    """The parameters of a file without the one that some have above them."""
-    root, above = it.document.root, ABOVE.get(it.kind)
-    return next((value for key, value in entries(root) if key.value == above), root)
-
-
-def _name(it: PartMoveit) -> str:
-    # A pipeline is told by the name of its file.
-    if it.kind == PLANNING:
-        return os.path.basename(it.file)
-    return f"{_CALLED.get(it.kind, it.kind)}.yaml"
 
 
 class PartRviz(NamedTuple):
@@ -313,18 +293,16 @@ def joined_rviz(parts: Sequence[PartRviz]) -> JoinedFile:
         new = [one for one in leaves(it.config.displays) if _shows(one) not in known]
         known.update(map(_shows, new))
         if column and new:
-            groups += group_text(document, it.name, column, _copies(it, new, column))
+            copies = (
+                moved(cut_out(it.config.document, start, end), column - own)
+                for start, end, own in (one.block for one in new)
+            )
+            groups += group_text(document, it.name, column, copies)
         what = f"its displays are in the group {it.name}" if column and new else "it shows no more"
         notes.append(f"{it.file}: {what}; tools, panels and views are those of {first.file}")
     end = config.displays[-1].block.end if config.displays else 0
     splices = [inserted(document, end, groups)] if groups else []
     return JoinedFile(spliced(document, splices).encode(), tuple(notes))
-
-
-def _copies(it: PartRviz, shown: Sequence[RvizItem], column: int) -> Iterator[str]:
-    for one in shown:
-        text = cut_out(it.config.document, one.block.start, one.block.end)
-        yield moved(text, column - one.block.column)
 
 
 def _shows(one: RvizItem) -> tuple[str, ...]:

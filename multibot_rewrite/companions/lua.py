@@ -79,13 +79,26 @@ def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
     except UnicodeDecodeError:
         raise InputError(f"{file}: it is not UTF-8; save it as UTF-8") from None
     tokens = list(tokens_of(text, file))
-    options = list(_options(tokens))
+    options = []
+    for at, token in enumerate(tokens):
+        name, behind = _assigned(tokens, at)
+        if name in FRAMES and behind < len(tokens):
+            value = tokens[behind]
+            simple = value.kind == "string" and "\\" not in value.text
+            simple = simple and _ends(tokens, behind + 1)
+            options.append(LuaOption(token, value if simple else None))
     values = {it.value.at: (it.name.text, it.value) for it in options if it.value}
     names = tuple(_site("frame", it, key) for key, it in values.values())
     computed = tuple(_site("", it.name, it.name.text) for it in options if it.value is None)
     strings = (it for it in tokens if it.kind in ("string", "long") and it.at not in values)
     others = tuple(_site("", it) for it in strings)
-    included = tuple(_site("", it) for it in _included(tokens))
+    called = (at for at, it in enumerate(tokens) if it.text == "include")
+    files = [next((it for it in tokens[at + 1 : at + 3] if it.text != "("), None) for at in called]
+    included = tuple(
+        _site("", it)
+        for it in files
+        if it and it.kind in ("string", "long") and _plain(it) not in OWN_FILES
+    )
     return NamedFile(
         LUA, file, text, context, {}, names, others, included=included, computed=computed
     )
@@ -105,16 +118,6 @@ def tokens_of(text: str, file: str) -> Iterator[Token]:
             line, start = line + lines, found.start() + found[0].rfind("\n") + 1
 
 
-def _options(tokens: Sequence[Token]) -> Iterator[LuaOption]:
-    for at, token in enumerate(tokens):
-        name, behind = _assigned(tokens, at)
-        if name not in FRAMES or behind >= len(tokens):
-            continue
-        value = tokens[behind]
-        simple = value.kind == "string" and "\\" not in value.text and _ends(tokens, behind + 1)
-        yield LuaOption(token, value if simple else None)
-
-
 def _assigned(tokens: Sequence[Token], at: int) -> tuple[str, int]:
     """The name assigned to at a token, ``name =`` or ``["name"] =``, and where the value starts."""
     token, texts = tokens[at], [it.text for it in tokens[at + 1 : at + 3]]
@@ -130,14 +133,6 @@ def _ends(tokens: Sequence[Token], at: int) -> bool:
     if at >= len(tokens) or tokens[at].text in (",", ";", "}"):
         return True
     return tokens[at].kind == "name" and tokens[at].text not in ("and", "or")
-
-
-def _included(tokens: Sequence[Token]) -> Iterator[Token]:
-    """The names of included files, in their quotes; those of Cartographer are known."""
-    for at in (at for at, it in enumerate(tokens) if it.text == "include"):
-        behind = next((it for it in tokens[at + 1 : at + 3] if it.text != "("), None)
-        if behind and behind.kind in ("string", "long") and _plain(behind) not in OWN_FILES:
-            yield behind
 
 
 def _site(kind: str, token: Token, key: str = "") -> Site:

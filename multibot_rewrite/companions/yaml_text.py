@@ -252,15 +252,12 @@ def lines_of(text: str) -> list[str]:
 
 def moved(text: str, by: int) -> str:
     """Lines indented by ``by`` more columns; fewer if it is negative."""
-    return "".join(_moved(line, by) for line in lines_of(text))
-
-
-def _moved(line: str, by: int) -> str:
-    if not line.strip():
-        return line
-    if by >= 0:
-        return " " * by + line
-    return line[min(-by, len(line) - len(line.lstrip(" "))) :]
+    lines = lines_of(text)
+    for at, line in enumerate(lines):
+        if line.strip():
+            gone = min(-by, len(line) - len(line.lstrip(" ")))
+            lines[at] = " " * by + line if by >= 0 else line[gone:]
+    return "".join(lines)
 
 
 def as_item(text: str, column: int, target: int) -> str:

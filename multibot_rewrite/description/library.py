@@ -220,21 +220,17 @@ def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterato
     prepared = Prepared(job)
     template = prepared.template
     left = left_to_world(template.inventory.document, job.aside)
-    findings = (*_unread(prepared), *left, *template.findings)
+    unread: Iterable[Finding] = ()
+    if job.read.unread:
+        from multibot_rewrite.description.checks.arguments import unread_arguments
+
+        document = template.inventory.document
+        found = unread_arguments(document.root, job.read.unread, job.read.arguments)
+        unread = to_findings(document, found, WARNING, of_file=True)
+    findings = (*unread, *left, *template.findings)
     texts = pipeline.render(template, robots, again)
     # Nothing here holds a text while the next one is made: it may take the same memory.
     return (Rewrite(robot, next(texts), findings, prepared) for robot in robots)
-
-
-def _unread(prepared: Prepared) -> Iterator[Finding]:
-    """Warnings about arguments that no file of the xacro knows."""
-    document, read = prepared.template.inventory.document, prepared.job.read
-    if not read.unread:
-        return iter(())
-    from multibot_rewrite.description.checks.arguments import unread_arguments
-
-    found = unread_arguments(document.root, read.unread, read.arguments)
-    return to_findings(document, found, WARNING, of_file=True)
 
 
 def rewrite_jobs(jobs: Mapping[str, Job], again: bool = False) -> Iterator[Rewrite]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, RewriteRefused
@@ -23,7 +23,7 @@ from multibot_rewrite.description.steps.apply import Template, cut, fill
 from multibot_rewrite.description.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document, slot_values
 from multibot_rewrite.description.steps.plan import make_plan
-from multibot_rewrite.description.steps.renames import RenameMap, make_renames
+from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.description.steps.strip import NOWHERE, own_places, strip_edits
 from multibot_rewrite.description.steps.verify import verify
 
@@ -52,7 +52,8 @@ def prepare(
         missed = missed_by_arguments(inventory, plan.renames, own.plain, own.robot)
         findings += to_findings(inventory.document, missed, WARNING)
     _stop_on_errors(findings)
-    names = _mentionable(inventory, plan.renames)
+    mentionable = ((kind, name) for kind in MENTIONED for name in inventory.declared[kind])
+    names = {name for kind, name in mentionable if plan.renames.changes(kind, name)}
     values, usual = slot_values(inventory.document.root), usual_names(naming)
     findings += find_mentions(inventory, values, names, tree, usual)
     pieces = cut(source, plan.edits)
@@ -93,28 +94,26 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     The others differ from it in nothing but the robot's name at the same places; that no two names
     become one is checked for all of them before the first is returned.
     """
-    inventory, plan, *_ = prepared
+    inventory, plan, pieces, _, naming, tree, urdf_declarations = prepared
     renames = plan.renames
     document = inventory.document
     at_values = chain(
         checks.taken_names(inventory, renames, robots),
         already_rewritten(inventory, robots, again, renames.naming.own),
     )
-    pairs = overlap(prepared.naming, robots)
-    whole = list(checks.meeting(inventory, renames, pairs)) or _meeting(prepared, pairs)
+    pairs = overlap(naming, robots)
+    whole = list(checks.meeting(inventory, renames, pairs))
+    # What robots whose names overlap would share in the running system.
+    for robot, other, _ in () if whole or inventory.format == SRDF else pairs:
+        whole += shared_by_both(document, pieces, (robot, other), naming, tree.vocabulary)
     at_start = to_findings(document, whole, ERROR, of_file=True)
     _stop_on_errors([*to_findings(document, at_values, ERROR), *at_start])
     for robot in robots[:1]:
-        yield _proved(prepared, robot)
+        output = fill(pieces, robot)
+        verify(inventory, plan, len(pieces) - 1, output, robot, naming, tree, urdf_declarations)
+        yield output
     for robot in robots[1:]:
-        yield fill(prepared.pieces, robot)
-
-
-def _proved(prepared: Template, robot: str) -> bytes:
-    inventory, plan, pieces, _, naming, tree, urdf_declarations = prepared
-    output = fill(pieces, robot)
-    verify(inventory, plan, len(pieces) - 1, output, robot, naming, tree, urdf_declarations)
-    return output
+        yield fill(pieces, robot)
 
 
 def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str]) -> None:
@@ -122,14 +121,6 @@ def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str])
     inventory, own = prepared.inventory, prepared.naming.own
     found = already_rewritten(inventory, robots, False, own, kinds)
     _stop_on_errors([*to_findings(inventory.document, found, ERROR)])
-
-
-def _meeting(prepared: Template, pairs: Iterable[tuple[str, str, str]]) -> Iterator[Problem]:
-    """What robots whose names overlap would share in the running system."""
-    inventory, _, pieces, _, naming, tree, _ = prepared
-    for robot, other, _ in pairs if inventory.format != SRDF else ():
-        pair = robot, other
-        yield from shared_by_both(inventory.document, pieces, pair, naming, tree.vocabulary)
 
 
 def check_apart(made: Mapping[str, Template]) -> None:
@@ -174,11 +165,6 @@ def strip(
     if fill(again.pieces, robot) != source:
         _stop_on_errors([checks.other_options(inventory, robot)])
     return stripped
-
-
-def _mentionable(inventory: Inventory, renames: RenameMap) -> set[str]:
-    names = ((kind, name) for kind in MENTIONED for name in inventory.declared[kind])
-    return {name for kind, name in names if renames.changes(kind, name)}
 
 
 def _stop_on_errors(findings: Sequence[Finding]) -> None:

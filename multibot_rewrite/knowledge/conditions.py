@@ -139,7 +139,10 @@ def _one(text: str) -> Condition:
             near = did_you_mean_one_of(kind["kind"], KINDS)
             known = f"{near}{near and ' '}known: {', '.join(KINDS)}"
             raise UsageError(f"{text!r} is of no kind that is known; {known}")
-        return Condition(kind["kind"], ":", _checked(kind["kind"], _words(kind["words"])))
+        words = _words(kind["words"])
+        if kind["kind"] == OPEN_KIND and (len(words) > 1 or words[0] not in OPEN):
+            raise UsageError(f"open: {ALSO.join(words)!r} is none of {', '.join(OPEN)}")
+        return Condition(kind["kind"], ":", words)
     found = _TERM.fullmatch(text.strip())
     if found is None:
         hint = "write PARAMETER = VALUE, or open: and a word"
@@ -147,13 +150,6 @@ def _one(text: str) -> Condition:
     if found["state"]:
         return Condition(found["parameter"], found["state"], ())
     return Condition(found["parameter"], found["how"] or "=", _words(found["value"] or "true"))
-
-
-def _checked(kind: str, words: tuple[str, ...]) -> tuple[str, ...]:
-    wrong = next((it for it in words if kind == OPEN_KIND and it not in OPEN), None)
-    if wrong is not None or (kind == OPEN_KIND and len(words) > 1):
-        raise UsageError(f"open: {ALSO.join(words)!r} is none of {', '.join(OPEN)}")
-    return words
 
 
 def _words(text: str) -> tuple[str, ...]:
@@ -172,13 +168,11 @@ def chosen_type(types: Iterable[tuple[str, str]], value_of: Values) -> str:
 
 def verdict(text: str, value_of: Values) -> bool | None:
     """Is it true of these parameters? None where they do not say it."""
-    found = [_all(terms, value_of) for terms in parse_condition(text)]
+    found = []
+    for terms in parse_condition(text):
+        each = [_is_true(it, value_of) for it in terms]
+        found.append(False if False in each else None if None in each else True)
     return True if True in found else None if None in found else False
-
-
-def _all(terms: tuple[Condition, ...], value_of: Values) -> bool | None:
-    found = [_is_true(it, value_of) for it in terms]
-    return False if False in found else None if None in found else True
 
 
 def _is_true(it: Condition, value_of: Values) -> bool | None:
@@ -186,37 +180,25 @@ def _is_true(it: Condition, value_of: Values) -> bool | None:
     # at hand here.
     if "<" in it.parameter or it.parameter.startswith("-") or it.how == "names":
         return None
+    if it.how == ":" and it.parameter == "run":
+        simulated = value_of("use_sim_time")
+        return simulated == (it.values == ("simulated",)) if isinstance(simulated, bool) else None
     if it.how == ":":
-        return _is_told(it, value_of)
+        # What a file does not pass, whoever starts the node may.
+        passed = any(value_of(name) not in (None, "", False) for name in it.values)
+        return {"given": True, "missing": False}.get(it.parameter) if passed else None
     given = [value_of(name) for name in it.parameter.split(ALSO)]
     if it.how in ("set", "unset"):
         return any(one not in (None, "", []) for one in given) == (it.how == "set")
-    wanted = {word for value in it.values for word in _wanted(value, value_of)}
+    others = (value_of(value[1:]) for value in it.values if value.startswith("$"))
+    wanted = {value for value in it.values if not value.startswith("$")}
+    wanted |= {_word(other) for other in others if other is not None}
     if it.how in ("has", "lacks"):
         # MoveIt splits a text (moveit2 move_group.cpp configureCapabilities).
         texts = (one.split() if isinstance(one, str) else one for one in given)
         lists = (one for one in texts if isinstance(one, list))
         return any(wanted & _spellings(one) for its in lists for one in its) == (it.how == "has")
     return any(wanted & _spellings(one) for one in given) == (it.how == "=")
-
-
-def _is_told(it: Condition, value_of: Values) -> bool | None:
-    """What a parameter says of a condition that is no parameter's: what a file does not pass, whoever
-    starts the node may."""
-    if it.parameter == "run":
-        simulated = value_of("use_sim_time")
-        return simulated == (it.values == ("simulated",)) if isinstance(simulated, bool) else None
-    passed = any(value_of(name) not in (None, "", False) for name in it.values)
-    return {"given": True, "missing": False}.get(it.parameter) if passed else None
-
-
-def _wanted(value: str, value_of: Values) -> Iterator[str]:
-    if not value.startswith("$"):
-        yield value
-        return
-    other = value_of(value[1:])
-    if other is not None:
-        yield _word(other)
 
 
 def _spellings(given: object) -> set[str]:

@@ -4,7 +4,7 @@ are checked where they stand."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.rosnames import (
@@ -189,10 +189,16 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         return checked_endpoint(item, Endpoint(_kind(role, item.value), role, name, item.value))
     keys = table(item, f"{role} {name!r}", ENDPOINT_KEYS)
     also = words_of(keys, "also")
+    every, types = (word_of(keys, "type"), *also), []
+    for condition, type_ in table_of(keys, "types").items():
+        checked_condition(type_, condition)
+        if type_.value not in every:
+            wrong(type_, f"{type_.value!r} is neither the type nor in also ({', '.join(every)})")
+        types.append((condition, str(type_.value)))
     endpoint = Endpoint(_kind(role, word_of(keys, "type")), role, name)._replace(
         **{key: word_of(keys, key) for key in keys.keys() & set(ENDPOINT_WORDS)},
         also=also,
-        types=tuple(_types(keys, (word_of(keys, "type"), *also))),
+        types=tuple(types),
         transport=flag_of(keys, "transport"),
         helper=flag_of(keys, "helper", "by" in keys),
         own=False,
@@ -204,15 +210,6 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
     if CHOSEN in words_in(condition_of(keys, "when"), OPEN_KIND):
         wrong(keys["when"], f"{CHOSEN} is a word of nodes; an endpoint is there with its node")
     return checked_endpoint(item, endpoint)
-
-
-def _types(keys: Mapping[str, YamlItem], every: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Conditions with the type of each, which is one of ``every``."""
-    for condition, item in table_of(keys, "types").items():
-        checked_condition(item, condition)
-        if item.value not in every:
-            wrong(item, f"{item.value!r} is neither the type nor in also ({', '.join(every)})")
-        yield condition, str(item.value)
 
 
 def _kind(role: str, type_: str) -> str:
@@ -229,19 +226,16 @@ def checked_endpoint(item: YamlItem, endpoint: Endpoint) -> Endpoint:
         if fault:
             wrong(item, f"name {name!r}: {fault.reason}")
     for type_ in filter(None, (endpoint.type, *endpoint.also)):
-        _check_type(item, endpoint, type_)
+        found = _TYPE.fullmatch(type_)
+        if not found:
+            wrong(item, f"{type_!r} is not a ROS type; write it like std_msgs/msg/String")
+        # The parts of an action have types like nav2_msgs/action/Spin_FeedbackMessage.
+        if endpoint.kind == TOPIC and "/action/" in type_ and "_" in type_.rpartition("/")[2]:
+            continue
+        if found[1] != {TOPIC: "msg", SERVICE: "srv", ACTION: "action"}[endpoint.kind]:
+            what = f"{type_} is the type of {_GIVES[found[1]]}"
+            wrong(item, f"{endpoint.role} {endpoint.name!r}: {what}")
     if not _MADE.search(endpoint.name) or endpoint.fixed:
         return endpoint
     source = f"parameter {endpoint.parameter}" if endpoint.parameter else "its configuration"
     return endpoint._replace(fixed=f"the name is made at run time from {source}")
-
-
-def _check_type(item: YamlItem, endpoint: Endpoint, type_: str) -> None:
-    found = _TYPE.fullmatch(type_)
-    if not found:
-        wrong(item, f"{type_!r} is not a ROS type; write it like std_msgs/msg/String")
-    # The parts of an action have types like nav2_msgs/action/Spin_FeedbackMessage.
-    if endpoint.kind == TOPIC and "/action/" in type_ and "_" in type_.rpartition("/")[2]:
-        return
-    if found[1] != {TOPIC: "msg", SERVICE: "srv", ACTION: "action"}[endpoint.kind]:
-        wrong(item, f"{endpoint.role} {endpoint.name!r}: {type_} is the type of {_GIVES[found[1]]}")

@@ -108,19 +108,13 @@ def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
         raise UsageError(unknown("stack", name, library.stacks, library.nodes))
     found = tuple(dict.fromkeys(_gathered(library, name, ())))
     for node in found:
-        if any(_are_one(node, other) for other in found):
+        others = (it for it in found if it is not node and it.name == node.name)
+        if any(share_release(node.releases, other.releases) for other in others):
             raise UsageError(
                 f"stack {name!r} has two different nodes called {node.name!r}; "
                 "rename one of them with 'as'"
             )
     return found
-
-
-def _are_one(node: NodeFacts, other: NodeFacts) -> bool:
-    """Have two nodes one name in one release?"""
-    if node is other or node.name != other.name:
-        return False
-    return share_release(node.releases, other.releases)
 
 
 def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
@@ -156,7 +150,11 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
     """
     top = table(read_yaml_with_lines(text, file, own), "the file", FILE_KEYS)
     new = {key: table(top[key], key) for key in ("parts", "nodes", "stacks") if key in top}
-    parts = {**library.parts, **{name: _part(it) for name, it in new.get("parts", {}).items()}}
+    given_parts = {
+        name: tuple(endpoints_of(table(item, "a part", ROLES)))
+        for name, item in new.get("parts", {}).items()
+    }
+    parts = {**library.parts, **given_parts}
     nodes, parameters = dict(library.nodes), dict(library.parameters)
     for name, item in new.get("nodes", {}).items():
         keys = table(item, f"node {name!r}", ENTRY_OF_NODE)
@@ -167,8 +165,12 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
         if in_files:
             parameters[last] = found
         if not (in_files and keys.keys().isdisjoint(GRAPH_KEYS)):
-            new_node = read_node(name, item, keys, parts, found.forms)
-            nodes[name] = _as_before(new_node, nodes.get(name))
+            node, old = read_node(name, item, keys, parts, found.forms), nodes.get(name)
+            if old is not None and old.package == node.package:
+                # It is started as before, where its new entry says nothing else.
+                programs, component = node.programs or old.programs, node.component or old.component
+                node = node._replace(programs=programs, component=component)
+            nodes[name] = node
     known = {*library.stacks, *new.get("stacks", {})}
     grown = library._replace(
         parts=parts,
@@ -180,30 +182,18 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
     stacks = {name: _stack(item, grown, known) for name, item in new.get("stacks", {}).items()}
     whole = grown._replace(stacks={**library.stacks, **stacks})
     for name, item in new.get("stacks", {}).items():
-        _check_stack(whole, name, item)
+        # Includes and names can be checked only when all stacks are known.
+        try:
+            found_nodes = stack_of(whole, name)
+        except UsageError as error:
+            wrong(item, str(error))
+        for of_node, rules in table_of(table(item, "a stack", STACK_KEYS), "remaps").items():
+            ends = [end for it in found_nodes if it.name == of_node for end in it.endpoints]
+            if not ends:
+                wrong(rules, unknown("node", of_node, {it.name for it in found_nodes}))
+            for given, target in table(rules, f"remaps of {of_node}").items():
+                _check_rule(target, given, ends)
     return whole
-
-
-def _as_before(node: NodeFacts, old: NodeFacts | None) -> NodeFacts:
-    """A changed node is started as before, where its new entry says nothing else."""
-    if old is None or old.package != node.package:
-        return node
-    programs, component = node.programs or old.programs, node.component or old.component
-    return node._replace(programs=programs, component=component)
-
-
-def _check_stack(library: NodeLibrary, name: str, item: YamlItem) -> None:
-    """Includes and names can be checked only when all stacks are known."""
-    try:
-        nodes = stack_of(library, name)
-    except UsageError as error:
-        wrong(item, str(error))
-    for node, rules in table_of(table(item, "a stack", STACK_KEYS), "remaps").items():
-        ends = [end for it in nodes if it.name == node for end in it.endpoints]
-        if not ends:
-            wrong(rules, unknown("node", node, {it.name for it in nodes}))
-        for given, target in table(rules, f"remaps of {node}").items():
-            _check_rule(target, given, ends)
 
 
 def _check_rule(item: YamlItem, given: str, ends: Iterable[Endpoint]) -> None:
@@ -212,10 +202,6 @@ def _check_rule(item: YamlItem, given: str, ends: Iterable[Endpoint]) -> None:
     if found is None:
         wrong(item, unknown("name", given, {it.name for it in ends}))
     checked_endpoint(item, found._replace(remapped=word(item, f"remaps {given}")))
-
-
-def _part(item: YamlItem) -> tuple[Endpoint, ...]:
-    return tuple(endpoints_of(table(item, "a part", ROLES)))
 
 
 def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack:
@@ -227,14 +213,12 @@ def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack
         tuple(_placed(entry, library) for entry in entries_of(keys, "nodes")),
         releases_of(keys),
         word_of(keys, "container"),
-        tuple(_rules(keys)),
+        tuple(
+            (node, given, word(target, f"remaps {given}"))
+            for node, item in table_of(keys, "remaps").items()
+            for given, target in table(item, f"remaps of {node}").items()
+        ),
     )
-
-
-def _rules(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, str, str]]:
-    for node, item in table_of(keys, "remaps").items():
-        for given, target in table(item, f"remaps of {node}").items():
-            yield node, given, word(target, f"remaps {given}")
 
 
 def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
@@ -269,15 +253,12 @@ def _usual(values: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
     for name, item in values.items():
         if not isinstance(item.value, str | float | int):
             wrong(item, f"parameter {name} is no word or number")
-        yield name, _number(item.value)
-
-
-def _number(value: str | float) -> str | float:
-    """A number where a text is one: rclcpp takes no text for a number."""
-    for kind in (int, float):
-        with suppress(ValueError):
-            return kind(value) if isinstance(value, str) else value
-    return value
+        value: str | float = item.value
+        # A number where a text is one: rclcpp takes no text for a number.
+        for kind in (float, int):
+            with suppress(ValueError):
+                value = kind(item.value) if isinstance(item.value, str) else value
+        yield name, value
 
 
 def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tuple[Endpoint, ...]:
@@ -286,23 +267,18 @@ def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tup
         if not any(_has(endpoint, given) for endpoint in endpoints):
             wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
         values = [word(entry, f"names {given}") for entry in entries(item, f"names {given}")]
-        endpoints = tuple(
-            new for endpoint in endpoints for new in _renamed(item, endpoint, given, values)
-        )
+        made = []
+        for endpoint in endpoints:
+            # One for each value if it has the name, else itself.
+            names = (endpoint.name.replace(given, it) for it in values)
+            first = endpoint.named_from or endpoint.name
+            if _has(endpoint, given):
+                new = (endpoint._replace(name=it, fixed="", named_from=first) for it in names)
+                made += [checked_endpoint(item, it) for it in new]
+            else:
+                made.append(endpoint)
+        endpoints = tuple(made)
     return endpoints
-
-
-def _renamed(
-    item: YamlItem, endpoint: Endpoint, given: str, values: Iterable[str]
-) -> Iterator[Endpoint]:
-    """One endpoint for each value if it has the name, else itself."""
-    if not _has(endpoint, given):
-        yield endpoint
-        return
-    for value in values:
-        name = endpoint.name.replace(given, value)
-        first = endpoint.named_from or endpoint.name
-        yield checked_endpoint(item, endpoint._replace(name=name, fixed="", named_from=first))
 
 
 def _has(endpoint: Endpoint, given: str) -> bool:

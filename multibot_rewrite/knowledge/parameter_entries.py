@@ -62,7 +62,19 @@ def read_parameters(
     """What an entry says of a node's parameters, added to what is known of it; raises UsageError."""
     if old is None:
         old = NodeParameters(name.rpartition("/")[2], "")
-    given = _params(keys)
+    absolute = releases_of(keys, "absolute")
+    # Every form of each parameter, those of one path behind another.
+    given: list[Param] = []
+    for path, item in table_of(keys, "params").items():
+        for segment in path.split("."):
+            if not segment:
+                hint = "separate names by single dots"
+                wrong(item, f"parameter {path!r} has an empty segment; {hint}")
+            if segment.startswith("<"):
+                one_of(item, "segment", segment[1:-1], SEGMENTS)
+        forms = [_param(path, it, absolute) for it in variants(item)]
+        check_apart(item, f"parameter {path!r}", [it.releases for it in forms])
+        given += forms
     said = {it.path for it in given}
     deprecated = table_of(keys, "deprecated_types")
     return NodeParameters(
@@ -78,18 +90,6 @@ def read_parameters(
         {**old.deprecated_types, **{type_: releases_of(deprecated, type_) for type_ in deprecated}},
         (*old.declared_in, *words_of(keys, "declared_in")),
     )
-
-
-def _params(keys: Mapping[str, YamlItem]) -> tuple[Param, ...]:
-    """Every form of each parameter, those of one path behind another."""
-    absolute = releases_of(keys, "absolute")
-    found: list[Param] = []
-    for path, item in table_of(keys, "params").items():
-        _check_path(path, item)
-        forms = [_param(path, it, absolute) for it in variants(item)]
-        check_apart(item, f"parameter {path!r}", [it.releases for it in forms])
-        found += forms
-    return tuple(found)
 
 
 def has_default(param: Param) -> bool:
@@ -117,14 +117,6 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
         flag_of(keys, "own"),
         words_of(keys, "instead"),
     )
-
-
-def _check_path(path: str, item: YamlItem) -> None:
-    for segment in path.split("."):
-        if not segment:
-            wrong(item, f"parameter {path!r} has an empty segment; separate names by single dots")
-        if segment.startswith("<"):
-            one_of(item, "segment", segment[1:-1], SEGMENTS)
 
 
 def read_guesses(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, tuple[str, ...]]]:

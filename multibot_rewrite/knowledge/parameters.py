@@ -73,18 +73,14 @@ def guess(known: KnownNodes, path: str) -> str:
     return (found.lastgroup or "") if found else ""
 
 
-def _guessing(guesses: Mapping[str, tuple[str, ...]]) -> re.Pattern[str]:
-    """One expression for all guesses, with a group for each kind."""
-    every = {kind: "|".join(map(translate, words)) for kind, words in guesses.items()}
-    return re.compile("|".join(f"(?P<{kind}>{words})" for kind, words in every.items()))
-
-
 def _known(library: NodeLibrary, release: str) -> KnownNodes:
     nodes = {it.name: _node(it, release) for it in library.parameters.values()}
     facts = library.parameters.values()
     names = {alias: it.name for it in facts for alias in (*it.aliases, it.name)}
     types = {type_: it.name for it in facts for type_ in it.types}
-    guessing = _guessing(library.guesses)
+    # One expression for all guesses, with a group for each kind.
+    every = {kind: "|".join(map(translate, words)) for kind, words in library.guesses.items()}
+    guessing = re.compile("|".join(f"(?P<{kind}>{words})" for kind, words in every.items()))
     return KnownNodes(
         nodes,
         names | {name: name for name in nodes},
@@ -137,16 +133,12 @@ def _tree(params: Iterable[Param]) -> Branch:
     for param in params:
         branch = root
         for segment in param.path.split("."):
-            branch = _below(branch, segment)
+            if segment.endswith(_INDEX):
+                where, key = branch.numbered, segment.removesuffix(_INDEX)
+            elif segment == "*" or segment.startswith("<"):
+                where, key = branch.wild, segment.strip("<>")
+            else:
+                where, key = branch.exact, segment
+            branch = where.setdefault(key, Branch({}, {}, {}, []))
         branch.params.append(param)
     return root
-
-
-def _below(branch: Branch, segment: str) -> Branch:
-    if segment.endswith(_INDEX):
-        where, key = branch.numbered, segment.removesuffix(_INDEX)
-    elif segment == "*" or segment.startswith("<"):
-        where, key = branch.wild, segment.strip("<>")
-    else:
-        where, key = branch.exact, segment
-    return where.setdefault(key, Branch({}, {}, {}, []))

@@ -13,7 +13,7 @@ from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES, has_release, releases_with, since_version
 from multibot_rewrite.knowledge.conditions import VERSION, joined, of_release
-from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack, extend, stack_of
+from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 
 HERE = os.path.dirname(__file__)
@@ -100,15 +100,11 @@ def apart_nodes(release: str) -> frozenset[str]:
 def every_release() -> NodeLibrary:
     """The nodes and stacks that this package knows, of all releases."""
     library = NodeLibrary({}, {}, {}, sent=frozenset(SENT_FRAMES))
-    for path in _files():
-        library = extend(library, read_text(path), os.path.basename(path), own=True)
-    return library
-
-
-def _files() -> list[str]:
     folder = os.path.join(HERE, "nodes")
     names = sorted(os.listdir(folder), key=lambda it: (it != PARTS, it))
-    return [*(os.path.join(folder, it) for it in names), os.path.join(HERE, STACKS)]
+    for path in (*(os.path.join(folder, it) for it in names), os.path.join(HERE, STACKS)):
+        library = extend(library, read_text(path), os.path.basename(path), own=True)
+    return library
 
 
 def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
@@ -117,25 +113,27 @@ def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
     What came into the release with a later version of its package has that as its condition, so an
     installed older version lacks nothing.
     """
-    parts = {name: _endpoints(it, "", release) for name, it in library.parts.items()}
-    return library._replace(
-        parts=parts,
-        nodes={it.name: it for it in _nodes(library.nodes.values(), release)},
-        stacks=_stacks(library, release),
-        release=release,
-        elsewhere=dict(_elsewhere(library, release)),
-    )
-
-
-def _stacks(library: NodeLibrary, release: str) -> dict[str, Stack]:
-    there = {name: it for name, it in library.stacks.items() if _has_stack(library, name, release)}
-    return {
-        name: it._replace(
-            include=tuple(other for other in it.include if other in there),
-            nodes=tuple(_nodes(it.nodes, release)),
-        )
-        for name, it in there.items()
+    # Nodes and stacks that the release lacks, and the releases that have them.
+    elsewhere = {
+        name: ", ".join(releases_with(node.releases))
+        for name, node in library.nodes.items()
+        if name not in library.stacks and not has_release(node.releases, release)
     }
+    stacks = {}
+    for name, stack in library.stacks.items():
+        if _has_stack(library, name, release):
+            include = (it for it in stack.include if _has_stack(library, it, release))
+            nodes = tuple(_nodes(stack.nodes, release))
+            stacks[name] = stack._replace(include=tuple(include), nodes=nodes)
+        else:
+            elsewhere[name] = ", ".join(it for it in RELEASES if _has_stack(library, name, it))
+    return library._replace(
+        parts={name: _endpoints(it, "", release) for name, it in library.parts.items()},
+        nodes={it.name: it for it in _nodes(library.nodes.values(), release)},
+        stacks=stacks,
+        release=release,
+        elsewhere=elsewhere,
+    )
 
 
 def _has_stack(library: NodeLibrary, name: str, release: str) -> bool:
@@ -147,16 +145,6 @@ def _has_stack(library: NodeLibrary, name: str, release: str) -> bool:
         return True
     nodes = any(has_release(it.releases, release) for it in stack.nodes)
     return nodes or any(_has_stack(library, it, release) for it in stack.include)
-
-
-def _elsewhere(library: NodeLibrary, release: str) -> Iterator[tuple[str, str]]:
-    """Nodes and stacks that the release lacks, and the releases that have them."""
-    for name, node in library.nodes.items():
-        if name not in library.stacks and not has_release(node.releases, release):
-            yield name, ", ".join(releases_with(node.releases))
-    for name in library.stacks:
-        if not _has_stack(library, name, release):
-            yield name, ", ".join(it for it in RELEASES if _has_stack(library, name, it))
 
 
 def _nodes(nodes: Iterable[NodeFacts], release: str) -> Iterator[NodeFacts]:

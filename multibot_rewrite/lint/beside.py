@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from multibot_rewrite.base.file_kinds import refuse_others
 from multibot_rewrite.base.findings.finding import Finding
@@ -27,7 +27,6 @@ from multibot_rewrite.rules.subject import NO_ROBOTS, Robots, Subject
 
 # How many descriptions are read.
 _TRIED = 6
-_DESCRIPTION = "_description"
 _KINDS = ("link", "frame", "joint", "sensor", "gpio", "hardware")
 _AS_WRITTEN = make_naming("tf-per-robot")
 # Kinds of names for which a file's robots have to be known.
@@ -42,18 +41,11 @@ def robots_of(file: str, settings: Settings) -> Robots:
     paths = _descriptions(folder)
     if not paths and own:
         above = os.path.dirname(folder)
-        others = sorted(it for it in entries(above) if it.endswith(_DESCRIPTION))
+        others = sorted(it for it in entries(above) if it.endswith("_description"))
         paths = [path for it in others for path in _descriptions(os.path.join(above, it))]
     paths = paths or [path for _, path in settings.urdfs]
-    return _together(paths, settings) if len(paths) > 0 else NO_ROBOTS
-
-
-def _descriptions(folder: str) -> list[str]:
-    """The files below a folder with a robot that has a name: others are parts of these."""
-    return [path for path in descriptions_below(folder) if robot_name(path)]
-
-
-def _together(paths: Sequence[str], settings: Settings) -> Robots:
+    if not paths:
+        return NO_ROBOTS
     found: dict[str, dict[str, Claim]] = {kind: {} for kind in _KINDS}
     subjects: list[Subject] = []
     for path in paths[:_TRIED]:
@@ -65,6 +57,11 @@ def _together(paths: Sequence[str], settings: Settings) -> Robots:
         for kind in _KINDS:
             found[kind] |= subjects[-1].inventory.declared.get(kind, {})
     return Robots(found, tuple(subjects), len(subjects) == len(paths))
+
+
+def _descriptions(folder: str) -> list[str]:
+    """The files below a folder with a robot that has a name: others are parts of these."""
+    return [path for path in descriptions_below(folder) if robot_name(path)]
 
 
 def named_in_package(kind: str, data: bytes, path: str, settings: Settings) -> NamedFile:

@@ -45,7 +45,6 @@ HOMES = (
     "spelling.table_checks",
     "spelling.way_checks",
 )
-_OF_LINT = "MB"
 
 
 @cache
@@ -54,7 +53,7 @@ def rules() -> Mapping[str, Rule]:
     from multibot_rewrite.lint.registry import RULES
 
     # A lint has some with examples of its own.
-    by_code = {it.code: it for it in sorted((*RULES.values(), *declared()), key=_code)}
+    by_code = {it.code: it for it in sorted((*RULES.values(), *declared()), key=lambda it: it.code)}
     names = {(it.code, it.name) for it in (*RULES.values(), *by_code.values())}
     assert len(names) == len(by_code), "two rules have one code"
     return by_code
@@ -71,9 +70,5 @@ def declared() -> tuple[Rule, ...]:
     modules = [import_module(f"multibot_rewrite.{name}") for name in HOMES]
     found = [it for one in modules for it in vars(one).values() if isinstance(it, Rule)]
     every = (*judge.RULES, *check.RULES.values(), *found)
-    own = (it for it in every if it.code not in RULES or not it.code.startswith(_OF_LINT))
-    return tuple(sorted({it.code: it for it in own}.values(), key=_code))
-
-
-def _code(rule: Rule) -> str:
-    return rule.code
+    own = (it for it in every if it.code not in RULES or not it.code.startswith("MB"))
+    return tuple(sorted({it.code: it for it in own}.values(), key=lambda it: it.code))

@@ -69,7 +69,11 @@ def _linted(
             if not beside or kind_of(data):
                 refuse_templates(data, path)
             if beside:
-                return sorted(_beside(path, data, settings), key=by_place)
+                # A description needs none of it.
+                from multibot_rewrite.lint.beside import beside_findings
+
+                its = list(beside_findings(path, data, settings))
+                return sorted(unsuppressed(its, {}, settings), key=by_place)
             _look(path, data, settings, wanted, found, sources)
     except InputError as error:
         found.append(failure(path, error, settings))
@@ -79,7 +83,11 @@ def _linted(
         raise
     except Exception as error:  # the other files are still linted
         found.append(breakdown(path, error))
-    return sorted(unsuppressed(_merged(found), sources, settings), key=by_place)
+    # A finding that several expansions have is reported once, for the first of them.
+    first: dict[Finding, Finding] = {}
+    for finding in found:
+        first.setdefault(finding._replace(arguments=""), finding)
+    return sorted(unsuppressed(list(first.values()), sources, settings), key=by_place)
 
 
 def _look(
@@ -101,12 +109,6 @@ def _look(
         sources |= {**subject.sources, path: data}
 
 
-def _beside(path: str, data: bytes, settings: Settings) -> list[Finding]:
-    from multibot_rewrite.lint.beside import beside_findings  # a description needs none of it
-
-    return unsuppressed(list(beside_findings(path, data, settings)), {}, settings)
-
-
 def lint_subject(subject: Subject, wanted: Callable[[Rule], bool] = bool) -> list[Finding]:
     """What the active rules find in one document, those that are ``wanted``."""
     found: list[tuple[Rule, list[Problem]]] = []
@@ -123,14 +125,6 @@ def lint_subject(subject: Subject, wanted: Callable[[Rule], bool] = bool) -> lis
         return crashes
     numbers = numbered(subject, [it for _, its in found for it in its])
     return crashes + [placed(subject, numbers, it, rule) for rule, its in found for it in its]
-
-
-def _merged(found: Iterable[Finding]) -> list[Finding]:
-    """A finding that several expansions have is reported once, for the first of them."""
-    first: dict[Finding, Finding] = {}
-    for finding in found:
-        first.setdefault(finding._replace(arguments=""), finding)
-    return list(first.values())
 
 
 @contextmanager
@@ -181,6 +175,7 @@ _ATTRIBUTE = lazy_compile(rb"\s((?:[^\s=:/>\"']+:)?([^\s=:/>\"']+))\s*=\s*(?:\"[
 def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> Finding:
     """The finding for a problem; ``numbers`` are those of ``numbered``."""
     number, level = numbers[problem.element], problem.level or rule.level
+    sources = subject.sources
     file, source, offset, calls = _place(subject, number, problem.attribute)
     line, column = locate(source, offset)
     if level == ERROR and _is_argument(subject, number, problem.attribute):
@@ -193,10 +188,10 @@ def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> 
         file,
         line,
         column,
-        tuple(_call_text(subject, call) for call in calls),
+        tuple(f"{it.file}:{locate(sources[it.file], it.start)[0]}: {it.macro}" for it in calls),
         subject.arguments,
         # An edit is one of the text that was looked at.
-        () if subject.sources else problem.edits,
+        () if sources else problem.edits,
     )
 
 
@@ -245,8 +240,3 @@ def _attributes(source: bytes, start: int) -> dict[bytes, int]:
     found = list(_ATTRIBUTE.finditer(source, start, tag_end(source, start)))
     bare = {it[2]: it.start(2) for it in found}
     return bare | {it[1]: it.start(1) for it in found}
-
-
-def _call_text(subject: Subject, call: Call) -> str:
-    line, _ = locate(subject.sources[call.file], call.start)
-    return f"{call.file}:{line}: {call.macro}"

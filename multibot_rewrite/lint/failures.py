@@ -41,7 +41,6 @@ _CODES = {
 # CMake's configure_file, Jinja, Ruby and empy make files of such files, and of parts of files.
 _TEMPLATES = (".in", ".jinja", ".jinja2", ".j2", ".erb", ".em")
 _MADE = "a template, in which another program fills in what is missing; lint what it makes"
-_OF_GAZEBO = (".sdf", ".world")
 
 
 def failure(path: str, error: InputError, settings: Settings) -> Finding:
@@ -71,7 +70,7 @@ def _level(path: str, cause: str, name: str) -> str:
     if cause == REFUSED:  # here alone: xacro and urdfdom read some of these
         return WARNING
     # TinyXML-2 looks at no encoding, and Gazebo reads its files itself; launch files stop at others.
-    if cause == NOT_UTF8 and path.endswith(_OF_GAZEBO):
+    if cause == NOT_UTF8 and path.endswith((".sdf", ".world")):
         return WARNING
     if cause == NOT_DEFINED:  # a file may be a part of a robot
         return NOTE if name and _is_made_beside(path, name) else WARNING

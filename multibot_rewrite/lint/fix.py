@@ -22,7 +22,7 @@ from multibot_rewrite.description.checks.poses import (
     pose_of,
 )
 from multibot_rewrite.description.steps.apply import cut
-from multibot_rewrite.description.steps.document import Document, read_document
+from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.rules.convert import capsules, ends_of
 from multibot_rewrite.rules.settings import Settings
@@ -39,7 +39,8 @@ def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Findi
     """
     findings = lint_data(path, source, settings)
     for _ in range(ROUNDS):
-        edits = list(_not_overlapping(_edits(path, findings)))
+        found = {edit for it in findings if it.file == path for edit in it.edits}
+        edits = list(_not_overlapping(found))
         if not edits:
             return source, findings
         fixed = b"".join(cut(source, edits))
@@ -47,10 +48,6 @@ def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Findi
         _prove(path, (source, findings), (fixed, after), edits)
         source, findings = fixed, after
     raise ProofError(f"{path}: there is still something to fix after {ROUNDS} rounds")
-
-
-def _edits(path: str, findings: Iterable[Finding]) -> set[Edit]:
-    return {edit for finding in findings if finding.file == path for edit in finding.edits}
 
 
 def _not_overlapping(edits: Iterable[Edit]) -> Iterator[Edit]:
@@ -71,21 +68,16 @@ def _prove(
     """Every element without an edit in its tag or text is what it was, or, between versions of URDF,
     all say the same; and no finding is new."""
     before, after = (read_document(data, path) for data, _ in (old, new))
-    touched = _touched(before, edits)
+    # For each element: is there an edit between its start tag and the next one?
+    numbers = {bisect_right(before.starts, it.start) - 1 for it in edits}
+    touched = [number in numbers for number in range(len(before.starts))]
     pairs = zip(before.root.iter("*"), after.root.iter("*"), touched, strict=False)
     same = len(before.starts) == len(after.starts)
     alike = same and all(_same(old, new, there) for old, new, there in pairs)
     if not alike and not same_meaning(before.root, after.root):
         raise ProofError(f"{path}: a fix would change more than it may")
-    more = _said(new[1]) - _said(old[1])
-    if more:
+    if more := _said(new[1]) - _said(old[1]):
         raise ProofError(f"{path}: a fix would cause a new finding: {min(more)}")
-
-
-def _touched(document: Document, edits: Sequence[Edit]) -> list[bool]:
-    """For each element: is there an edit between its start tag and the next one?"""
-    numbers = {bisect_right(document.starts, it.start) - 1 for it in edits}
-    return [number in numbers for number in range(len(document.starts))]
 
 
 def _same(old: _Element, new: _Element, touched: bool) -> bool:

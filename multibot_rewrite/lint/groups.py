@@ -61,8 +61,4 @@ def _active(
     settings = Settings(select=select, ignore=ignore, levels=dict(levels))
     groups = (it for it in GROUPS if it.of_urdf or format_ != URDF)
     rules = (it for group in groups for it in rules_of(group, of_robots) if format_ in it.formats)
-    return tuple(sorted((it for it in rules if is_on(settings, it.code)), key=_code))
-
-
-def _code(rule: Rule) -> str:
-    return rule.code
+    return tuple(sorted((it for it in rules if is_on(settings, it.code)), key=lambda it: it.code))

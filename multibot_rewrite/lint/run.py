@@ -42,8 +42,7 @@ def lint_files(
     """
     settings = among(paths, settings, cache)
     found = {path: _known(cache, path, settings) for path in paths} if cache else {}
-    unknown = [path for path in paths if found.get(path) is None]
-    if unknown:
+    if unknown := [path for path in paths if found.get(path) is None]:
         # A faulty vocabulary is reported before anything is linted.
         from multibot_rewrite.description.rewriters.tree import builtin_tree
 

@@ -12,7 +12,7 @@ from multibot_rewrite.base.naming import LAYOUTS, Layout
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.rules.check import ABSENCE, in_domain, inconclusive_where_in_doubt, judge
-from multibot_rewrite.rules.system.differing import COMPARED
+from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS
 from multibot_rewrite.rules.system.likes import less_than_another_robot
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import named, side_by_side, space_of, unnamed
@@ -21,8 +21,10 @@ from multibot_rewrite.system.index import NO_COUNTS, TF, Index, Known, ends_of, 
 from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, Robot, System, surely
 from multibot_rewrite.system.tf_copies import tree_topic
 
+# With more tf topics of one robot each they share a line.
+MOST_OWN = 3
 # Rules that hold robots against each other, which they are in whatever domain.
-BETWEEN_ROBOTS = frozenset((*COMPARED, less_than_another_robot.code))
+HELD_AGAINST = frozenset((*BETWEEN_ROBOTS, less_than_another_robot.code))
 
 
 class Diagnosis(NamedTuple):
@@ -70,7 +72,7 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
     compared = [
         unnamed(it)
         for it in together.findings
-        if it.code in BETWEEN_ROBOTS and told.isdisjoint(it.names)
+        if it.code in HELD_AGAINST and told.isdisjoint(it.names)
     ]
     every = [
         *(
@@ -131,12 +133,23 @@ def survey(seen: Diagnosis) -> Iterator[str]:
         where = _where(seen.robots)
         yield f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
         yield f"layout: {_layout_line(seen)}"
+    own = [topic for topic, nodes_ in seen.tf if _is_its_own(seen, topic, nodes_)]
+    if len(own) > MOST_OWN:
+        yield f"tf on {shorten(own, MOST_OWN)}: each of the nodes of its robot"
     for topic, nodes_ in seen.tf:
         if nodes_ == (RECORDER,):
             yield f"tf on {topic}"
             continue
+        if topic in own and len(own) > MOST_OWN:
+            continue
         by_robot = Counter(seen.whose.robot(node) or "no robot" for node in nodes_)
         yield f"tf on {topic}: {plural(len(nodes_), 'node')} of {shorten(by_robot, SEVERAL)}"
+
+
+def _is_its_own(seen: Diagnosis, topic: str, nodes: Sequence[str]) -> bool:
+    """Is it a robot's topic, on which only nodes of that robot send?"""
+    robot = seen.whose.robot(topic)
+    return bool(robot) and all(seen.whose.robot(it) == robot for it in nodes)
 
 
 def _where(robots: Sequence[GuessedRobot]) -> str:

@@ -11,6 +11,7 @@ import json
 import os
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from typing import Any, NamedTuple
@@ -152,7 +153,11 @@ def _create_publisher(
 
 
 def _publish(publisher: Any, messages: Iterable[Any]) -> None:
+    """Publish transforms with the time of now."""
     for message in messages:
+        for it in getattr(message, "transforms", (message,)):
+            stamp = it.header.stamp
+            stamp.sec, stamp.nanosec = divmod(time.time_ns(), 10**9)
         publisher.publish(message)
 
 

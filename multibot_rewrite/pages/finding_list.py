@@ -90,15 +90,10 @@ def _body(row: FindingRow, sources: Sources) -> str:
         ("Written in", f"<code>{safe(row.place)}</code>") if row.place else None,
     ]
     shown = "".join(f"<div><dt>{part[0]}</dt><dd>{part[1]}</dd></div>" for part in parts if part)
-    return f"<dl>{shown}</dl>{_snippet(row.place, sources.snippets.get(row.place, ()))}"
-
-
-def _snippet(place: str, lines: Sequence[str]) -> str:
-    if not lines:
-        return ""
-    wanted = place.rpartition(":")[2]
+    wanted, lines = row.place.rpartition(":")[2], sources.snippets.get(row.place, ())
     marked = (f"<b>{safe(line)}</b>" if line.split()[0] == wanted else safe(line) for line in lines)
-    return f"<pre>{chr(10).join(marked)}</pre>"
+    snippet = f"<pre>{chr(10).join(marked)}</pre>" if lines else ""
+    return f"<dl>{shown}</dl>{snippet}"
 
 
 def explanations(codes: Iterable[str], rules: Mapping[str, Rule]) -> Iterator[str]:
@@ -106,18 +101,15 @@ def explanations(codes: Iterable[str], rules: Mapping[str, Rule]) -> Iterator[st
     found = [rules[code] for code in sorted(set(codes)) if code in rules]
     if found:
         yield '<section id="rules">\n<h2>What the codes mean</h2>\n'
-        yield from map(_explained, found)
+        for rule in found:
+            css_class = "bad" if rule.level == ERROR else "odd"
+            parts = ("", rule.what), ("Why: ", rule.why), ("Fix: ", rule.fix)
+            lines = "".join(f"<p><b>{head}</b>{with_code(text)}</p>" for head, text in parts)
+            yield (
+                f'<details id="rule-{rule.code}"><summary class="{css_class}"><b>{rule.code}</b>'
+                f" {rule.name} <span>{rule.level}</span></summary>\n<div>{lines}</div></details>\n"
+            )
         yield "</section>\n"
-
-
-def _explained(rule: Rule) -> str:
-    css_class = "bad" if rule.level == ERROR else "odd"
-    parts = ("", rule.what), ("Why: ", rule.why), ("Fix: ", rule.fix)
-    lines = "".join(f"<p><b>{head}</b>{with_code(text)}</p>" for head, text in parts)
-    return (
-        f'<details id="rule-{rule.code}"><summary class="{css_class}"><b>{rule.code}</b>'
-        f" {rule.name} <span>{rule.level}</span></summary>\n<div>{lines}</div></details>\n"
-    )
 
 
 def with_code(markdown: str) -> str:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.wording import plural
@@ -40,16 +40,26 @@ class _Box(NamedTuple):
 def overview(robots: Sequence[Tile], crossings: Sequence[Crossing], shared: Iterable[str]) -> str:
     """The picture; ``shared`` are the nodes of no robot."""
     below = list(_shared_tiles(crossings, list(shared)))
-    middle = _height(len(robots)) if below else 0.0
+    in_row, _, tall, gap = _size(len(robots))
+    middle = -(-len(robots) // in_row) * (tall + gap) if below else 0
     places = {**_rows(robots, 0), **_rows(below, middle)}
     tiles = (*robots, *below)
     high = max((box.y + box.high for box in places.values()), default=0.0) + MARGIN
     arrows, labels = [], []
     for crossing in sorted(crossings, key=lambda crossing: crossing.state in FAULTY):
-        path, x, y = _path(*_boxes(crossing, places))
-        arrows.append(_arrow(crossing, path))
-        if len(crossings) <= MOST_LABELS and crossing.target and crossing.state in FAULTY:
-            labels.append(_label(crossing, x, y))
+        start = places.get(crossing.source or crossing.node) or places[OTHERS]
+        path, x, y = _path(start, places[crossing.target or NO_ROBOT])
+        faulty, names = crossing.state in FAULTY, crossing.names
+        css_class, tip = ("bad", "tip-bad") if faulty else ("calm", "tip")
+        who = crossing.source or crossing.node
+        title = tooltip(f"{who}: {MEANINGS[crossing.state]}", *names)
+        arrows.append(
+            f'<path class="reach {css_class}" d="{path}" marker-end="url(#{tip})">{title}</path>'
+        )
+        if len(crossings) <= MOST_LABELS and crossing.target and faulty:
+            first = clipped(names[0].partition(" ")[2], 40)
+            text = safe(first if len(names) == 1 else plural(len(names), "name"))
+            labels.append(f'<text class="reach-note" x="{x:g}" y="{y:g}">{text}</text>')
     # A few boxes are readable on a narrow screen.
     few = " few" if max(len(robots), len(below)) <= SIZES[0][0] else ""
     boxes = (_tile(tile, places[tile.key]) for tile in tiles)
@@ -85,11 +95,6 @@ def _size(number: int) -> tuple[int, int, int, int]:
     return next(size[1:] for size in SIZES if number <= size[0])
 
 
-def _height(number: int) -> float:
-    columns, _, high, gap = _size(number)
-    return -(-number // columns) * (high + gap)
-
-
 def _rows(tiles: Sequence[Tile], top: float) -> dict[str, _Box]:
     columns, wide, high, gap = _size(len(tiles))
     cell = WIDTH / min(columns, max(len(tiles), 1))
@@ -116,25 +121,6 @@ def _tile(tile: Tile, box: _Box) -> str:
         f"{safe(clipped(tile.note, room))}</text>"
         f"{tooltip(tile.title, tile.note)}</g></a>"
     )
-
-
-def _boxes(crossing: Crossing, places: Mapping[str, _Box]) -> tuple[_Box, _Box]:
-    start = places.get(crossing.source or crossing.node) or places[OTHERS]
-    return start, places[crossing.target or NO_ROBOT]
-
-
-def _arrow(crossing: Crossing, path: str) -> str:
-    css_class, tip = ("bad", "tip-bad") if crossing.state in FAULTY else ("calm", "tip")
-    title = tooltip(
-        f"{crossing.source or crossing.node}: {MEANINGS[crossing.state]}", *crossing.names
-    )
-    return f'<path class="reach {css_class}" d="{path}" marker-end="url(#{tip})">{title}</path>'
-
-
-def _label(crossing: Crossing, x: float, y: float) -> str:
-    first = crossing.names[0].partition(" ")[2]
-    text = clipped(first, 40) if len(crossing.names) == 1 else plural(len(crossing.names), "name")
-    return f'<text class="reach-note" x="{x:g}" y="{y:g}">{safe(text)}</text>'
 
 
 def _path(start: _Box, end: _Box) -> tuple[str, float, float]:

@@ -61,33 +61,41 @@ def to_html(
 ) -> bytes:
     """The page; ``snippets`` are lines of files by ``file:line``, ``robots`` is below its head."""
     css, js = _asset("page.css"), _asset("page.js") + _asset("zoom.js")
-    policy = _policy(source_hash(css), source_hash(js), robots)
+    # Nothing but what is in the page.
+    style, script, images, frame = source_hash(css), source_hash(js), "", ""
+    if robots is not None:
+        style, script = f"{style} {robots.styles}", f"{script} {robots.scripts}"
+        inner = f'sandbox="allow-scripts" srcdoc="{escape(robots.html)}"'
+        frame = f'<iframe title="the robots in 3D" {inner}></iframe>'
+        frame = f'<section id="robots">\n<h2>The robots</h2>\n{frame}\n</section>\n'
+        images = " img-src data: blob:;"
+    policy = (
+        f"default-src 'none'; style-src {style};{images} script-src {script};"
+        " base-uri 'none'; form-action 'none'"
+    )
     ids, sections = make_ids(scene), make_sections(scene)
+    title = f"{scene.outcome.words}: {plural(len(scene.robots), 'robot')}, layout {scene.layout}"
+    drawings = [graphs(scene, ids, sections), trees(scene, ids)]
+    # A tf tree with faults is above the nodes.
+    if any(row.faults for tree in scene.trees for row in tree.rows):
+        drawings.reverse()
     parts = (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<meta name="color-scheme" content="light dark">\n'
-        f"<title>{safe(_title(scene))}</title>\n<style>{css}</style>\n</head>\n<body>\n",
+        f"<title>{safe(title)}</title>\n<style>{css}</style>\n</head>\n<body>\n",
         *_header(scene, sections, rules),
         "<main>\n",
-        _frame(robots),
+        frame,
         *filters(scene),
         *finding_list(scene, ids, sections, Sources(rules, snippets)),
-        *_drawings(scene, ids, sections),
+        *(line for drawing in drawings for line in drawing),
         *explanations((row.finding.code for row in scene.rows), rules),
         *_environment(scene),
         f"</main>\n<script>{js}</script>\n</body>\n</html>\n",
     )
     return "".join(parts).encode()
-
-
-def _drawings(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterator[str]:
-    """A tf tree with faults is above the nodes."""
-    parts = [graphs(scene, ids, sections), trees(scene, ids)]
-    wrong_tf = any(row.faults for tree in scene.trees for row in tree.rows)
-    for part in reversed(parts) if wrong_tf else parts:
-        yield from part
 
 
 @cache
@@ -100,56 +108,26 @@ def source_hash(text: str) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
-def _policy(style: str, script: str, robots: Framed | None) -> str:
-    """Nothing but what is in the page."""
-    end = "base-uri 'none'; form-action 'none'"
-    if robots is None:
-        return f"default-src 'none'; style-src {style}; script-src {script}; {end}"
-    styles, scripts = f"{style} {robots.styles}", f"{script} {robots.scripts}"
-    images = "img-src data: blob:"
-    return f"default-src 'none'; style-src {styles}; {images}; script-src {scripts}; {end}"
-
-
-def _frame(robots: Framed | None) -> str:
-    if robots is None:
-        return ""
-    page = escape(robots.html)
-    frame = f'<iframe title="the robots in 3D" sandbox="allow-scripts" srcdoc="{page}"></iframe>'
-    return f'<section id="robots">\n<h2>The robots</h2>\n{frame}\n</section>\n'
-
-
-def _title(scene: Scene) -> str:
-    robots = plural(len(scene.robots), "robot")
-    return f"{scene.outcome.words}: {robots}, layout {scene.layout}"
-
-
-def _look(scene: Scene) -> str:
-    """The CSS class of the head: good only where nothing below says otherwise."""
-    verdict = scene.outcome.verdict
-    doubtful = any(row.finding.level in LEVELS for row in scene.rows)
-    return LOOKS[Verdict.INCONCLUSIVE if verdict == Verdict.PLANNED and doubtful else verdict]
-
-
-def _count(scene: Scene) -> str:
-    """The count that the command prints, and in how many rows it is shown."""
-    levels = Counter(finding.level for finding in scene.findings)
-    rows = f" in {plural(len(scene.rows), 'row')}" if len(scene.rows) < len(scene.findings) else ""
-    told = summarize(levels) or plural(levels[NOTE], "note") * bool(levels[NOTE])
-    return f"{told}{rows}" if told else "no findings"
-
-
 def _header(
     scene: Scene, sections: Sequence[PageSection], rules: Mapping[str, Rule]
 ) -> Iterator[str]:
     about = next((one.about for one in LAYOUTS if scene.layout in (one.name, one.short)), "")
     layout = "layout" if scene.outcome.planned else "looks like layout"
+    # The count that the command prints, and in how many rows it is shown.
+    levels = Counter(finding.level for finding in scene.findings)
+    rows = f" in {plural(len(scene.rows), 'row')}" if len(scene.rows) < len(scene.findings) else ""
+    told = summarize(levels) or plural(levels[NOTE], "note") * bool(levels[NOTE])
+    # It is good only where nothing below says otherwise.
+    verdict = scene.outcome.verdict
+    doubtful = any(row.finding.level in LEVELS for row in scene.rows)
+    look = LOOKS[Verdict.INCONCLUSIVE if verdict == Verdict.PLANNED and doubtful else verdict]
     facts = (
-        _count(scene),
+        f"{told}{rows}" if told else "no findings",
         f"{plural(len(scene.robots), 'robot')}: {shorten(scene.robots, SEVERAL)}",
         in_words(scene.coverage),
         f"{layout} {scene.layout}{f': {about}' if about else ''}",
     )
-    yield f'<header class="{_look(scene)}">\n<p>{safe(scene.outcome.by)}</p>\n'
+    yield f'<header class="{look}">\n<p>{safe(scene.outcome.by)}</p>\n'
     yield f"<h1>{safe(scene.outcome.words)}</h1>\n<ul>"
     yield "".join(f"<li>{safe(fact)}</li>" for fact in facts)
     yield "</ul>\n"
@@ -201,7 +179,13 @@ def graphs(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterator[
     """The overview where something crosses, and a group for each robot."""
     yield '<section id="graph">\n<h2>Nodes and names</h2>\n'
     met = {robot for it in scene.crossings for robot in (it.source, it.target)}
-    tiles = [_tile(section) for section in sections if section.group.robot in met - {""}]
+    tiles = []
+    for section in (it for it in sections if it.group.robot in met - {""}):
+        robot = section.group.robot
+        nodes = plural(sum(node.robot == robot for node in section.group.nodes), "node")
+        # Without findings of its own, only another robot's node makes a robot faulty.
+        note = summarize(section.levels) or ("used by another robot" if section.faulty else nodes)
+        tiles.append(Tile(robot, robot, note, f"#{section.id}", look_of(section)))
     shared = [node.name for node in sections[-1].group.nodes if not (node.robot or node.is_robot)]
     if scene.crossings:
         yield _pane(overview(tiles, scene.crossings, shared))
@@ -235,19 +219,6 @@ def _legend(scene: Scene) -> Iterator[str]:
         if state in drawn:
             meaning = MEANINGS if scene.outcome.planned else UNPLANNED
             yield f'<li class="{state}">{safe(meaning[state])}</li>'
-
-
-def _tile(section: PageSection) -> Tile:
-    robot = section.group.robot
-    nodes = plural(sum(node.robot == robot for node in section.group.nodes), "node")
-    # Without findings of its own, only another robot's node makes a robot faulty.
-    note = summarize(section.levels) or ("used by another robot" if section.faulty else nodes)
-    return Tile(robot, robot, note, f"#{section.id}", look_of(section))
-
-
-def _number(scene: Scene, robot: str) -> str:
-    """What the filter knows a robot by."""
-    return str(scene.robots.index(robot) if robot in scene.robots else -1)
 
 
 def _group(section: PageSection, scene: Scene, ids: Ids) -> Iterator[str]:
@@ -308,8 +279,10 @@ def _panel(tree: FrameTree, scene: Scene, ids: Ids) -> str:
         title += " <em>declared, not received</em>"
     opened = " open" if wrong or len(scene.robots) <= SMALL_FLEET else ""
     css_class = "bad" if wrong else "good" if tree.received else "odd"
+    # What the filter knows a robot by.
+    number = scene.robots.index(tree.robot) if tree.robot in scene.robots else -1
     return (
-        f'<details class="group" data-robot="{_number(scene, tree.robot)}"{opened}>'
+        f'<details class="group" data-robot="{number}"{opened}>'
         f'<summary class="{css_class}">{title}</summary>\n'
         f"{_pane(tree_svg(tree, scene.robots, ids))}</details>\n"
     )

@@ -13,7 +13,7 @@ from multibot_rewrite.base.findings.formats.plain import in_words
 from multibot_rewrite.base.findings.selection import said_of
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.live.watching import Verdict, verdict_words
-from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName, FindingRow, Scene
+from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName, Scene
 from multibot_rewrite.pages.states import FAULTY, MISSING, OK, Targets
 from multibot_rewrite.pages.svg import Ids, safe
 from multibot_rewrite.system.records import SERVES
@@ -217,14 +217,6 @@ def robot_cards(
     scene: Scene, sections: Sequence[PageSection], rules: Mapping[str, Rule]
 ) -> Iterator[str]:
     """The robots with findings first, then those without; what is of no robot is last."""
-    cards = sorted(_cards(scene, sections), key=lambda card: not card.rows)
-    order = {robot: at for at, robot in enumerate(scene.robots)}
-    yield '<div class="cards" role="list" aria-label="robots">\n'
-    yield from (_html(card, scene, order, rules) for card in cards)
-    yield "</div>\n"
-
-
-def _cards(scene: Scene, sections: Iterable[PageSection]) -> Iterator[_Card]:
     rows = concerns_of(scene)
     same: dict[tuple[tuple[int, ...], bool], list[PageSection]] = {}
     for section in sections:
@@ -232,7 +224,12 @@ def _cards(scene: Scene, sections: Iterable[PageSection]) -> Iterator[_Card]:
         own = rows.get(robot, ())
         if robot or own:
             same.setdefault((own, not robot), []).append(section)
-    return (_Card(members, own) for (own, _), members in same.items())
+    found = (_Card(members, own) for (own, _), members in same.items())
+    cards = sorted(found, key=lambda card: not card.rows)
+    order = {robot: at for at, robot in enumerate(scene.robots)}
+    yield '<div class="cards" role="list" aria-label="robots">\n'
+    yield from (_html(card, scene, order, rules) for card in cards)
+    yield "</div>\n"
 
 
 def _html(card: _Card, scene: Scene, order: Mapping[str, int], rules: Mapping[str, Rule]) -> str:
@@ -241,12 +238,27 @@ def _html(card: _Card, scene: Scene, order: Mapping[str, int], rules: Mapping[st
         f'<a href="#{it.id}">{safe(it.group.robot or "shared, or of no robot")}</a>'
         for it in card.sections
     ]
-    first = card.sections[0].group.robot
-    lines = [f"<li>{_line(at, scene.rows[at], rules, first)}</li>" for at in card.rows]
+    head = ", ".join(links[:MOST_ROBOTS])
+    if others := links[MOST_ROBOTS:]:
+        more = f"<summary>{plural(len(others), 'more robot')}</summary>"
+        head += f" <details>{more}{', '.join(others)}</details>"
+    robot, lines = card.sections[0].group.robot, []
+    for at in card.rows:
+        # A finding in a few words, as it is of the robot, with a link to it.
+        it = scene.rows[at].finding
+        about = safe(said_of(next(iter(it.names), it.node), it, robot))
+        words = safe(rules[it.code].name.replace("-", " ") if it.code in rules else it.code)
+        message = safe(said_of(it.message, it, robot))
+        lines.append(
+            f'<li><a class="brief {safe(it.level)}" href="#finding-{at}" title="{message}">'
+            f"<b>{words}</b> <code>{about}</code></a></li>"
+        )
+    listed = f"<ul>{''.join(lines[:MOST_ROWS])}</ul>" if lines else ""
+    if rest := lines[MOST_ROWS:]:
+        listed += f"<details><summary>{len(rest)} more</summary><ul>{''.join(rest)}</ul></details>"
     return (
         f'<div class="card {look_of(card.sections[0])}" role="listitem" data-robot="{numbers}">'
-        f"<h3>{_folded(links, MOST_ROBOTS, 'robot', ', ')}</h3><p>{safe(_state(card, scene))}</p>"
-        f"{_list(lines)}</div>\n"
+        f"<h3>{head}</h3><p>{safe(_state(card, scene))}</p>{listed}</div>\n"
     )
 
 
@@ -265,32 +277,3 @@ def _state(card: _Card, scene: Scene) -> str:
     each = " each" if len(card.sections) > 1 and card.rows else ""
     many = f"{len(card.sections)} robots, " if len(card.sections) > 1 else ""
     return f"{many}{state}{each}; {plural(nodes, 'node')} running"
-
-
-def _line(at: int, row: FindingRow, rules: Mapping[str, Rule], robot: str) -> str:
-    """A finding in a few words, as it is of the robot, with a link to it."""
-    it = row.finding
-    about = said_of(next(iter(it.names), it.node), it, robot)
-    words = rules[it.code].name.replace("-", " ") if it.code in rules else it.code
-    message = said_of(it.message, it, robot)
-    return (
-        f'<a class="brief {safe(it.level)}" href="#finding-{at}" title="{safe(message)}">'
-        f"<b>{safe(words)}</b> <code>{safe(about)}</code></a>"
-    )
-
-
-def _list(lines: Sequence[str]) -> str:
-    if not lines:
-        return ""
-    shown = f"<ul>{''.join(lines[:MOST_ROWS])}</ul>"
-    if len(lines) <= MOST_ROWS:
-        return shown
-    more = f"<summary>{len(lines) - MOST_ROWS} more</summary><ul>{''.join(lines[MOST_ROWS:])}</ul>"
-    return f"{shown}<details>{more}</details>"
-
-
-def _folded(parts: Sequence[str], most: int, what: str, joint: str) -> str:
-    if len(parts) <= most:
-        return joint.join(parts)
-    more = f"<summary>{plural(len(parts) - most, f'more {what}')}</summary>"
-    return f"{joint.join(parts[:most])} <details>{more}{joint.join(parts[most:])}</details>"

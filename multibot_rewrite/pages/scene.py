@@ -34,7 +34,6 @@ from multibot_rewrite.system.records import (
     ACTION,
     SERVICE,
     TOPIC,
-    End,
     Environment,
     System,
     alternatives,
@@ -167,7 +166,15 @@ def make_scene(
     targets = find_targets(by_plan, seen, found)
     states = make_states(found, targets)
     edges = sorted(_edges(by_plan, seen, states))
-    robot_of = _robot_of(by_plan, seen, states, edges)
+    missing = (node for node, state in states.nodes.items() if state == MISSING)
+    every = {*seen.nodes, *missing, *(edge.node for edge in edges)}
+    robot, shared = by_plan.of_names.robot, {*by_plan.own[""], *plan.shared_topics}
+    robot_of = _RobotOf(
+        *(
+            {it: "" if it in shared else robot(it) for it in sorted(its)}
+            for its in (every, {edge.name for edge in edges})
+        )
+    )
     nodes = _nodes(by_plan, seen, states, edges, robot_of)
     return Scene(
         outcome or Outcome(verdict, verdict_words(verdict, found, held)),
@@ -190,14 +197,23 @@ def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRo
     for finding, members in sorted(each, key=lambda it: _ORDER.index(it[0].level)):
         concerned = {robot for it in members for robot in robots_of(plan, it)}
         robots = tuple(robot for robot in plan.declared if robot in concerned)
-        written = f"{finding.file}:{finding.line}" if finding.line else finding.file
-        place = written or _origin(plan, finding.node)
+        place = f"{finding.file}:{finding.line}" if finding.line else finding.file
+        node = plan.node.get(finding.node)
+        if not place and node is not None:
+            # Where a planned node is from: its plugin, a file, or its stack.
+            stack = f"stack {node.stack}" if node.stack else ""
+            place = str(node.plugin) or str(node.place) or stack
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 
 def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
     """The endpoints in the graph, and those that a finding reports as missing."""
-    common_names = _common_names((*seen.system.ends, *plan.system.ends))
+    # One endpoint with a known type is enough.
+    common_names = {
+        end.name
+        for end in (*seen.system.ends, *plan.system.ends)
+        if ACTION_PART in end.name or end.type.partition("/")[0] in COMMON_PACKAGES
+    }
     bridged = {(role, it.name): it.type for it in plan.system.topics for role in it.bridge}
     for key, type_ in dict.fromkeys(
         ((e.node, e.kind, e.role, e.name), e.type) for e in seen.sure.system.ends
@@ -231,35 +247,6 @@ def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) 
     if kind == ACTION and (node, SERVICE, role, f"{name}{ACTION_PART}send_goal") in plan.by_key:
         return True
     return is_tool(node) and bool(plan.robot(node))
-
-
-def _origin(plan: Index, node: str) -> str:
-    """Where a planned node is from: its plugin, a file, or its stack."""
-    planned = plan.node.get(node)
-    if planned is None:
-        return ""
-    stack = f"stack {planned.stack}" if planned.stack else ""
-    return str(planned.plugin) or str(planned.place) or stack
-
-
-def _common_names(ends: Iterable[End]) -> set[str]:
-    """The names that every node has; one endpoint with a known type is enough."""
-    return {
-        end.name
-        for end in ends
-        if ACTION_PART in end.name or end.type.partition("/")[0] in COMMON_PACKAGES
-    }
-
-
-def _robot_of(plan: Index, seen: Index, states: States, edges: Iterable[DrawnEdge]) -> _RobotOf:
-    missing = (node for node, state in states.nodes.items() if state == MISSING)
-    nodes = {*seen.nodes, *missing, *(edge.node for edge in edges)}
-    names = {edge.name for edge in edges}
-    robot, shared = plan.of_names.robot, {*plan.own[""], *plan.system.shared_topics}
-    return _RobotOf(
-        {node: "" if node in shared else robot(node) for node in sorted(nodes)},
-        {name: "" if name in shared else robot(name) for name in sorted(names)},
-    )
 
 
 def _nodes(
@@ -296,7 +283,14 @@ def _groups(
     for edge in edges:
         for robot in {robot_of.nodes[edge.node], robot_of.names[edge.name]}:
             parts[robot].append(edge)
-    names = {(name.kind, name.name): name for name in _names(edges, robot_of)}
+    by_name: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
+    for edge in edges:
+        by_name[edge.kind, edge.name].append(edge)
+    names = {}
+    for (kind, name), uses in by_name.items():
+        types = tuple(sorted({end.type for end in uses if end.type}))
+        state = combined_state({end.state for end in uses})
+        names[kind, name] = DrawnName(kind, name, robot_of.names[name], state, types)
     for robot, ends in parts.items():
         shown = tuple(ends) if robot else tuple(_nodes_as_robots(ends, nodes))
         own = {node.name: node for node in nodes.values() if node.robot == robot}
@@ -320,16 +314,6 @@ def _nodes_as_robots(
             states[edge._replace(node=robot, type="", state=OK)].add(edge.state)
     for edge, found in states.items():
         yield edge._replace(state=combined_state(found))
-
-
-def _names(edges: Iterable[DrawnEdge], robot_of: _RobotOf) -> Iterator[DrawnName]:
-    by_name: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
-    for edge in edges:
-        by_name[edge.kind, edge.name].append(edge)
-    for (kind, name), ends in by_name.items():
-        types = tuple(sorted({end.type for end in ends if end.type}))
-        state = combined_state({end.state for end in ends})
-        yield DrawnName(kind, name, robot_of.names[name], state, types)
 
 
 def combined_state(states: Collection[str]) -> str:

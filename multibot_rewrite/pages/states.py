@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 from typing import NamedTuple
 
@@ -61,19 +61,20 @@ def find_targets(plan: Index, seen: Index, findings: Iterable[Finding]) -> tuple
     """What each finding is about, by its fields and by the names in its message."""
     homes = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
     topics = [*dict.fromkeys((*(tree.topic for tree in seen.trees if tree.edges), *homes))]
-    return tuple(
-        Targets(
-            tuple(filter(None, (finding.node,))), (), tuple(_frame_targets(plan, finding, topics))
-        )
-        if finding.code.startswith(TF_CODES) and not _names_topics(seen, finding)
-        else _endpoint_targets(plan, seen, finding)
-        for finding in findings
-    )
-
-
-def _names_topics(seen: Index, finding: Finding) -> bool:
-    """Whether a finding about tf is about its topics, not about frames."""
-    return bool(finding.names) and all(any(ends_of(seen, name)) for name in finding.names)
+    found = []
+    for finding in findings:
+        of_topics = finding.names and all(any(ends_of(seen, name)) for name in finding.names)
+        if of_topics or not finding.code.startswith(TF_CODES):
+            found.append(_endpoint_targets(plan, seen, finding))
+            continue
+        # The frames on the topics that the message names; else on the robot's own, or on any topic.
+        words = {tree_topic(word) for word in words_of(finding.message)}
+        robot = plan.declared.get(finding.robot)
+        own = [topic for topic in topics if robot and topic == tree_topic(robot.tf_topic)]
+        of_frames = [topic for topic in topics if topic in words] or own or topics
+        frames = tuple((topic, frame) for topic in of_frames for frame in finding.names)
+        found.append(Targets((finding.node,) if finding.node else (), (), frames))
+    return tuple(found)
 
 
 def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> States:
@@ -94,7 +95,13 @@ def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> Stat
 
 
 def _endpoint_targets(plan: Index, seen: Index, finding: Finding) -> Targets:
-    nodes = tuple(it for it in finding.names if _is_node(plan, seen, it))
+    # Nothing else is called like a node of which the finding speaks.
+    one_of = {node for group in alternatives(plan.system) for node in group}
+    nodes = tuple(
+        it
+        for it in finding.names
+        if it in one_of or (it in seen.nodes and not any(ends_of(seen, it)))
+    )
     names = tuple(it for it in finding.names if it not in nodes)
     if nodes:
         return Targets(nodes, names, ())
@@ -108,13 +115,6 @@ def _endpoint_targets(plan: Index, seen: Index, finding: Finding) -> Targets:
     return Targets(tuple(dict.fromkeys((finding.node, *sorted(others)))), names, ())
 
 
-def _is_node(plan: Index, seen: Index, name: str) -> bool:
-    """Whether a finding that has this name speaks of a node: nothing else is called so."""
-    if any(name in group for group in alternatives(plan.system)):
-        return True
-    return name in seen.nodes and not any(ends_of(seen, name))
-
-
 def robots_of(plan: Index, finding: Finding) -> set[str]:
     """The robots that a finding is about, or of which it names a node, a name or a frame."""
     in_tf = finding.code.startswith(TF_CODES)
@@ -124,15 +124,6 @@ def robots_of(plan: Index, finding: Finding) -> set[str]:
     found |= {plan.robot(it) for it in (finding.node, *words) if it.startswith("/")}
     found |= {it for it in words if it in plan.declared} - plan.of_names.ambiguous_words
     return found & plan.declared.keys()
-
-
-def _frame_targets(plan: Index, finding: Finding, topics: Sequence[str]) -> Iterator[FrameKey]:
-    """The frames on the topics that the message names; else on the robot's own, or on any topic."""
-    words = {tree_topic(word) for word in words_of(finding.message)}
-    robot = plan.declared.get(finding.robot)
-    own = [topic for topic in topics if robot and topic == tree_topic(robot.tf_topic)]
-    named = [topic for topic in topics if topic in words]
-    return ((topic, frame) for topic in named or own or topics for frame in finding.names)
 
 
 def words_of(message: str) -> set[str]:

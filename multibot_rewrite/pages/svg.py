@@ -77,17 +77,15 @@ def group_svg(group: DrawnGroup, ids: Ids, prefix: str) -> str:
     parts = [
         f'<svg class="graph" viewBox="0 0 {WIDTH} {place.height + 4:.0f}" role="group"'
         f' aria-label="{label}">',
-        *_column_titles(),
+        *(
+            f'<text class="head" x="{x + wide / 2:g}" y="16">{text}</text>'
+            for (x, wide), text in zip((LEFT, MIDDLE, RIGHT), COLUMN_TITLES, strict=True)
+        ),
         *_edges(group, place, ids),
         *_boxes(group, place, ids, prefix),
         "</svg>",
     ]
     return "".join(parts)
-
-
-def _column_titles() -> Iterator[str]:
-    for (x, wide), text in zip((LEFT, MIDDLE, RIGHT), COLUMN_TITLES, strict=True):
-        yield f'<text class="head" x="{x + wide / 2:g}" y="16">{text}</text>'
 
 
 def _edges(group: DrawnGroup, place: GroupLayout, ids: Ids) -> Iterator[str]:
@@ -98,16 +96,13 @@ def _edges(group: DrawnGroup, place: GroupLayout, ids: Ids) -> Iterator[str]:
     for edge in sorted(group.edges, key=lambda edge: edge.state in FAULTY):
         there = names[edge.kind, edge.name]
         if edge.role in OFFERING:
-            path = _curve(sum(LEFT), left[edge.node], MIDDLE[0], there)
+            x, y, to_x, to_y = sum(LEFT), left[edge.node], MIDDLE[0], there
         else:
-            path = _curve(sum(MIDDLE), there, RIGHT[0], right[edge.node])
+            x, y, to_x, to_y = sum(MIDDLE), there, RIGHT[0], right[edge.node]
+        bend = (x + to_x) // 2
+        path = f"M{x} {y:.0f}C{bend} {y:.0f} {bend} {to_y:.0f} {to_x} {to_y:.0f}"
         joined = f"{ids.nodes.get(edge.node, '')} {ids.names.get(edge.name, '')}"
         yield f'<path class="e {edge.state}" data-e="{joined}" d="{path}"/>'
-
-
-def _curve(x: int, y: float, to_x: int, to_y: float) -> str:
-    bend = (x + to_x) // 2
-    return f"M{x} {y:.0f}C{bend} {y:.0f} {bend} {to_y:.0f} {to_x} {to_y:.0f}"
 
 
 def _boxes(group: DrawnGroup, place: GroupLayout, ids: Ids, prefix: str) -> Iterator[str]:
@@ -154,17 +149,13 @@ def _name(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     )
     shape = "2" if badge else f"{NAME_HIGH / 2:g}"
     end = f'<text class="badge" x="{x + wide - 7}" y="{y + 4:g}">{badge}</text>' if badge else ""
+    about = (f"{name.kind} {name.name}", " and ".join(name.types), _meaning(name.state))
     return (
         f'<g class="t {name.state}"{id_attributes}>'
         f'<rect x="{x}" y="{y - NAME_HIGH / 2:g}" width="{wide}" height="{NAME_HIGH}"'
         f' rx="{shape}"/><text x="{x + 10}" y="{y + 4:g}">{label}</text>{end}'
-        f"{tooltip(*_about(name))}</g>"
+        f"{tooltip(*(name.merged or about))}</g>"
     )
-
-
-def _about(name: DrawnName) -> tuple[str, ...]:
-    types = " and ".join(name.types)
-    return name.merged or (f"{name.kind} {name.name}", types, _meaning(name.state))
 
 
 def _meaning(state: str) -> str:
@@ -188,9 +179,8 @@ def _label(name: str, robot: str, room: float) -> str:
 def tree_svg(found: FrameTree, robots: Iterable[str], ids: Ids) -> str:
     """A tf tree, the frames in the colours of their robots."""
     colours = {robot: f" c{at % 8}" for at, robot in enumerate(robots)}
-    wide = max(_tree_end(row.frame, row.depth, row.faults) for row in found.rows)
     high = len(found.rows) * TREE_ROW
-    lines, boxes = [], []
+    lines, boxes, ends = [], [], []
     for at, row in enumerate(found.rows):
         x, y = 2 + row.depth * INDENT, at * TREE_ROW + TREE_ROW / 2
         if row.parent >= 0:
@@ -198,32 +188,24 @@ def tree_svg(found: FrameTree, robots: Iterable[str], ids: Ids) -> str:
             lines.append(f'<path class="branch" d="M{x - 10} {top}V{y:g}H{x}"/>')
         id_ = ids.frames.get((found.topic, row.frame))
         id_attributes = _id_attributes(id_, ids, "" if row.repeated else "tf-")
+        text = visible(row.frame)
+        letters = columns(text) * LETTER
         boxes.append(
-            _frame(row.frame, x, y, f"{row.state}{colours.get(row.robot, '')}", id_attributes)
+            f'<g class="f {row.state}{colours.get(row.robot, "")}"{id_attributes}>'
+            f'<rect x="{x}" y="{y - 10:g}" width="{letters + 22:.0f}" height="20" rx="4"/>'
+            f'<rect class="bar" x="{x}" y="{y - 10:g}" width="5" height="20" rx="2"/>'
+            f'<text x="{x + 12}" y="{y + 4:g}">{escape(text)}</text></g>'
         )
+        most = columns(text) + columns(", ".join((*row.faults, "static, …")))
+        ends.append(row.depth * INDENT + most * LETTER + 60)
         notes = [*row.faults, *(["static"] if row.static else []), *(["…"] if row.repeated else [])]
-        after = x + columns(visible(row.frame)) * LETTER + 30
+        after = x + letters + 30
         bad = " bad" if row.faults else ""
         note = safe(", ".join(notes))
         boxes.append(f'<text class="note{bad}" x="{after:.0f}" y="{y + 4:g}">{note}</text>')
+    wide = max(ends)
     size = f'width="{wide:.0f}" height="{high}" viewBox="0 0 {wide:.0f} {high}"'
     return f'<svg class="tree" {size}>{"".join(lines)}{"".join(boxes)}</svg>'
-
-
-def _frame(frame: str, x: float, y: float, css_class: str, id_attributes: str) -> str:
-    text = visible(frame)
-    wide = columns(text) * LETTER + 22
-    return (
-        f'<g class="f {css_class}"{id_attributes}>'
-        f'<rect x="{x}" y="{y - 10:g}" width="{wide:.0f}" height="20" rx="4"/>'
-        f'<rect class="bar" x="{x}" y="{y - 10:g}" width="5" height="20" rx="2"/>'
-        f'<text x="{x + 12}" y="{y + 4:g}">{escape(text)}</text></g>'
-    )
-
-
-def _tree_end(frame: str, depth: int, faults: Iterable[str]) -> float:
-    letters = columns(visible(frame)) + columns(", ".join((*faults, "static, …")))
-    return depth * INDENT + letters * LETTER + 60
 
 
 def visible(text: str) -> str:

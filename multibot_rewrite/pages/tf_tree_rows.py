@@ -53,15 +53,20 @@ def make_frame_trees(plan: Index, seen: Index, states: States) -> tuple[FrameTre
     for topic in dict.fromkeys((*home_topics, *sorted(edges))):
         home = [robot for robot in plan.system.robots if tree_topic(robot.tf_topic) == topic]
         forest = _forest(plan, topic, edges.get(topic, ()), home)
-        trees = [FrameTree(topic, _robot(rows), True, rows) for rows in _trees(forest, states)]
+        trees = []
+        for rows in _trees(forest, states):
+            first = next((row.robot for row in rows if row.robot), "")
+            trees.append(FrameTree(topic, first, True, rows))
         found += sorted(trees, key=lambda tree: order.get(tree.robot, len(order)))
-        found += _not_received(forest, home, states)
+        for robot in home:
+            missing = [frame for frame in robot.frames if frame not in forest.robots]
+            faults = (_in_words(states.frames.get((topic, frame), ())) for frame in missing)
+            lost = tuple(
+                FrameRow(frame, -1, 0, robot.name, MISSING, words, False, False)
+                for frame, words in zip(missing, faults, strict=True)
+            )
+            found += [FrameTree(topic, robot.name, False, lost)] if lost else []
     return tuple(found)
-
-
-def _robot(rows: Sequence[FrameRow]) -> str:
-    """The robot of a tree: the first one in it."""
-    return next((row.robot for row in rows if row.robot), "")
 
 
 class _Forest(NamedTuple):
@@ -127,18 +132,6 @@ def _rows(
             below = forest.children.get(frame, ()) if depth else first
             waiting += [(child, frame, at, depth + 1) for child in reversed(below)]
         at += 1
-
-
-def _not_received(forest: _Forest, home: Iterable[Robot], states: States) -> Iterator[FrameTree]:
-    for robot in home:
-        missing = [frame for frame in robot.frames if frame not in forest.robots]
-        faults = [_in_words(states.frames.get((forest.topic, frame), ())) for frame in missing]
-        rows = (
-            FrameRow(frame, -1, 0, robot.name, MISSING, words, False, False)
-            for frame, words in zip(missing, faults, strict=True)
-        )
-        if missing:
-            yield FrameTree(forest.topic, robot.name, False, tuple(rows))
 
 
 def _in_words(codes: Iterable[str]) -> tuple[str, ...]:

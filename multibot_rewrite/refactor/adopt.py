@@ -131,7 +131,10 @@ class _Job(NamedTuple):
 
 def _with_files_beside(made: Adopted, found: Sequence[Description], job: _Job) -> Adopted:
     """With launch files and the parameters that they fill in, and what other files name."""
-    there, names = job.package.found, set(_names(found))
+    there, shared = job.package.found, prefixing().shared_frames
+    # What gets the prefix.
+    declared = (it.inventory.declared.get(kind, ()) for it in found for kind in PREFIXED)
+    names = {name for its in declared for name in its if name not in shared}
     urdfs = [it.inventory.document.source for it in found if not _is_srdf(it)]
     filled = fillable(there.params, urdfs, names, made.argument, TRIED)
     space = Space(made.namespace or SPACES[0], bool(made.namespace))
@@ -177,7 +180,13 @@ def _made(
     wrong = {at: _fault(it, its, after, argument, how) for at, (it, its) in enumerate(every)}
     wrong = {at: why for at, why in wrong.items() if why}
     lacking = {at for at, its in enumerate(asked) if len(its) > len(made.changes[at])}
-    proved = _proved(found, wrong, lacking)
+    # Proved is a description none of whose configurations is wrong or lacks a prefix.
+    paths = dict.fromkeys(it.path for it in found)
+    if len({found[at].path for at in wrong}) == len(paths):
+        at, why = next(iter(wrong.items()))
+        raise InputError(f"{found[at].words}: {_ALONE}; {why}")
+    unmade = {found[at].path for at in (*wrong, *lacking)}
+    proved = tuple(path for path in paths if path not in unmade)
     left = (
         *made.left,
         *chain.from_iterable(map(_not_written, found)),
@@ -188,19 +197,6 @@ def _made(
     before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
     others = tuple(it.words for at, it in enumerate(found) if it.arguments and at not in wrong)
     return Adopted(argument, before, named, proved, left, {}, configurations=others), after
-
-
-def _proved(
-    found: Sequence[Description], wrong: Mapping[int, str], lacking: Collection[int]
-) -> tuple[str, ...]:
-    """The descriptions without a configuration that is ``wrong`` or ``lacking`` the prefix of a name.
-    Raises InputError where each has a wrong one."""
-    paths = dict.fromkeys(it.path for it in found)
-    if len({found[at].path for at in wrong}) == len(paths):
-        at, why = next(iter(wrong.items()))
-        raise InputError(f"{found[at].words}: {_ALONE}; {why}")
-    unmade = {found[at].path for at in (*wrong, *lacking)}
-    return tuple(path for path in paths if path not in unmade)
 
 
 def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _Job) -> Adopted:
@@ -256,13 +252,6 @@ def _is_prefix(it: Argument) -> bool:
     it."""
     links = (use for use in it.uses if (use.kind, use.how) == ("link", PREFIX))
     return bool(it.value) and any(2 * use.names >= use.total for use in links)
-
-
-def _names(found: Iterable[Description]) -> Iterator[str]:
-    """What gets the prefix."""
-    shared = prefixing().shared_frames
-    declared = (it.inventory.declared.get(kind, ()) for it in found for kind in PREFIXED)
-    yield from (name for names in declared for name in names if name not in shared)
 
 
 def _as_xacros(descriptions: Iterable[Description], job: _Job) -> Iterator[Description]:

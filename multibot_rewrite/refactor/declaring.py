@@ -17,7 +17,6 @@ from multibot_rewrite.refactor.source_edits import SourceEdit
 NAMES = ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
 SPACES = ("namespace", "robot_namespace", "ros_namespace")
 _SPACE = b' xmlns:xacro="http://www.ros.org/wiki/xacro"'
-_TAKEN = ("{*}arg", "{*}property", "{*}macro")
 
 
 def free_name(found: Iterable[Description], names: Sequence[str] = NAMES) -> str:
@@ -26,7 +25,7 @@ def free_name(found: Iterable[Description], names: Sequence[str] = NAMES) -> str
     sources = {file: data for it in found for file, data in it.sources.items()}
     # YAML that an expression loads is among them.
     for file, data in ((file, data) for file, data in sources.items() if b"<robot" in data):
-        for element in read_document(data, file).root.iter(*_TAKEN):
+        for element in read_document(data, file).root.iter("{*}arg", "{*}property", "{*}macro"):
             words = element.get("params", "").replace(":=", " ").replace("=", " ").split()
             taken |= {element.get("name", ""), *words}
     free = next((name for name in names if name not in taken), None)

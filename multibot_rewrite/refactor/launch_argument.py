@@ -150,7 +150,11 @@ def _of_python(
         return LaunchEdit(None, (_left(path, source),))
     given = "".join(f', " {name}:=", LaunchConfiguration("{name}")' for name in of_xacro)
     edits = [it.insert(it.end(words.elts[-1]), given) for words in commands]
-    edits.append(_declared(it, actions, every))
+    # Each argument is declared before the first action, as far from the next as that is.
+    first = it.begin(actions.elts[0])
+    gap = source[it.begin(actions) + 1 : first].decode() or " "
+    new = (f'DeclareLaunchArgument("{name}", default_value=""),{gap}' for name in every)
+    edits.append(it.insert(first, "".join(new)))
     edits += _spaced(it, space.name) if space else ()
     files = {name: found for name in parameters if (found := list(_given(tree, name)))}
     for one in chain.from_iterable(files.values()):
@@ -161,32 +165,19 @@ def _of_python(
     return LaunchEdit(data, (), tuple(files), space is not None)
 
 
-def _declared(it: _Text, actions: ast.List, arguments: Iterable[str]) -> SourceEdit:
-    """The arguments, declared before the first action, each as far from the next as that is."""
-    first = it.begin(actions.elts[0])
-    gap = it.source[it.begin(actions) + 1 : first].decode() or " "
-    every = (f'DeclareLaunchArgument("{name}", default_value=""),{gap}' for name in arguments)
-    return it.insert(first, "".join(every))
-
-
 def _spaced(it: _Text, space: str) -> Iterator[SourceEdit]:
-    """A namespace for what belongs to the description."""
-    for package in _nodes_of_robot(it.tree):
-        indent = it.source[it.lines[package.lineno - 1] : it.begin(package)].decode()
-        gap = " " if indent.strip() else f"\n{indent}"
-        yield it.insert(it.end(package), f',{gap}namespace=LaunchConfiguration("{space}")')
-
-
-def _nodes_of_robot(tree: ast.Module) -> Iterator[ast.keyword]:
-    """The package of each node that belongs to the description, as it is written there."""
-    for node in ast.walk(tree):
+    """A namespace for each node that belongs to the description, after its package."""
+    for node in ast.walk(it.tree):
         if not isinstance(node, ast.Call) or _called(node) != "Node":
             continue
-        package = next((it for it in node.keywords if it.arg == "package"), None)
-        if package and isinstance(package.value, ast.Constant):
-            words = [it.value for it in ast.walk(node) if isinstance(it, ast.Constant)]
-            if package.value.value in OF_ROBOT or ("-topic" in words and _TOPIC in words):
-                yield package
+        package = next((one for one in node.keywords if one.arg == "package"), None)
+        if package is None or not isinstance(package.value, ast.Constant):
+            continue
+        words = [one.value for one in ast.walk(node) if isinstance(one, ast.Constant)]
+        if package.value.value in OF_ROBOT or ("-topic" in words and _TOPIC in words):
+            indent = it.source[it.lines[package.lineno - 1] : it.begin(package)].decode()
+            gap = " " if indent.strip() else f"\n{indent}"
+            yield it.insert(it.end(package), f',{gap}namespace=LaunchConfiguration("{space}")')
 
 
 def _given(tree: ast.Module, file: str) -> Iterator[ast.expr]:

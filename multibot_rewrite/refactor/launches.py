@@ -107,34 +107,24 @@ def _one(
         return Launches({}, (), made.left)
     filled = [how.parameters[it] for it in made.filled]
     changed = {path: made.data, **{it.path: it.after for it in filled}}
-    it = _read(folder, {**after, **changed}, path, how, filled)
+    files = {os.path.realpath(it): data for it, data in {**after, **changed}.items()}
+    home = (package_of(os.path.join(folder, "x")) or ("", os.path.abspath(folder)))[1]
+    # It is read in a copy of the package.
+    with TemporaryDirectory(prefix="multibot_") as above:
+        root = os.path.join(above, os.path.basename(home))
+        _copy(home, root, files)
+        copy = os.path.join(root, os.path.relpath(os.path.realpath(path), os.path.realpath(home)))
+        found = _verdict(LaunchOrder(copy, (), (above, home), how.trust), how, filled)
+        it = _Verdict(*(words.replace(f"{root}/", "") for words in found))
     if it.fault:
-        return Launches(
-            {}, (), (*made.left, Left(path, f"it does not hand {argument} on: {it.fault}"))
-        )
+        why = f"it does not hand {argument} on: {it.fault}"
+        return Launches({}, (), (*made.left, Left(path, why)))
     if it.unread and filled:
         return Launches({}, (), ())
     if it.unread:
         why = f"it gets {argument}, which is not proved: {it.unread}"
         return Launches(changed, (), (*made.left, Left(path, why)))
     return Launches(changed, (path,), made.left)
-
-
-def _read(
-    folder: str,
-    files: Mapping[str, bytes],
-    path: str,
-    how: Trial,
-    filled: Sequence[Filled],
-) -> _Verdict:
-    """A launch file in a copy of the package."""
-    home = (package_of(os.path.join(folder, "x")) or ("", os.path.abspath(folder)))[1]
-    with TemporaryDirectory(prefix="multibot_") as above:
-        root = os.path.join(above, os.path.basename(home))
-        _copy(home, root, {os.path.realpath(it): data for it, data in files.items()})
-        copy = os.path.join(root, os.path.relpath(os.path.realpath(path), os.path.realpath(home)))
-        found = _verdict(LaunchOrder(copy, (), (above, home), how.trust), how, filled)
-        return _Verdict(*(it.replace(f"{root}/", "") for it in found))
 
 
 def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
@@ -252,8 +242,7 @@ def fillable(
             continue
         with suppress(MultibotError):
             file = names_in_file(data, path, urdfs[0])
-            starts = set(starts_of(file, names, PREFIXED))
-            if starts:
+            if starts := set(starts_of(file, names, PREFIXED)):
                 words = (f"$(var {argument})", tried)
                 texts = (respelled(file, data, starts, 0, it) for it in words)
                 found[name] = Filled(path, data, *texts)

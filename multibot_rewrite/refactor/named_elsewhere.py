@@ -23,7 +23,6 @@ from multibot_rewrite.refactor.launch_argument import OF_ROBOT
 from multibot_rewrite.refactor.placing import Left
 
 _CODE = (".py", ".cpp", ".hpp", ".cc", ".hh", ".h", ".c", ".lua")
-_DATA = (".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz")
 _SECTION = re.compile(rb"^([A-Za-z]\w*):[^\n]*\n(?:\s*#[^\n]*\n)*\s+ros__parameters:", re.MULTILINE)
 # Of one file so many lines are listed.
 _MOST = 20
@@ -38,12 +37,22 @@ def named_elsewhere(
     some = "|".join(re.escape(it) for it in sorted(names, key=len, reverse=True))
     literal = re.compile(rf"([\"'])({some})\1".encode())
     word = re.compile(rf"(?<![\w./$-])()({some})(?![\w./-])".encode())
-    for path in files_below(folder, (*_CODE, *_DATA)):
+    for path in files_below(folder, (*_CODE, ".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz")):
         if os.path.realpath(path) in without:
             continue
         pattern = literal if path.endswith(_CODE) else word
         why = "its code names" if path.endswith(_CODE) else "it names"
-        yield from _lines(path, pattern, why)
+        try:
+            data = read_file(path)
+        except InputError:
+            continue
+        found: dict[int, str] = {}
+        for it in pattern.finditer(data):
+            found.setdefault(locate(data, it.start())[0], it[2].decode())
+        for line, name in list(found.items())[:_MOST]:
+            yield Left(f"{path}:{line}", f"{why} {name!r}, which a prefix does not reach")
+        if len(found) > _MOST:
+            yield Left(path, f"{why} such names in {len(found) - _MOST} lines more")
 
 
 def root_sections(paths: Collection[str]) -> Iterator[Left]:
@@ -53,8 +62,7 @@ def root_sections(paths: Collection[str]) -> Iterator[Left]:
     own = {*OF_ROBOT, *chain.from_iterable(map(_controllers, texts.values()))}
     for path, data in texts.items():
         every = [(locate(data, it.start())[0], it[1].decode()) for it in _SECTION.finditer(data)]
-        found = [(line, name) for line, name in every if name in own]
-        if found:
+        if found := [(line, name) for line, name in every if name in own]:
             line, name = found[0]
             more = f", and {plural(len(found) - 1, 'section')} more" if len(found) > 1 else ""
             why = f"{name!r} is for no node in a namespace{more}; write /**/{name}"
@@ -70,20 +78,6 @@ def _controllers(data: bytes) -> Iterator[str]:
         for name, value in given.items() if isinstance(given, dict) else ():
             if isinstance(value, dict) and "type" in value:
                 yield str(name)
-
-
-def _lines(path: str, pattern: re.Pattern[bytes], why: str) -> Iterator[Left]:
-    try:
-        data = read_file(path)
-    except InputError:
-        return
-    found: dict[int, str] = {}
-    for it in pattern.finditer(data):
-        found.setdefault(locate(data, it.start())[0], it[2].decode())
-    for line, name in list(found.items())[:_MOST]:
-        yield Left(f"{path}:{line}", f"{why} {name!r}, which a prefix does not reach")
-    if len(found) > _MOST:
-        yield Left(path, f"{why} such names in {len(found) - _MOST} lines more")
 
 
 def files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:

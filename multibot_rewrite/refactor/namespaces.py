@@ -29,12 +29,7 @@ from multibot_rewrite.description.steps.inserted import elements_of, lead_of
 from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
 from multibot_rewrite.refactor.package import Description, Expanding, read_text
 from multibot_rewrite.refactor.placing import Left, Spot, placed
-from multibot_rewrite.refactor.source_edits import (
-    SourceEdit,
-    ValueEdit,
-    change_of,
-    place,
-)
+from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, change_of, place
 
 # No robot is called so: a description with robot1_ before its names can be tried with it.
 TRIED_SPACE = "ns1"
@@ -199,8 +194,7 @@ def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
         assert read is not None
         needs = _needs(it.template)
         for number, element in enumerate(document.elements):
-            origin = read.origins.of(number)
-            if origin:
+            if origin := read.origins.of(number):
                 spot = os.path.realpath(origin.file), origin.start
                 found[spot].add(needs.get(element, _Added()))
                 wanted |= {spot} if element in needs else set()

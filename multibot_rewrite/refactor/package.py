@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import redirect_stderr
 from io import StringIO
 from itertools import chain, islice
@@ -168,22 +168,20 @@ def _values(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[
     elements = [it for root in roots for it in root.iter("*")]
     others = list(_others(elements))
     words = set(chain.from_iterable(_compared(str(it)) for one in elements for it in one.values()))
-    for name, default in _defaults(elements).items():
-        if name in given:
-            continue
-        names = _with_others(name, others)
-        found = {_TURNED[default]} if default in _TURNED else set()
-        found |= {word for one, word in words if one in names}
-        yield from ((name, it) for it in sorted(found - {"", default}))
-
-
-def _defaults(elements: Iterable[_Element]) -> dict[str, str]:
-    """The arguments with their defaults; the first one counts."""
-    found: dict[str, str] = {}
+    # The arguments with their defaults; the first one counts.
+    defaults: dict[str, str] = {}
     for it in elements:
         if str(it.tag).endswith("xacro}arg"):
-            found.setdefault(it.get("name", ""), it.get("default", ""))
-    return found
+            defaults.setdefault(it.get("name", ""), it.get("default", ""))
+    for name, default in defaults.items():
+        if name in given:
+            continue
+        names = [name]
+        for known in names:  # grows
+            names += {other for one, other in others if one == known} - set(names)
+        found = {_TURNED[default]} if default in _TURNED else set()
+        found |= {word for one, word in words if one in names}
+        yield from ((name, word) for word in sorted(found - {"", default}))
 
 
 def _others(elements: Iterable[_Element]) -> Iterator[tuple[str, str]]:
@@ -193,13 +191,6 @@ def _others(elements: Iterable[_Element]) -> Iterator[tuple[str, str]]:
         for key, value in element.items():
             if found := _ALONE.fullmatch(str(value)):
                 yield found[1] or found[2], element.get("name", "") if is_property else str(key)
-
-
-def _with_others(name: str, others: Collection[tuple[str, str]]) -> list[str]:
-    found = [name]
-    for it in found:  # grows
-        found += {other for one, other in others if one == it} - set(found)
-    return found
 
 
 def _compared(text: str) -> Iterator[tuple[str, str]]:

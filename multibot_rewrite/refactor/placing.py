@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import accumulate
 from typing import NamedTuple
 
 from lxml import etree
@@ -93,7 +94,9 @@ def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_
     for number, element in enumerate(it.inventory.document.elements):
         for attribute, value in _values(element):
             mine = wanted.get((number, attribute), {})
-            pieces = _with_ends(read.pieces.of(number, attribute, value))
+            own = read.pieces.of(number, attribute, value)
+            # Each with the offset in the value at which it ends.
+            pieces = [*zip(accumulate(len(it.text) for it in own), own, strict=True)]
             for at in mine or [len(value) - len(value.lstrip())]:
                 used = _used(read, number, attribute, pieces, at)
                 made, other = _made(read, pieces, at)
@@ -110,15 +113,6 @@ def _values(element: etree._Element) -> Iterator[tuple[str, str]]:
     yield from ((str(name), str(value)) for name, value in element.attrib.items())
     if element.text and not len(element):
         yield "", element.text
-
-
-def _with_ends(pieces: Iterable[Piece]) -> list[tuple[int, Piece]]:
-    """Each piece with the offset in the value at which it ends."""
-    end, found = 0, []
-    for it in pieces:
-        end += len(it.text)
-        found.append((end, it))
-    return found
 
 
 def _used(

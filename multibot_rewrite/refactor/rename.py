@@ -23,7 +23,6 @@ from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.rewriters.contact import respell_collisions
-from multibot_rewrite.description.rewriters.spelling import ResolvedName
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.renames import make_renames
@@ -111,7 +110,13 @@ def rename_symbol(
     Writes nothing. Raises UsageError for names that cannot be, InputError where the name is put
     together so that no edit changes it alone."""
     symbol = _Symbol(old, new, kind)
-    _check(symbol)
+    if symbol.kind not in KINDS:
+        raise UsageError(f"kind {symbol.kind!r} is not known, use one of {', '.join(KINDS)}")
+    for name in symbol[:2]:
+        if not _NAME.fullmatch(name):
+            raise UsageError(f"{name!r} is no name of a {symbol.kind}: write it without blanks")
+    if symbol.old == symbol.new:
+        raise UsageError(f"{symbol.old!r} is called so already")
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
@@ -124,11 +129,24 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
     """The package with the name changed in its descriptions and the files beside."""
     changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
     if not any(changes.values()):
-        raise UsageError(f"{folder}: no description has {_named(symbol, package)}")
+        # One that is nowhere declared is of no kind.
+        every = chain.from_iterable(chain(*(it.inventory.names for it in package.descriptions)))
+        known = sorted({it.text for it in every if it.kind in KINDS[symbol.kind]})
+        near = did_you_mean_one_of(symbol.old, known)
+        what = f"a {symbol.kind} {symbol.old!r}" + (f"; {near}" if near else "")
+        raise UsageError(f"{folder}: no description has {what}")
     _check_free(symbol, package, changes)
     edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
     after = edited(texts_of(package.descriptions), edits)
-    _prove(package, changes, after, how)
+    for it in package.descriptions:
+        wanted = expected(it.inventory.document, changes[it.path])
+        data, _ = read_text(it.path, how, after)
+        if data != wanted:
+            line = first_difference(data, wanted)
+            others = "what makes the name makes others, too"
+            why = others if line else "the name cannot be changed alone"
+            then = f"then there would be {line}; change what makes it by hand"
+            raise InputError(f"{it.path}: {why}: {then}")
     beside = dict(_beside(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
     after |= {path: data for path, (data, _) in beside.items()}
@@ -136,27 +154,6 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
     after = as_named(after, package.descriptions)
     before = {path: read_bytes(path) for path in after}
     return Renaming(before, after, places, found, package.unread)
-
-
-def _check(symbol: _Symbol) -> None:
-    if symbol.kind not in KINDS:
-        raise UsageError(f"kind {symbol.kind!r} is not known, use one of {', '.join(KINDS)}")
-    for name in symbol[:2]:
-        if not _NAME.fullmatch(name):
-            raise UsageError(f"{name!r} is no name of a {symbol.kind}: write it without blanks")
-    if symbol.old == symbol.new:
-        raise UsageError(f"{symbol.old!r} is called so already")
-
-
-def _named(symbol: _Symbol, package: Package) -> str:
-    every = (_known(it, KINDS[symbol.kind]) for it in package.descriptions)
-    near = did_you_mean_one_of(symbol.old, sorted({it.text for it in chain.from_iterable(every)}))
-    return f"a {symbol.kind} {symbol.old!r}" + (f"; {near}" if near else "")
-
-
-def _known(it: Description, kinds: Collection[str]) -> Iterator[ResolvedName]:
-    """The names of these kinds that are in a description: one that is nowhere declared is of none."""
-    return (one for one in chain.from_iterable(it.inventory.names) if one.kind in kinds)
 
 
 def _check_free(
@@ -191,45 +188,19 @@ def _edits(it: Description, changes: Sequence[ValueEdit]) -> Iterator[SourceEdit
     document = it.inventory.document
     for change in changes:
         if it.read is None:
-            yield _in_place(it, change)
+            span = next(spans(document, [change]))
+            if span is None:
+                where = place(it.path, document.source, document.starts[change.element])
+                raise InputError(
+                    f"{where}: {change.value!r} cannot be edited in place; write it as plain text"
+                )
+            yield SourceEdit(os.path.realpath(it.path), *span)
             continue
         found = source_edit(it.read, document, change)
         if isinstance(found, Composed):
             what = f"{found.place}: {found.value!r} cannot be renamed here: {found.why}"
             raise InputError(f"{what}; write the name out, or change what makes it by hand")
         yield found._replace(file=os.path.realpath(found.file))
-
-
-def _in_place(it: Description, change: ValueEdit) -> SourceEdit:
-    document = it.inventory.document
-    span = next(spans(document, [change]))
-    if span is None:
-        where = place(it.path, document.source, document.starts[change.element])
-        raise InputError(
-            f"{where}: {change.value!r} cannot be edited in place; write it as plain text"
-        )
-    return SourceEdit(os.path.realpath(it.path), *span)
-
-
-def _prove(
-    package: Package,
-    changes: Mapping[str, Sequence[ValueEdit]],
-    after: Mapping[str, bytes],
-    how: Expanding,
-) -> None:
-    """Every description is what it was but for the name; raises InputError for one that is not."""
-    for it in package.descriptions:
-        wanted = expected(it.inventory.document, changes[it.path])
-        data, _ = read_text(it.path, how, after)
-        if data == wanted:
-            continue
-        raise InputError(f"{it.path}: {_difference(data, wanted)}")
-
-
-def _difference(made: bytes, wanted: bytes | None) -> str:
-    line = first_difference(made, wanted)
-    what = "what makes the name makes others, too" if line else "the name cannot be changed alone"
-    return f"{what}: then there would be {line}; change what makes it by hand"
 
 
 def _beside(
@@ -262,8 +233,7 @@ def _files_with(
             continue
         with suppress(MultibotError):
             file = names_in_file(data, path, described)
-            starts = set(starts_of(file, (name,), kinds))
-            if starts:
+            if starts := set(starts_of(file, (name,), kinds)):
                 yield path, data, file, starts
 
 

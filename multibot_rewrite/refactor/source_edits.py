@@ -84,8 +84,7 @@ def _trimmed(change: ValueEdit) -> tuple[int, int, str]:
 
 
 def _place(read: Expansion, document: Document, change: ValueEdit, touched: list[Piece]) -> str:
-    known = next((it for it in touched if it.file in read.sources), None)
-    if known:
+    if known := next((it for it in touched if it.file in read.sources), None):
         return place(known.file, read.sources[known.file], known.start)
     return place_of(read, change.element) or document.file
 

@@ -9,16 +9,17 @@ in another one is never met. Robots are held against each other wherever they ar
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Rule
 from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import rules_in
+from multibot_rewrite.rules.folded import folded, in_order
 from multibot_rewrite.rules.system import clocks, differing, frame_ids, likes, localized
 from multibot_rewrite.rules.system.commands import command_to_nobody
-from multibot_rewrite.rules.system.differing import COMPARED
+from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS
 from multibot_rewrite.rules.system.names import topic_names_miss
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
@@ -43,19 +44,20 @@ ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 
 
 def judge(seen: Index) -> list[Finding]:
-    """What is wrong with a system, and other than its plan has it where there is one; empty for one
-    that is as it should be."""
+    """What is wrong with a system, and other than its plan has it where there is one, the likeliest
+    cause first; empty for one that is as it should be."""
     with gc_paused():
         plan = seen.expected
         if plan is None:
-            return _judged(seen, _rules(planned=False))
+            return in_order(seen, folded(seen, _judged(seen, _rules(planned=False))))
         # What a robot has not and others have is meant where nothing that is planned is missing.
         asked = (it for it in _rules(planned=False) if it is not _LACKS or missing(plan, seen))
         recorded = is_recorded(seen.system)
         only = (it for it in _rules(planned=True) if not (recorded and it.options["nodes"]))
         by_plan = [*_found_by(only, seen)]
         found = _judged(seen, asked)
-        return one_for_a_cause(seen, plan, found, by_plan, RULES, bool(unseen(seen.system)))
+        told = one_for_a_cause(seen, plan, found, by_plan, RULES, bool(unseen(seen.system)))
+        return in_order(seen, folded(seen, told))
 
 
 def _rules(planned: bool) -> Iterator[Rule]:
@@ -108,27 +110,35 @@ def absences(seen: Index) -> list[Finding]:
 def _part(seen: Index, absent: bool) -> list[Finding]:
     found = _judged(seen, (it for it in _rules(planned=False) if (it.code in ABSENCE) is absent))
     # What is found of robots held against each other is left to any other finding.
-    if any(it.code in differing.COMPARED for it in found):
+    if any(it.code in differing.BETWEEN_ROBOTS for it in found):
         found = judge(seen)
     return [it for it in found if (it.code in ABSENCE) is absent]
 
 
-def check(plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> list[Finding]:
+def check(
+    plan: System,
+    graph: System,
+    messages: Mapping[str, int] = NO_COUNTS,
+    before: System | None = None,
+) -> list[Finding]:
     """What is wrong with a system, and other than planned; empty for a fleet as planned. ``messages``
-    counts those of each topic, where they were counted."""
-    _, seen = side_by_side(plan, graph, messages)
-    found = sorted(judge(seen), key=lambda it: it.code)
-    return inconclusive_where_in_doubt(found, graph)
+    counts those of each topic, where they were counted; ``before`` is the earlier look that the plan
+    was made of, if it was."""
+    _, seen = side_by_side(plan, graph, messages, before)
+    return inconclusive_where_in_doubt(judge(seen), graph)
 
 
 def side_by_side(
-    plan: System, graph: System, messages: Mapping[str, int] = NO_COUNTS
+    plan: System,
+    graph: System,
+    messages: Mapping[str, int] = NO_COUNTS,
+    before: System | None = None,
 ) -> tuple[Index, Index]:
     """The look-ups of a plan and a system, with the same words for what is made at run time."""
     fitting, there = fitted(plan, graph)
     by_plan = index(fitting, whose_by_plan(fitting))
     edges = without_bridged(fitting, there.edges)
-    return by_plan, beside(by_plan, there._replace(edges=edges), messages)
+    return by_plan, beside(by_plan, there._replace(edges=edges), messages, before)
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
@@ -138,12 +148,11 @@ def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Fin
         return found
     told, mixed = time_by_node(graph), clocks.clocks_mixed.code
     sure = {it for it in found if it.code not in ABSENCE or (it.code == mixed and it.node in told)}
-    return [it if it in sure else _inconclusive(it) for it in found]
-
-
-def _inconclusive(finding: Finding) -> Finding:
     hint = "the view of the graph may be incomplete: the line `incomplete:` says why"
-    return finding._replace(level=INCONCLUSIVE, hint=hint, file="", line=0, remaps=())
+    return [
+        it if it in sure else it._replace(level=INCONCLUSIVE, hint=hint, file="", line=0, remaps=())
+        for it in found
+    ]
 
 
 _MISSING = frozenset((missing_node.code, missing_robot.code))
@@ -156,24 +165,23 @@ def check_view(plan: System, seen: System) -> list[Finding]:
 
 def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
     """What is other than planned in the domains that were looked at, and wrong there."""
-    parts = by_domain(plan)
+    parts, numbers = by_domain(plan), domain_of(plan)
+    own = {one.name: numbers[one.robot] for one in plan.nodes if numbers}
     found = [
         _told(it, number, plan, seen)
         for number, view in seen.items()
         for it in check(parts.get(number, plan), view)
-        if not _is_planned_elsewhere(it, number, plan)
+        # A node that is planned for another domain is told where it is missing.
+        if it.code != unplanned_node.code or own.get(it.node, number) == number
     ]
     if parts and len(seen) > 1:
-        found += _across(plan, seen, {name for it in found for name in it.names})
+        # In what robots of several domains differ. The copies that bridges send are left out: next
+        # to what they are copies of they would be a second sender.
+        told = {name for it in found for name in it.names}
+        whole, together = (_without_bridges(it, plan) for it in (plan, domains_together(seen)))
+        across = check(whole._replace(domains=()), together)
+        found += (it for it in across if it.code in BETWEEN_ROBOTS and told.isdisjoint(it.names))
     return sorted(found, key=lambda it: it.code)
-
-
-def _across(plan: System, seen: Mapping[int, System], told: Set[str]) -> Iterator[Finding]:
-    """In what robots of several domains differ. The copies that bridges send are left out: beside
-    what they are copies of they would be a second sender."""
-    whole, together = (_without_bridges(it, plan) for it in (plan, domains_together(seen)))
-    found = check(whole._replace(domains=()), together)
-    return (it for it in found if it.code in COMPARED and told.isdisjoint(it.names))
 
 
 def _without_bridges(system: System, plan: System) -> System:
@@ -222,10 +230,3 @@ def _of_bridge(it: Finding, plan: System) -> Finding:
     level = ERROR if it.level == WARNING else it.level
     hint = f"nothing crosses: does {DOMAIN_BRIDGE} run for the robot, with the file that was built?"
     return it._replace(level=level, hint=hint)
-
-
-def _is_planned_elsewhere(it: Finding, number: int, plan: System) -> bool:
-    """Is it a node that is planned, for another domain? It is told where it is missing."""
-    numbers = domain_of(plan)
-    own = {one.name: numbers[one.robot] for one in plan.nodes if numbers}
-    return it.code == unplanned_node.code and own.get(it.node, number) != number

@@ -9,7 +9,7 @@ stay.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import NamedTuple
 
@@ -64,13 +64,9 @@ def end_tag_of(text: Spanned, element: _Element) -> int:
     *_, last = element.iter("*")
     start, tag = text.starts[last], f"</{element.tag}".encode()
     at = text.source.index(tag, start)
-    while _in_comment(text.source[start:at]):
+    while text.source.count(b"<!--", start, at) > text.source.count(b"-->", start, at):
         at = text.source.index(tag, at + 1)
     return at
-
-
-def _in_comment(before: bytes) -> bool:
-    return before.count(b"<!--") > before.count(b"-->")
 
 
 def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -> Edit | None:
@@ -181,7 +177,6 @@ def _one(edit: Edit | None) -> tuple[Edit, ...]:
 
 
 CAPSULE, CYLINDER = b"capsule", b"cylinder"
-HOLDERS = ("visual", "collision")
 # What a sphere may do without.
 _PLAIN = frozenset(("origin", "geometry", "material", "verbose"))
 _CLOSED = lazy_compile(rb"\s*</(capsule)\s*>")
@@ -190,7 +185,7 @@ _CLOSED = lazy_compile(rb"\s*</(capsule)\s*>")
 def capsules(link: _Element) -> list[tuple[_Element, _Element]]:
     """The capsules that are read of a link, each with its visual or collision."""
     found = []
-    for holder in link.iterchildren(*HOLDERS):
+    for holder in link.iterchildren("visual", "collision"):
         geometry = next(holder.iterchildren("geometry"), None)
         shape = None if geometry is None else next(geometry.iterchildren("*"), None)
         if shape is not None and shape.tag == "capsule":
@@ -205,7 +200,16 @@ def capsule_edits(text: Spanned, link: _Element) -> tuple[Edit, ...]:
         return ()
     edits = [edit for shape, _ in found for edit in _cylinder(text, shape)]
     spheres = [it for shape, holder in found for it in _spheres(text, shape, holder)]
-    return (*edits, _at_the_end(text, link, found[0][1], spheres))
+    # The spheres before the end tag of the link, a line each where the link's end has its own.
+    at = end_tag_of(text, link)
+    margin, inner = map(partial(_margin, text.source), (at, text.starts[found[0][1]]))
+    if margin is None:
+        lines = b"".join(spheres)
+    else:
+        more = (inner or b"").removeprefix(margin)
+        line_end = b"\r\n" if b"\r\n" in text.source else b"\n"
+        lines = b"".join(more + it + line_end + margin for it in spheres)
+    return (*edits, Edit(at, at + 2, lines + text.source[at : at + 2], None))
 
 
 def ends_of(pose: Pose, length: float) -> tuple[Vector, Vector]:
@@ -232,8 +236,7 @@ def _pose(holder: _Element) -> Pose | None:
 def _cylinder(text: Spanned, shape: _Element) -> Iterator[Edit]:
     start = text.starts[shape] + 1
     yield Edit(start, start + len(CAPSULE), CYLINDER, None)
-    closed = _CLOSED.match(text.source, tag_end(text.source, start - 1))
-    if closed:
+    if closed := _CLOSED.match(text.source, tag_end(text.source, start - 1)):
         yield Edit(closed.start(1), closed.end(1), CYLINDER, None)
 
 
@@ -248,19 +251,6 @@ def _spheres(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes
         xyz = " ".join(map(written, end))
         head = f'<{holder.tag}><origin xyz="{xyz}"/>{radius}'.encode()
         yield head + material + f"</{holder.tag}>".encode()
-
-
-def _at_the_end(text: Spanned, link: _Element, like: _Element, spheres: Sequence[bytes]) -> Edit:
-    """The spheres before the end tag of the link, a line each where the link's end has its own."""
-    at = end_tag_of(text, link)
-    margin, inner = map(partial(_margin, text.source), (at, text.starts[like]))
-    if margin is None:
-        lines = b"".join(spheres)
-    else:
-        more = (inner or b"").removeprefix(margin)
-        line_end = b"\r\n" if b"\r\n" in text.source else b"\n"
-        lines = b"".join(more + it + line_end + margin for it in spheres)
-    return Edit(at, at + 2, lines + text.source[at : at + 2], None)
 
 
 def _margin(source: bytes, at: int) -> bytes | None:

@@ -14,7 +14,8 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
 from multibot_rewrite.base.wording import shorten, unique
-from multibot_rewrite.rules.system.differing import COMPARED, unexplained
+from multibot_rewrite.rules.system.changed import untold
+from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS, unexplained
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_frames import frame_without_robot_name
 from multibot_rewrite.rules.system.planned_nodes import sender_not_planned, unplanned_node
@@ -52,17 +53,17 @@ def one_for_a_cause(
     said = {at: _with_cause(left[at], own, rules, in_doubt) for at, own in causes.items()}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     loose = {name for node, *_, name in missing(plan, seen)} - lost
+    by_end = {at for at, own in causes.items() if any(it.code != unplanned_node.code for it in own)}
     kept = []
     for at, it in enumerate(left):
-        names = {*it.names} if at not in said and _is_absence(it, rules) else set()
+        names = {*it.names} if at not in by_end and _is_absence(it, rules) else set()
         if not (names & lost or (names and names <= loose)):
             kept.append(said.get(at, it))
     every = {*unexplained([*kept, *by_plan])}
     # Nothing sends it by the plan either, whatever another robot has.
     return [
         it._replace(level=NOTE) if it.code == nothing_known_sends.code else it
-        for it in (*kept, *others)
-        if it in every
+        for it in untold(it for it in (*kept, *others) if it in every)
     ]
 
 
@@ -71,7 +72,7 @@ def _is_absence(it: Finding, rules: Mapping[str, Rule]) -> bool:
 
 
 def _abouts(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
-    if it.code in COMPARED:
+    if it.code in BETWEEN_ROBOTS:
         return
     yield it.node, ""
     # What is missing at one robot is no cause of what another one lacks.
@@ -154,15 +155,11 @@ def _is_meant(plan: Index, seen: Index, it: Finding, rule: Rule) -> bool:
     """Are all who do with its names what it is about planned to?"""
     key, memo = (it.code, it.names), seen.memo.setdefault(_is_meant, {})
     if key not in memo:
-        memo[key] = _are_meant(plan, seen, it, rule)
+        roles = rule.options["meant"]
+        ends = [end for name in it.names for end in ends_of(seen, name)] if roles else []
+        about = [end for end in ends if isinstance(roles, tuple) and end.role in roles]
+        memo[key] = bool(about) and all(_is_planned(plan, end) for end in about)
     return bool(memo[key])
-
-
-def _are_meant(plan: Index, seen: Index, it: Finding, rule: Rule) -> bool:
-    roles = rule.options["meant"]
-    ends = [end for name in it.names for end in ends_of(seen, name)] if roles else []
-    about = [end for end in ends if isinstance(roles, tuple) and end.role in roles]
-    return bool(about) and all(_is_planned(plan, end) for end in about)
 
 
 def _is_planned(plan: Index, end: End) -> bool:

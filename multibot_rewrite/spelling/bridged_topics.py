@@ -136,15 +136,10 @@ def _fitting(topic: BridgedTopic, ends: Sequence[tuple[Endpoint, str]]) -> Bridg
         topic = topic._replace(ros=alike.pop()) if len(alike) == 1 else topic
     own = [end for end, name in sides if name == topic.ros]
     types = {it for end in own for it in (end.type, *end.also)}
-    if len(types) == 1 and topic.gz_type.rpartition(".")[2] in _pairs(*types):
+    made = bridge_data()["pairs"].get(next(iter(types)), ()) if len(types) == 1 else ()
+    if topic.gz_type.rpartition(".")[2] in made:
         return topic._replace(ros_type=types.pop())
     return topic
-
-
-def _pairs(ros_type: str) -> Sequence[str]:
-    """The types of gz that the bridge makes of one of ROS."""
-    found: Sequence[str] = bridge_data()["pairs"].get(ros_type, ())
-    return found
 
 
 def is_bridged(inventory: Inventory) -> bool:
@@ -186,21 +181,16 @@ def _robot_topics(inventory: Inventory, robot: str, model: str, naming: Naming) 
         gz_of[topic.ros].add(topic.gz)
         if topic.gz not in row_of or topic.ros == _tf_name(robot, naming):
             row_of[topic.gz] = topic
-    yield from (_apart(it, gz_of, model, naming) for it in row_of.values())
+    for topic in row_of.values():
+        below = topic.gz.lstrip("/").removeprefix(_MODELS)
+        is_default = topic.ros not in (_ros_name(topic.gz), _tf_name(robot, naming))
+        # Only a system's namespace in Gazebo tells it from another one of the robot.
+        if is_default and not below.startswith(f"{model}/") and len(gz_of[topic.ros]) > 1:
+            yield topic._replace(ros=_robot_name(below, robot, naming))
+        else:
+            yield topic
     for plugin in plugins:
         yield from plugin.left
-
-
-def _apart(
-    it: BridgedTopic, gz_of: Mapping[str, set[str]], model: str, naming: Naming
-) -> BridgedTopic:
-    """Return a topic with a ROS name of its own where only a system's namespace in Gazebo tells it from
-    another one of the robot."""
-    below = it.gz.lstrip("/").removeprefix(_MODELS)
-    is_default = it.ros not in (_ros_name(it.gz), _tf_name(it.robot, naming))
-    if not is_default or below.startswith(f"{model}/") or len(gz_of[it.ros]) < 2:
-        return it
-    return it._replace(ros=_robot_name(below, it.robot, naming))
 
 
 class PluginTopics(NamedTuple):
@@ -257,16 +247,12 @@ def _sensor(sensor: etree._Element, robot: str, release: str) -> Iterator[Found]
         else:
             yield _bridged(row, robot, _ros_name(name), name)
     if any(row.gz_type == IMAGE for row in rows):
-        yield _camera_info(sensor, robot, base)
-
-
-def _camera_info(sensor: etree._Element, robot: str, base: str) -> BridgedTopic:
-    beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
-    name = text_at(sensor, "camera/camera_info_topic") or beside
-    if sensor.get("type") in _INFO_BELOW:
-        name = f"{base}/camera_info"
-    types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
-    return BridgedTopic(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
+        beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
+        name = text_at(sensor, "camera/camera_info_topic") or beside
+        if kind in _INFO_BELOW:
+            name = f"{base}/camera_info"
+        types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
+        yield BridgedTopic(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
 
 
 def _why_not(row: BridgeRow, release: str) -> str:
@@ -290,8 +276,10 @@ def _plugin(
 ) -> Iterator[Found]:
     given = given_topic(row, plugin, release)
     names: Iterable[tuple[str, str]] = [(given, "")]
-    if space != "":
-        below, last = _below(space, given, row.default), row.default.rpartition("/")[2]
+    if space != "" and not given.startswith("/"):
+        last = row.default.rpartition("/")[2]
+        # No name is known where the namespace is made of the name that the model is spawned by.
+        below = "" if space is None else f"{space.rstrip('/')}/{given or last}"
         names = [(below, "" if given else last)]
     elif not given and row.default:
         names = default_topics(row, plugin, model)
@@ -328,13 +316,6 @@ def _ros_of(row: BridgeRow, name: str, rest: str, robot: str, naming: Naming) ->
     if row.element == TF_ELEMENT:
         return _tf_name(robot, naming)
     return _robot_name(rest, robot, naming) if rest else _ros_name(name)
-
-
-def _below(space: str | None, given: str, default: str) -> str:
-    """A topic of a model with a namespace; empty where that is made of the name it is spawned by."""
-    if space is None or given.startswith("/"):
-        return given if given.startswith("/") else ""
-    return f"{space.rstrip('/')}/{given or default.rpartition('/')[2]}"
 
 
 def _line(element: etree._Element) -> int:

@@ -10,7 +10,7 @@ latched keeps the last ten messages unless the file says more (qos_options.hpp).
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK, SENT_BY_EVERY_NODE, is_from_outside
@@ -100,9 +100,9 @@ def _needed(plan: System, numbers: Mapping[str, int]) -> Iterator[Crossing]:
         at = {numbers[it] for it in senders}
         for reader, end in readers.items():
             if at and numbers[reader] not in at:
-                pairs = ((reader, it) for it in senders if "" in (reader, it))
-                for one, other in pairs:
-                    yield Crossing(one or other, name, _type_of(end, senders[other]), not one)
+                for sender in (it for it in senders if "" in (reader, it)):
+                    type_ = end.type or senders[sender].type
+                    yield Crossing(reader or sender, name, type_, not reader)
     if any(it.name == CLOCK and PUBLISHES in it.bridge for it in plan.topics):
         apart = (it for it, number in numbers.items() if number != numbers[""])
         yield from (Crossing(it, CLOCK, CLOCK_TYPE, False) for it in apart)
@@ -111,10 +111,6 @@ def _needed(plan: System, numbers: Mapping[str, int]) -> Iterator[Crossing]:
 def _robots(plan: System) -> Mapping[str, str]:
     """By node: its robot; empty for a node of all robots, and for what such a node makes for itself."""
     return defaultdict(str, {it.name: it.robot for it in plan.nodes})
-
-
-def _type_of(*ends: End) -> str:
-    return next((it.type for it in ends if it.type), "")
 
 
 def _given(plan: System, numbers: Mapping[str, int], given: Sequence[str]) -> Iterator[Crossing]:
@@ -159,22 +155,20 @@ def bridge_files(plan: System) -> Iterator[tuple[str, bytes]]:
     for robot, number in numbers.items():
         name = bridge_name(robot)
         own = [it for it in plan.ends if it.node == f"/{name}_{number}"]
-        if robot and own:
-            yield bridge_path(robot), _file(name, number, numbers[""], own).encode()
+        if not robot or not own:
+            continue
+        shared = numbers[""]
+        rows = [f"name: {name}", f"from_domain: {number}", f"to_domain: {shared}", "topics:"]
+        for it in own:
+            rows += [f"  {it.name}:", f"    type: {it.type}"]
+            if it.role == PUBLISHES:
+                rows += [f"    from_domain: {shared}", f"    to_domain: {number}"]
+            if it.type in _LATCHED_TYPES or it.name.rpartition("/")[2] in _LATCHED_NAMES:
+                qos = f"reliability: reliable, durability: transient_local, depth: {_LATCHED_DEPTH}"
+                rows.append(f"    qos: {{{qos}}}")
+        yield bridge_path(robot), "\n".join((*rows, "")).encode()
 
 
 def bridge_path(robot: str) -> str:
     """Where the file of a robot's bridge goes."""
     return f"{DOMAIN_BRIDGE}/{bridge_name(robot)}.yaml"
-
-
-def _file(name: str, own: int, shared: int, ends: Iterable[End]) -> str:
-    rows = [f"name: {name}", f"from_domain: {own}", f"to_domain: {shared}", "topics:"]
-    for it in ends:
-        rows += [f"  {it.name}:", f"    type: {it.type}"]
-        if it.role == PUBLISHES:
-            rows += [f"    from_domain: {shared}", f"    to_domain: {own}"]
-        if it.type in _LATCHED_TYPES or it.name.rpartition("/")[2] in _LATCHED_NAMES:
-            qos = f"reliability: reliable, durability: transient_local, depth: {_LATCHED_DEPTH}"
-            rows.append(f"    qos: {{{qos}}}")
-    return "\n".join((*rows, ""))

@@ -96,23 +96,20 @@ def profiles(plan: System, more: Iterable[End] = ()) -> Mapping[str, tuple[Profi
         own = (_profile(node, allowed[node]) for node in nodes[robot.name])
         result[enclave_of(robot.name)] = (*own, listener)
     shared = tuple(_profile(node, allowed[node]) for node in nodes[""])
-    return {**result, **({SHARED: shared} if shared else {}), TOOLS: tuple(_tools(ends))}
-
-
-def _profile(node: str, own: Iterable[Allowed]) -> Profile:
-    return Profile(node, tuple(sorted({*_OF_EVERY_NODE, *own})))
-
-
-def _tools(ends: Iterable[End]) -> Iterator[Profile]:
-    """Tools read and call everything; they send what robots read and no planned node sends."""
+    # Tools read and call everything; they send what robots read and no planned node sends.
     sides = defaultdict(set)
     for end in ends:
         if end.kind == TOPIC:
             sides[end.role].add(end.name)
     open_ = sorted(sides[SUBSCRIBES] - sides[PUBLISHES])
     every = ((TOPIC, SUBSCRIBES, "/*"), (SERVICE, CALLS, "/*"), (ACTION, CALLS, "/*"))
-    yield Profile("/tools", (*every, *((TOPIC, PUBLISHES, name) for name in open_)))
-    yield from (_profile(f"/{pattern}", ()) for pattern in tool_patterns())
+    tools = Profile("/tools", (*every, *((TOPIC, PUBLISHES, name) for name in open_)))
+    others = (_profile(f"/{pattern}", ()) for pattern in tool_patterns())
+    return {**result, **({SHARED: shared} if shared else {}), TOOLS: (tools, *others)}
+
+
+def _profile(node: str, own: Iterable[Allowed]) -> Profile:
+    return Profile(node, tuple(sorted({*_OF_EVERY_NODE, *own})))
 
 
 def _enclave(path: str, found: Iterable[Profile]) -> Iterator[str]:

@@ -66,18 +66,14 @@ def _name_of(run: Run, end: Endpoint, bound: BoundNode) -> str:
     """The name that an end has."""
     if end.beside:
         return resolve_bound(asked_beside(end, bound), end.kind, bound)
-    name = _below_namespace_above(run, end)
+    name = end.name
+    # A name that its node resolves in the namespace above its own.
+    if end.above and not str(run.value(end.parameter) or "").startswith("/"):
+        name = expand(name.lstrip("/"), run.namespace.rpartition("/")[0] or "/", "")
     if end.kind == ACTION:
         # It is services and topics with names of their own; a rule for its name reaches none.
         return resolve_bound(f"{name}{_PART}", SERVICE, bound).removesuffix(_PART)
     return resolve_bound(name, end.kind, bound)
-
-
-def _below_namespace_above(run: Run, end: Endpoint) -> str:
-    """The name of an end that its node resolves in the namespace above its own, else its name."""
-    if not end.above or str(run.value(end.parameter) or "").startswith("/"):
-        return end.name
-    return expand(end.name.lstrip("/"), run.namespace.rpartition("/")[0] or "/", "")
 
 
 def ends_of(run: Run) -> Iterator[End]:
@@ -172,16 +168,11 @@ def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
         return f"/{bare}" if below else ""
     if naming.topics == NAMESPACE:
         return bare if name.startswith("/") else ""
-    base, rest = _family(name)
+    # An action's parts and an image's transports are found from the one name alone.
+    base, action, part = name.partition("/_action/")
+    rest = action + part
+    if not action and name.rpartition("/")[2] in TRANSPORTS:
+        base, slash, last = name.rpartition("/")
+        base, rest = (base, slash + last) if base else (name, "")
     target = spelled(naming, robot, SERVICE if kind == SERVICE and not rest else TOPIC, base)
     return target + rest if target != base else ""
-
-
-def _family(name: str) -> tuple[str, str]:
-    """The name that is renamed, and the rest below it: an action's parts and an image's
-    transports are found from the one name alone."""
-    base, action, part = name.partition("/_action/")
-    if action:
-        return base, action + part
-    base, _, last = name.rpartition("/")
-    return (base, f"/{last}") if base and last in TRANSPORTS else (name, "")

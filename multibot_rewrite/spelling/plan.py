@@ -69,17 +69,35 @@ def expect(
     ``words`` has the name of a robot in its frames, where that is another one than its name;
     plugins of ``maybe_real`` robots may be missing.
     """
-    usual = dict.fromkeys((*_defaults(table), *USUAL_FRAMES))
+    # The default frames of parameters; a name in <> stands for another parameter.
+    facts = {id(it.fact): it.fact for it in table.runs if not it.written}
+    defaults = (frame.default.strip("/") for it in facts.values() for frame in it.frames)
+    usual = dict.fromkeys((*(it for it in defaults if it and "<" not in it), *USUAL_FRAMES))
 
     def robot(name: str) -> Robot:
         word, own = words.get(name, name), tuple(frames.get(name, ()))
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
-        tag = word if word != name else ""
-        return Robot(name, own, tf_topic(name, naming), _further(others, own, naming), tag)
+        known = {*own, *naming.shared_frames}
+        further = tuple(it for it in dict.fromkeys(others) if it not in known)
+        return Robot(name, own, tf_topic(name, naming), further, word if word != name else "")
 
-    own, made = _own_nodes(table, maybe_real), _private_nodes(table)
+    # By robot: the full names of its nodes, each with whether it runs.
+    own: dict[str, dict[str, Sure]] = {}
+    for it in table.runs:
+        may = it.robot and (it.fact.when or (it.written and it.robot in maybe_real))
+        found = own.setdefault(it.robot, {})
+        found[it.full_name] = MAY if may or it.node in BY_HAND else found.get(it.full_name, RUNS)
+    made, always = _private_nodes(table), _private_nodes(table, always=True)
     names = dict.fromkeys((*frames, *filter(None, own)))
-    nodes = _by_robot(table, own, made, (*names, ""))
+    nodes = []
+    for name in (*names, ""):
+        sure = own.get(name, {})
+        nodes += [Node(full, robot=name, sure=it) for full, it in sure.items()]
+        optional = tuple(full for full, it in sure.items() if it is MAY)
+        # Those that they make for themselves: always, or by a parameter.
+        for full in (it for it in made.get(name, ()) if name and it not in sure):
+            runs = full in always.get(name, ()) and not full.startswith(optional)
+            nodes.append(Node(full, robot=name, sure=RUNS if runs else MAY))
     return System(
         nodes=tuple(_placed(nodes, table)),
         ends=tuple(dict.fromkeys(_planned(table))),
@@ -92,93 +110,6 @@ def expect(
     )
 
 
-def _by_robot(
-    table: Table,
-    own: Mapping[str, Mapping[str, Sure]],
-    made: Mapping[str, Sequence[str]],
-    robots: Iterable[str],
-) -> Iterator[Node]:
-    """The nodes of each robot, with those that they make for themselves."""
-    always = _private_nodes(table, always=True)
-    for name in robots:
-        private = made.get(name, ()) if name else ()
-        for full, sure in _with_made(own.get(name, {}), private, always.get(name, ())):
-            yield Node(full, robot=name, sure=sure)
-
-
-def _own_nodes(table: Table, maybe_real: Container[str]) -> dict[str, dict[str, Sure]]:
-    """By robot: the full names of its nodes, each with whether it runs."""
-    found: dict[str, dict[str, Sure]] = {}
-    for it in table.runs:
-        own = found.setdefault(it.robot, {})
-        may = it.robot and (it.fact.when or (it.written and it.robot in maybe_real))
-        may = may or it.node in BY_HAND
-        own[it.full_name] = MAY if may else own.get(it.full_name, RUNS)
-    return found
-
-
-def _with_made(
-    own: Mapping[str, Sure], made: Iterable[str], always: Container[str]
-) -> Iterator[tuple[str, Sure]]:
-    """A robot's nodes, and those that they make for themselves: ``always``, or by a parameter."""
-    yield from own.items()
-    optional = tuple(full for full, sure in own.items() if sure is MAY)
-    for full in (it for it in made if it not in own):
-        yield full, RUNS if full in always and not full.startswith(optional) else MAY
-
-
-def _further(others: Iterable[str], own: Iterable[str], naming: Naming) -> tuple[str, ...]:
-    """Frames that may come besides a robot's own and those that all share."""
-    known = {*own, *naming.shared_frames}
-    return tuple(frame for frame in dict.fromkeys(others) if frame not in known)
-
-
-def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
-    """Each node with its plugin and what else names it, and its way and taker, where it has no
-    --ros-args of its own."""
-    ways, known = dict(_ways(table)), dict(_known(table))
-    plugins = {it.full_name: it.place for it in table.runs if it.written}
-    origins = {it.full_name: it.fact.origin for it in table.runs if it.fact.origin != NO_ORIGIN}
-    for it in nodes:
-        way, taker = ways.get(it.name, ("", ""))
-        stack, place = origins.get(it.name, NO_ORIGIN)
-        plugin, fact = plugins.get(it.name, NOWHERE), known.get(it.name, UNKNOWN)
-        yield it._replace(
-            way=way,
-            taker=taker,
-            plugin=plugin,
-            stack=stack,
-            place=place,
-            known=fact.kind,
-            untold=tuple(one.text for one in fact.untold),
-        )
-
-
-def _known(table: Table) -> Iterator[tuple[str, NodeFacts]]:
-    """What each known node is, also of those that it makes for itself."""
-    for run in (it for it in table.runs if it.fact.is_known):
-        yield run.full_name, run.fact
-        yield from ((f"{run.full_name}{it.by}", run.fact) for it, _ in run.names if it.by)
-
-
-def _ways(table: Table) -> Iterator[tuple[str, tuple[str, str]]]:
-    found = {it.node.full_name: it for it in reversed(deliveries(table))}
-    full = {(it.robot, it.node): it.full_name for it in table.runs}
-    for node in table.runs:
-        it = found.get(node.full_name)
-        if it is None or it.way == PROCESS or node.fact.plugin:
-            continue
-        taker = full.get((node.robot, it.taker), "")
-        yield node.full_name, (it.way, taker if it.way in (HOST, PLUGIN) else "")
-
-
-def _defaults(table: Table) -> Iterator[str]:
-    """The default frames of parameters; a name in <> stands for another parameter."""
-    facts = {id(it.fact): it.fact for it in table.runs if not it.written}
-    names = (frame.default.strip("/") for it in facts.values() for frame in it.frames)
-    yield from (name for name in names if name and "<" not in name)
-
-
 def named_frames(inventory: Inventory) -> tuple[str, ...]:
     """The frames that a description names anywhere, such as those of its plugins' messages."""
     values = (
@@ -187,6 +118,39 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
         if "frame" in claim.site.kinds and claim.site.form == "whole"
     )
     return tuple(dict.fromkeys(filter(None, values)))
+
+
+def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
+    """Each node with its plugin and what else names it, and its way and taker, where it has no
+    --ros-args of its own."""
+    known: dict[str, NodeFacts] = {}
+    for run in (it for it in table.runs if it.fact.is_known):
+        # Also those that it makes for itself.
+        made = (f"{run.full_name}{it.by}" for it, _ in run.names if it.by)
+        known |= dict.fromkeys((run.full_name, *made), run.fact)
+    ways = {it.node.full_name: it for it in reversed(deliveries(table))}
+    full = {(it.robot, it.node): it.full_name for it in table.runs}
+    taken = {}
+    for run in (it for it in table.runs if not it.fact.plugin):
+        way = ways.get(run.full_name)
+        if way is not None and way.way != PROCESS:
+            taker = full.get((run.robot, way.taker), "")
+            taken[run.full_name] = way.way, taker if way.way in (HOST, PLUGIN) else ""
+    plugins = {it.full_name: it.place for it in table.runs if it.written}
+    origins = {it.full_name: it.fact.origin for it in table.runs if it.fact.origin != NO_ORIGIN}
+    for it in nodes:
+        way_of_node, taker = taken.get(it.name, ("", ""))
+        stack, place = origins.get(it.name, NO_ORIGIN)
+        fact = known.get(it.name, UNKNOWN)
+        yield it._replace(
+            way=way_of_node,
+            taker=taker,
+            plugin=plugins.get(it.name, NOWHERE),
+            stack=stack,
+            place=place,
+            known=fact.kind,
+            untold=tuple(one.text for one in fact.untold),
+        )
 
 
 def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, ...]]:

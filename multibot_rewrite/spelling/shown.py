@@ -5,7 +5,7 @@ layout of Foxglove that shows it."""
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
@@ -79,14 +79,13 @@ def _add(shown: Shown | None, role: str, topic: str, type_: str) -> None:
 
 def world_of_plan(plan: System) -> str:
     """The frame of all robots in which they stand, else the first robot's first."""
-    return next(_worlds(plan), "")
-
-
-def _worlds(plan: System) -> Iterator[str]:
     shared = plan.shared_frames
-    yield from (it.parent for it in plan.edges if it.parent in shared)
-    yield from (it for it in WORLD_FRAMES if it in shared)
-    yield from (it for robot in plan.robots for it in robot.frames)
+    worlds = (
+        *(it.parent for it in plan.edges if it.parent in shared),
+        *(it for it in WORLD_FRAMES if it in shared),
+        *(it for robot in plan.robots for it in robot.frames),
+    )
+    return next(iter(worlds), "")
 
 
 # What a 3D panel shows, and what an Image panel does.
@@ -127,21 +126,21 @@ def to_layout(plan: System) -> str:
         *(_Tab(it.robot.name, _own(it, shared, sent, prefixed)) for it in robots),
     ]
     config: dict[str, Any] = {name: own for tab in tabs for name, own in tab.panels.items()}
-    shown = [{"title": it.title, "layout": _mosaic(list(it.panels))} for it in tabs]
+    shown = []
+    for tab in tabs:
+        # The first panel beside the others, which are below each other.
+        first, *others = tab.panels
+        mosaic: Any = first
+        if others:
+            side: Any = others[-1]
+            for one in reversed(others[:-1]):
+                side = {"direction": "column", "first": one, "second": side}
+            sides = {"first": first, "second": side}
+            mosaic = {"direction": "row", **sides, "splitPercentage": 70}
+        shown.append({"title": tab.title, "layout": mosaic})
     config["Tab!robots"] = {"activeTabIdx": 0, "tabs": shown}
     rest = {"globalVariables": {}, "userNodes": {}, "playbackConfig": {"speed": 1}}
     return json.dumps({"configById": config, **rest, "layout": "Tab!robots"}, indent=1) + "\n"
-
-
-def _mosaic(panels: Sequence[str]) -> Any:
-    """The first panel beside the others, which are below each other."""
-    first, *others = panels
-    if not others:
-        return first
-    side: Any = others[-1]
-    for one in reversed(others[:-1]):
-        side = {"direction": "column", "first": one, "second": side}
-    return {"direction": "row", "first": first, "second": side, "splitPercentage": 70}
 
 
 def _own(shown: Shown, shared: Shown, sent: set[str], prefixed: bool) -> Panels:
@@ -154,19 +153,26 @@ def _own(shown: Shown, shared: Shown, sent: set[str], prefixed: bool) -> Panels:
         camera = f"{topic.rpartition('/')[0]}/{_CAMERA}"
         settings = {"imageTopic": topic, "calibrationTopic": camera}
         panels[f"Image!{name}_{at}"] = {"imageMode": settings}
-    for topic in _drives(shown, sent):
+    # The topic of speeds that the robot reads and no planned node sends.
+    drives = {name for name, type_ in shown.read.items() if type_ == _TWIST} - sent
+    for topic in sorted(drives, key=lambda it: (it.count("/"), it))[:1]:
         panels[f"Teleop!{name}"] = {"topic": topic, "publishRate": 10}
     return panels
 
 
-def _drives(shown: Shown, sent: set[str]) -> list[str]:
-    """The topic of speeds that the robot reads and no planned node sends."""
-    read = {name for name, type_ in shown.read.items() if type_ == _TWIST} - sent
-    return sorted(read, key=lambda it: (it.count("/"), it))[:1]
-
-
 def _scene(robots: Sequence[Shown], shared: Shown, frame: str, prefixed: bool) -> dict[str, Any]:
     topics = {it for one in (*robots, shared) for it in one.of_type(_SHOWN)}
+    layers = {}
+    for it in robots:
+        name, word = it.robot.name, it.robot.tag or it.robot.name
+        lead = next(iter(it.robot.frames), "")[: len(word) + 1] if prefixed else ""
+        layer = {"layerId": "foxglove.Urdf", "instanceId": name, "label": name, "visible": True}
+        layers[name] = {
+            **layer,
+            "sourceType": "topic",
+            "topic": it.description,
+            "framePrefix": lead,
+        }
     clicked = {
         key: next(filter(None, (it.clicked(word) for it in robots)), f"/{word}")
         for key, word in _CLICKED.items()
@@ -175,21 +181,6 @@ def _scene(robots: Sequence[Shown], shared: Shown, frame: str, prefixed: bool) -
         "followTf": frame,
         "followMode": "follow-pose",
         "topics": {it: {"visible": True} for it in sorted(topics)},
-        "layers": {it.robot.name: _model(it, prefixed) for it in robots},
+        "layers": layers,
         "publish": {"type": "pose", **clicked},
-    }
-
-
-def _model(shown: Shown, prefixed: bool) -> dict[str, Any]:
-    """The robot's description, from its topic."""
-    robot = shown.robot
-    word = robot.tag or robot.name
-    return {
-        "layerId": "foxglove.Urdf",
-        "instanceId": robot.name,
-        "label": robot.name,
-        "visible": True,
-        "sourceType": "topic",
-        "topic": shown.description,
-        "framePrefix": next(iter(robot.frames), "")[: len(word) + 1] if prefixed else "",
     }

@@ -117,7 +117,12 @@ class Start(NamedTuple):
     def words(self) -> list[str]:
         """What follows its program on a command line; values of parameters are texts there."""
         rules = ros_arguments(self.namespace or "/", self.name, self.remappings)
-        told = [word for it in self.parameters for word in _parameter_words(it)]
+        told: list[str] = []
+        for it in self.parameters:
+            if isinstance(it, File):
+                told += ("--params-file", it.path)
+            else:
+                told += (word for pair in it.items() for word in ("-p", ":=".join(pair)))
         lead = ["--ros-args"] if told and not rules else []
         return [*(path_of(it) for it in self.arguments), *rules, *lead, *told]
 
@@ -141,7 +146,11 @@ class Led(NamedTuple):
 def in_order(starts: Sequence[Start]) -> Iterator[Led]:
     """Yield the processes with those that wait for them; one that waits for what is not there, or runs
     under a condition that this one has not, waits for nothing."""
-    leaders = {it.number: at for at, it in enumerate(starts) if it.number >= 0 and _leads(it)}
+    leaders = {
+        it.number: at
+        for at, it in enumerate(starts)
+        if it.number >= 0 and not (it.brought_up or it.process.is_include)
+    }
     below: dict[int, list[int]] = {}
     for at, it in enumerate(starts):
         leader = leaders.get(it.process.after, -1) if it.process.event in EVENTS else -1
@@ -152,10 +161,6 @@ def in_order(starts: Sequence[Start]) -> Iterator[Led]:
         return Led(starts[at], tuple(map(led, below.get(at, ()))))
 
     yield from map(led, below.get(-1, ()))
-
-
-def _leads(it: Start) -> bool:
-    return not (it.brought_up or it.process.is_include)
 
 
 def _switches(it: Start) -> tuple[str, str]:
@@ -229,11 +234,3 @@ def in_shares(text: str) -> list[str]:
 def path_of(it: str | File) -> str:
     """Return a word of a program, for a file its path."""
     return it.path if isinstance(it, File) else it
-
-
-def _parameter_words(it: Parameters) -> Iterator[str]:
-    if isinstance(it, File):
-        yield from ("--params-file", it.path)
-        return
-    for pair in it.items():
-        yield from ("-p", ":=".join(pair))

@@ -61,61 +61,35 @@ def build_table(
     each robot's rewritten description.
     """
     with gc_paused():
-        made = _build(robots, nodes, naming, plugins, given, release)
+        # Made once: the run of another robot differs only in the robot's name.
+        first = robots[0] if robots else ""
+        heads = _heads(first, plugins.get(first, ()), naming)
+        others = {**heads, **places_of(PROBE, nodes, naming)}
+        once = frozenset(it.name for it in nodes if it.shared)
+        # What the robot's own files set for a node, and where.
+        sections = {it.node: it for it in given}
+        own = []
+        for run in (run_of(PROBE, it, naming, others, once) for it in nodes if not it.shared):
+            found = sections.get(run.node) or sections.get(run.code_name)
+            own.append(run._replace(values=found.values, place=found.place) if found else run)
+        problems = [*unreachable([it.fact for it in own], naming), *useless_rules(own, release)]
+        runs = [run_of("", it, naming) for it in nodes if it.shared]
+        is_named = any(it.is_controller for it in nodes)
+        for robot in robots:
+            copies = [_copy(it, robot) for it in own]
+            # The controllers that get the rules of their plugin; None where no stack names them.
+            controllers = [it for it in copies if it.fact.is_controller] or None
+            if not controller_way(release).of_manager:
+                controllers = []
+            problems += useless_rules(plugins.get(robot, ()), release, controllers)
+            runs += copies
+            for run in plugins.get(robot, ()):
+                # What their controllers publish is the controllers' own, if a stack names those.
+                ends = run.fact.endpoints
+                kept = tuple(it for it in ends if not (is_named and is_stand_in(run, it)))
+                runs.append(with_names(run._replace(fact=run.fact._replace(endpoints=kept))))
+        made = Table(naming.layout.name, tuple(runs), tuple(problems), release)
         return made._replace(problems=(*made.problems, *not_taken(made)))
-
-
-def _build(
-    robots: Sequence[str],
-    nodes: Sequence[NodeFacts],
-    naming: Naming,
-    plugins: Mapping[str, Sequence[Run]],
-    given: Iterable[Run],
-    release: str,
-) -> Table:
-    # Made once: the run of another robot differs only in the robot's name.
-    first = robots[0] if robots else ""
-    others = {**_heads(first, plugins.get(first, ()), naming), **places_of(PROBE, nodes, naming)}
-    once = frozenset(it.name for it in nodes if it.shared)
-    sections = {it.node: it for it in given}
-    own = [
-        _with_section(run_of(PROBE, it, naming, others, once), sections)
-        for it in nodes
-        if not it.shared
-    ]
-    problems = [*unreachable([it.fact for it in own], naming), *useless_rules(own, release)]
-    runs = [run_of("", it, naming) for it in nodes if it.shared]
-    for robot in robots:
-        controllers = _given_by_plugins(own, robot, release)
-        problems += useless_rules(plugins.get(robot, ()), release, controllers)
-        runs += (_copy(it, robot) for it in own)
-        runs += map(with_names, _without_stand_ins(plugins.get(robot, ()), nodes))
-    return Table(naming.layout.name, tuple(runs), tuple(problems), release)
-
-
-def _with_section(run: Run, sections: Mapping[str, Run]) -> Run:
-    """The run with what the robot's own files set for it, and where."""
-    found = sections.get(run.node) or sections.get(run.code_name)
-    return run._replace(values=found.values, place=found.place) if found else run
-
-
-def _given_by_plugins(own: Iterable[Run], robot: str, release: str) -> list[Run] | None:
-    """The controllers that get the rules of their plugin; None where no stack names them."""
-    if not controller_way(release).of_manager:
-        return []
-    return [_copy(it, robot) for it in own if it.fact.is_controller] or None
-
-
-def _without_stand_ins(runs: Sequence[Run], nodes: Iterable[NodeFacts]) -> Sequence[Run]:
-    """The plugins of a description, without what their controllers publish if a stack names those."""
-    if not any(node.is_controller for node in nodes):
-        return runs
-    return [_without_controllers(it) for it in runs]
-
-
-def _without_controllers(run: Run) -> Run:
-    kept = tuple(it for it in run.fact.endpoints if not is_stand_in(run, it))
-    return run._replace(fact=run.fact._replace(endpoints=kept))
 
 
 def joined(table: Table, other: Table) -> Table:
@@ -205,9 +179,14 @@ def _targets(endpoint: Endpoint, place: _Place) -> Iterator[Rule]:
         if wanted.partition("/")[0] in once:
             target = f"/{wanted}" if naming.topics == NAMESPACE else moved
         else:
-            target = _below(wanted, naming, others)
-            target = target or _renamed_target(wanted, kind, place) or moved
-            target = target or _shared(wanted, place)
+            # A name below the node's own place is renamed as the whole name, as other nodes have it;
+            # one that all robots share would be looked for in the robot's namespace.
+            is_below = bool(root) and naming.topics != NAMESPACE and wanted[0] not in "~/"
+            lead = root if is_below else ""
+            renamed = target_of(f"{lead[1:]}{wanted}", kind, robot, naming)
+            renamed = renamed and f"/{renamed}" if is_below else renamed
+            target = _below(wanted, naming, others) or renamed or moved
+            target = target or (wanted if is_below else "")
         if target:
             yield source, f"{'' if target[0] == '/' else root}{target}"
         # What a node joins with the namespace above is no name of its own namespace.
@@ -218,24 +197,6 @@ def _targets(endpoint: Endpoint, place: _Place) -> Iterator[Rule]:
                 yield from [(joined, f"/{above.lstrip('/')}")] * bool(is_led)
             elif (target or wanted).startswith("/") and joined != (target or wanted):
                 yield joined, target or wanted
-
-
-def _renamed_target(name: str, kind: str, place: _Place) -> str:
-    """Return the target with the robot's name; of a name below the node's own place that of the whole
-    name, as other nodes have it."""
-    if not _is_below_root(name, place):
-        return target_of(name, kind, place.robot, place.naming)
-    found = target_of(f"{place.root[1:]}{name}", kind, place.robot, place.naming)
-    return found and f"/{found}"
-
-
-def _shared(name: str, place: _Place) -> str:
-    """A name that all robots share, for a node that would look for it in its robot's namespace."""
-    return name if _is_below_root(name, place) else ""
-
-
-def _is_below_root(name: str, place: _Place) -> bool:
-    return bool(place.root) and place.naming.topics != NAMESPACE and name[0] not in "~/"
 
 
 def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:

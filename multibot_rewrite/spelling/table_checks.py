@@ -29,20 +29,16 @@ def unreachable(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Finding]
     for node in nodes:
         for endpoint in node.endpoints:
             reason = endpoint.fixed or (RUN_TIME if "<" in endpoint.name else "")
-            if reason and not endpoint.when and _needed(endpoint, naming):
+            # A relative name made at run time follows the namespace.
+            if "<" in endpoint.name:
+                is_shared = naming.topics != NAMESPACE or endpoint.name.startswith("/")
+            else:
+                is_shared = bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))
+            if reason and not endpoint.when and not endpoint.own and is_shared:
                 message = f"no remap rule reaches {endpoint.kind} {endpoint.name}: {reason}"
                 parameter = "" if "parameter" in reason else endpoint.parameter
                 hint = f"set its parameter {parameter}" if parameter else ""
                 yield UNREACHABLE_NAME.finding(message, hint, node=node.name)
-
-
-def _needed(endpoint: Endpoint, naming: Naming) -> bool:
-    """Would all robots share this name? A relative name made at run time follows the namespace."""
-    if endpoint.own:
-        return False
-    if "<" in endpoint.name:
-        return naming.topics != NAMESPACE or endpoint.name.startswith("/")
-    return bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))
 
 
 RULE_WITHOUT_NAME = declare("MR103", "rule-matches-no-name", WARNING, formats=("remap-urdf",))

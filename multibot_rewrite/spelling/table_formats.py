@@ -37,18 +37,17 @@ def ros_args(table: Table) -> str:
     For a controller they are those of its spawner, for a component those of ``ros2 component load``.
     A node that nothing is started for has no line.
     """
-    return _comment(table) + "".join(_ros_args(it) for it in started(table))
+    text = _comment(table)
+    for it in started(table):
+        by = f" ({it.way})" if it.way != PROCESS else ""
+        line = shlex.join(arguments(it)) or "(no rule)"
+        text += f"# {it.node.robot or EVERY_ROBOT}: {it.node.node}{by}\n{line}\n"
+    return text
 
 
 def _comment(table: Table) -> str:
     """A line that says whose facts the table rests on, for shells and Python."""
     return f"# ROS 2 {table.release}\n" if table.runs else ""
-
-
-def _ros_args(it: Started) -> str:
-    by = f" ({it.way})" if it.way != PROCESS else ""
-    line = shlex.join(arguments(it)) or "(no rule)"
-    return f"# {it.node.robot or EVERY_ROBOT}: {it.node.node}{by}\n{line}\n"
 
 
 def launch(table: Table) -> str:
@@ -75,17 +74,13 @@ def _launch_table(found: list[Started], way: str, name: str, *words: str) -> str
         return ""
     for robot in dict.fromkeys(it.node.robot for it in own):
         rows.append(f"    {(robot or EVERY_ROBOT)!r}: {{\n")
-        for it in own:
-            rows += _launch_row(it) if it.node.robot == robot else ()
+        for it in (it for it in own if it.node.robot == robot):
+            rows.append(f"        {it.node.node!r}: {{\n")
+            for key, value in launch_arguments(it).items():
+                rows.append(f"            {json.dumps(key)}: {value!r},\n")
+            rows.append("        },\n")
         rows.append("    },\n")
     return "".join([*rows, "}\n"])
-
-
-def _launch_row(it: Started) -> Iterator[str]:
-    yield f"        {it.node.node!r}: {{\n"
-    for key, value in launch_arguments(it).items():
-        yield f"            {json.dumps(key)}: {value!r},\n"
-    yield "        },\n"
 
 
 def as_data(table: Table) -> dict[str, object]:

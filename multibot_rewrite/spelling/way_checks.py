@@ -7,9 +7,9 @@ The first match counts: a node's own arguments come before those of its process.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
-from functools import cache, partial
+from collections import Counter, defaultdict
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
@@ -47,18 +47,14 @@ def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tupl
     given = [it for it in meant if it.way not in left_out]
     standing = _Standing(
         rules_by_taker(given),
-        _of_simulator(given),
+        # The rules of the first plugin that starts ROS in the simulator.
+        next((it.rules for it in given if it.node.process_wide), ()),
         {(it.node.robot, it.node.node): it.node for it in meant},
         controller_way(table.release),
     )
     # A component's first delivery is its own, the second that of its helper nodes.
     first = {key_of(it.node): it for it in reversed(meant)}
     yield from ((it, _running(it, standing)) for it in reversed(first.values()))
-
-
-def _of_simulator(given: Iterable[Delivery]) -> Rules:
-    """The rules of the first plugin that starts ROS in the simulator."""
-    return next((it.rules for it in given if it.node.process_wide), ())
 
 
 def _running(it: Delivery, standing: _Standing) -> Run:
@@ -76,7 +72,12 @@ def _running(it: Delivery, standing: _Standing) -> Run:
         )
         return _in_process(node, rules, node.namespace, process)
     if it.way == PLUGIN:
-        rules, wide = _of_plugin(node, own, standing), standing.world
+        rules = wide = standing.world
+        # A plugin's rules are its own; nodes without any have those of the first robot's plugin.
+        if node.written and not node.process_wide:
+            rules = own
+        elif node.written and not standing.controllers.process_wide:
+            rules = tuple(dict.fromkeys((*own, *wide)))
         given = own if standing.controllers.forwarded else ()
         handed_on = wide if standing.controllers.process_wide else given
         return _in_process(node, rules, node.namespace, wide)._replace(handed_on=handed_on)
@@ -92,15 +93,6 @@ def _running(it: Delivery, standing: _Standing) -> Run:
 
 def _in_process(run: Run, rules: Rules, namespace: str, wide: Rules) -> Run:
     return run._replace(rules=rules, process_namespace=namespace, process_rules=wide)
-
-
-def _of_plugin(node: Run, own: Rules, standing: _Standing) -> Rules:
-    """A plugin's rules are its own; nodes without any have those of the first robot's plugin."""
-    if node.written and not node.process_wide:
-        return own
-    if not node.written or standing.controllers.process_wide:
-        return standing.world
-    return tuple(dict.fromkeys((*own, *standing.world)))
 
 
 def is_stand_in(node: Run, endpoint: Endpoint) -> bool:
@@ -134,14 +126,29 @@ def not_taken(table: Table) -> Iterator[Finding]:
     description says it, where no stack names them.
     """
     of_manager = controller_way(table.release).of_manager
-    some = _of_robots(table, _robots_worth_a_look(table))
+    robots = _robots_worth_a_look(table)
+    some = table._replace(runs=tuple(it for it in table.runs if it.robot in robots))
     names: dict[tuple[str, str], Names] = {}
     for run in some.runs:
         own = tuple(it for it in run.names if not (it[0].fixed or it[0].when))
         key = run.robot, run.full_name
         names[key] = (*names.get(key, ()), *own)
-    owners = cache(partial(_owners, table))
-    for it, running in _worth_a_look(some):
+
+    @cache
+    def owners() -> Mapping[str, set[str]]:
+        """The robots that have each name."""
+        found: dict[str, set[str]] = defaultdict(set)
+        for run, _, name in table.ends:
+            found[name].add(run.robot)
+        return found
+
+    seen: Counter[str] = Counter()
+    for it, running in running_nodes(some):
+        # What descriptions decide, of all robots; of the stack's nodes, which all have alike, two.
+        seen[it.node.node] += 1
+        is_decided = it.node.fact.plugin or it.node.fact.is_controller
+        if not is_decided and seen[it.node.node] > ENOUGH:
+            continue
         if running.process_wide or running.rules != it.node.rules:
             own = names.get((running.robot, running.full_name), ())
             if running.process_wide and not of_manager:
@@ -161,27 +168,6 @@ def _robots_worth_a_look(table: Table) -> set[str]:
             robots.add(it.robot)
             found.add(it.robot)
     return found
-
-
-def _of_robots(table: Table, robots: Set[str]) -> Table:
-    return table._replace(runs=tuple(it for it in table.runs if it.robot in robots))
-
-
-def _owners(table: Table) -> dict[str, set[str]]:
-    """The robots that have each name."""
-    owners: dict[str, set[str]] = {}
-    for run, _, name in table.ends:
-        owners.setdefault(name, set()).add(run.robot)
-    return owners
-
-
-def _worth_a_look(table: Table) -> Iterator[tuple[Delivery, Run]]:
-    """What descriptions decide, of all robots; of the stack's nodes, which all have alike, two."""
-    seen: Counter[str] = Counter()
-    for it, running in running_nodes(table):
-        seen[it.node.node] += 1
-        if it.node.fact.plugin or it.node.fact.is_controller or seen[it.node.node] <= ENOUGH:
-            yield it, running
 
 
 def _wrong(

@@ -55,7 +55,11 @@ def deliveries(table: Table) -> tuple[Delivery, ...]:
     """Where the rules of every node stand; a node of several nodes' rules has them in that order."""
     nodes = merged(table.runs)
     known = {(it.robot, it.node): it for it in nodes}
-    helpers = _of_helpers(table.runs)
+    # By the full name of a node: what helper nodes of it use.
+    helpers: dict[str, frozenset[str]] = {}
+    for run in table.runs:
+        asked = {name for end, _ in run.names if end.helper for _, name in expanded(end)}
+        helpers[run.full_name] = helpers.get(run.full_name, frozenset()) | asked
     return tuple(it for node in nodes for it in _deliveries(node, known, table.release, helpers))
 
 
@@ -114,28 +118,14 @@ def _deliveries(node: Run, known: Nodes, release: str, helpers: Sources) -> Iter
         node, way, taker, tuple((f"{lead}{source}", target) for source, target in node.rules)
     )
     # A helper node has the rules of its process alone, and not by the name of the node it helps.
-    process = _process_of(node, known)
+    # Its process is that of its host, or the container of either.
+    host = known.get((node.robot, node.fact.host), node)
+    process = known.get((node.robot, host.fact.container), host)
     asked = helpers.get(node.full_name, frozenset())
     asked -= {source for source, _ in process.rules}
     rules = tuple(it for it in node.rules if it[0] in asked)
     if rules and process is not node:
         yield Delivery(node, HOST, process.node, rules)
-
-
-def _process_of(node: Run, known: Nodes) -> Run:
-    """The node whose process this one is in: its host, the container of either, or itself."""
-    host = known.get((node.robot, node.fact.host), node)
-    return known.get((node.robot, host.fact.container), host)
-
-
-def _of_helpers(runs: Iterable[Run]) -> Sources:
-    """By the full name of a node: what helper nodes of it use."""
-    found: dict[str, frozenset[str]] = {}
-    for run in runs:
-        asked = {name for end, _ in run.names if end.helper for _, name in expanded(end)}
-        if asked:
-            found[run.full_name] = found.get(run.full_name, frozenset()) | asked
-    return found
 
 
 # The package and the program that load a controller.

@@ -73,6 +73,7 @@ def _of_nodes(system: System, own: Mapping[str, int], at: int) -> System:
         ends=ends,
         edges=tuple(it._replace(several=len(it.publishers) > 1) for it in edges),
         heard=tuple(it for it in system.heard if it.topic in sent),
+        descriptions=tuple(it for it in system.descriptions if it.topic in sent),
         parameters=tuple(it for it in system.parameters if it.node in nodes),
         controllers=tuple(it for it in system.controllers if it.manager in nodes),
         interfaces=tuple(it for it in system.interfaces if it.node in nodes),
@@ -111,6 +112,7 @@ def side_by_side(seen: Mapping[int, System]) -> System:
         ends=tuple(it for one in views for it in one.ends),
         edges=tuple(it for one in views for it in one.edges),
         heard=tuple(it for one in views for it in one.heard),
+        descriptions=tuple(it for one in views for it in one.descriptions),
         parameters=tuple(it for one in views for it in one.parameters),
         controllers=tuple(it for one in views for it in one.controllers),
         environment=_around(seen),
@@ -135,6 +137,7 @@ def named(view: System, domain: int) -> System:
         ends=tuple(ends),
         edges=tuple(edges),
         heard=tuple(it._replace(topic=space + it.topic) for it in view.heard),
+        descriptions=tuple(it._replace(topic=space + it.topic) for it in view.descriptions),
         parameters=tuple(it._replace(node=space + it.node) for it in view.parameters),
         controllers=tuple(it._replace(manager=space + it.manager) for it in view.controllers),
     )

@@ -83,10 +83,11 @@ class Sent(NamedTuple):
 
 class Known(NamedTuple):
     """What is known of a system besides what it shows: how many ``messages`` came on each topic in
-    ``seconds``, where they were counted."""
+    ``seconds``, where they were counted; how it was ``before``, where its plan is an earlier look."""
 
     messages: Mapping[str, int] = NO_COUNTS
     seconds: float = 0.0
+    before: System | None = None
 
 
 NOTHING_KNOWN = Known()
@@ -235,6 +236,11 @@ class Index(NamedTuple):
         """The ends of a robot's name, by the name without the robot's."""
         return _by_robot(self).get((robot, kind, plain))
 
+    @property
+    def is_live(self) -> bool:
+        """Was it seen running? Next to what launch files start there may be more."""
+        return not any(it.place.file for it in self.system.nodes)
+
     def is_tool(self, node: str) -> bool:
         """Is the node none of the robots', but one that comes and goes beside any?"""
         plan = self.expected
@@ -271,9 +277,14 @@ def index(system: System, whose: Whose, known: Known = NOTHING_KNOWN) -> Index:
     return Index(system, *whose, known, {})
 
 
-def beside(plan: Index, graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Index:
+def beside(
+    plan: Index,
+    graph: System,
+    messages: Mapping[str, int] = NO_COUNTS,
+    before: System | None = None,
+) -> Index:
     """A system with its plan, which says whose each name is."""
-    known = Known(messages, graph.environment.seconds)
+    known = Known(messages, graph.environment.seconds, before)
     return plan._replace(system=graph, known=known, memo={}, expected=plan)
 
 

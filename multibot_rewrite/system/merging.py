@@ -52,6 +52,7 @@ def merged(looks: Sequence[Look]) -> System:
     endpoints = tuple(_endpoints([look.snapshot.ends for look in looks]))
     frames = tuple(_frames(frame for look in looks for frame in look.snapshot.edges))
     heard = {(it.topic, it.frame, it.joints): it for look in looks for it in look.snapshot.heard}
+    described = {it.topic: it for look in looks for it in look.snapshot.descriptions}
     around = _environment(looks, nodes, endpoints)
     parameters = {(it.node, it.name): it for look in looks for it in look.snapshot.parameters}
     controllers = {(it.manager, it.name): it for look in looks for it in look.snapshot.controllers}
@@ -63,6 +64,7 @@ def merged(looks: Sequence[Look]) -> System:
         tuple(sorted(heard.values())),
         tuple(parameters[it] for it in sorted(parameters)),
         tuple(controllers[it] for it in sorted(controllers)),
+        descriptions=tuple(described[it] for it in sorted(described)),
     )
 
 
@@ -141,8 +143,9 @@ def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
         several = any(frame.several for frame in same)
         transform = next((frame.transform for frame in same if frame.transform), ())
         rate = max(frame.rate for frame in same)
+        age = min((frame.age for frame in same), key=abs)
         senders = tuple(sorted(publishers))
-        yield Edge(child, parent, topic, static, senders, several, transform, rate)
+        yield Edge(child, parent, topic, static, senders, several, transform, rate, age=age)
 
 
 def _environment(

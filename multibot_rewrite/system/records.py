@@ -208,7 +208,7 @@ class Edge(NamedTuple):
     nodes that may have sent it. A tf message does not say which node sent it; ``several`` is whether
     more than one did. ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w;
     empty if not known, or if several static ones differ; inf for NaN. ``rate`` is how often it came a
-    second, 0 if not known. ``OFF``: a parameter forbids it.
+    second, 0 if not known, ``age`` as in ``Heard``. ``OFF``: a parameter forbids it.
     """
 
     child: str
@@ -221,6 +221,7 @@ class Edge(NamedTuple):
     rate: float = 0.0
     sure: Sure = RUNS
     place: Place = NOWHERE
+    age: float = 0.0
 
 
 def edge_of(parent: str, child: str, static: bool = False) -> Edge:
@@ -246,6 +247,15 @@ class Heard(NamedTuple):
     pose: Transform = ()
     link: str = ""
     place: Place = NOWHERE
+
+
+class Description(NamedTuple):
+    """The description that came on ``topic``: its links, and its joints that are not fixed; neither of
+    an empty one, or of a text that is no URDF."""
+
+    topic: FullName
+    links: tuple[str, ...] = ()
+    joints: tuple[str, ...] = ()
 
 
 class Lookup(NamedTuple):
@@ -353,7 +363,8 @@ class Domain(NamedTuple):
 class System(NamedTuple):
     """What runs, or would run, on some robots; what no source says is empty.
 
-    ``heard`` are frames that messages name, one message a topic, ``lookups`` what nodes ask of tf,
+    ``heard`` are frames that messages name, one message a topic, ``descriptions`` what latched ones
+    name, ``lookups`` what nodes ask of tf,
     ``addresses`` what only one of them can have.
     ``parameters`` and ``controllers`` are what nodes answered, or what files set. A plan has a
     ``layout``; ``topics`` say more of some of its topics, ``ignored_nodes`` are patterns of nodes that
@@ -382,6 +393,7 @@ class System(NamedTuple):
     lookups: tuple[Lookup, ...] = ()
     addresses: tuple[Address, ...] = ()
     domains: tuple[Domain, ...] = ()
+    descriptions: tuple[Description, ...] = ()
 
 
 def surely(system: System) -> System:

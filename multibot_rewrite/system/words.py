@@ -91,11 +91,16 @@ def kind_of_data(name: str, type_: str) -> str:
     if type_ == MAP:
         return MAP if "map" in name.split("/")[-2:] else ""
     if type_ == _TEXT:
-        return DESCRIPTION if last.endswith(("description", "urdf")) else ""
+        return DESCRIPTION if is_description(name, type_) else ""
     if type_ == JOINTS and _has(last, _TO_JOINTS):
         return ""
     sensor = type_.startswith("sensor_msgs/") and not type_.startswith(_NO_SENSOR)
     return _KINDS.get(type_, type_) if sensor or type_ == ODOMETRY else ""
+
+
+def is_description(name: str, type_: str) -> bool:
+    """Is it the topic of a robot's description?"""
+    return type_ == _TEXT and name.endswith(("description", "urdf"))
 
 
 def is_of_a_body(type_: str) -> bool:

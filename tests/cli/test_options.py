@@ -186,7 +186,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
             "multibot build --keep /scan",
             "write the key shared_frames: or shared_topics: or shared_nodes: into the fleet file",
         ),
-        ("multibot init a.urdf --stack nav2", "write the key stack: into the fleet file"),
+        (f"multibot init {ROVER} -o new.yaml --stack nav", "did you mean 'nav2'?"),
         ("multibot init a.urdf --prefix r_", "write the key affix: into the fleet file"),
         ("multibot init a.urdf --namespace r", "write the key topics: into the fleet file"),
         ("multibot init --urdf a.urdf", "use the file as a word: multibot init FILE"),

@@ -96,7 +96,7 @@ def read(folder: Path, release: str) -> Fleet:
     file = folder / "fleet.launch.py"
     try:
         every = launched(file)
-        own = {robot: launched(file, robot)["starts"] for robot in every["robots"]}
+        own = every.get("own") or {it: launched(file, it)["starts"] for it in every["robots"]}
     except (RuntimeError, OSError) as error:
         return Fleet(
             (),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a built launch file starts: ``python started.py FILE [NAME:=VALUE ...]`` prints it as JSON.
+"""What a built launch file starts: ``python started.py FILE [NAME:=VALUE ...]`` prints it as JSON;
+without a word also what it starts for each robot alone.
 
 A stand-in for launch and launch_ros that runs no program, for files as ``multibot build`` writes them:
 actions are kept with the words that they were given, conditions and substitutions are evaluated, what
@@ -183,12 +184,17 @@ def node_of(node: Kept, context: Context) -> Words:
     }
 
 
+def starts_of(file: str, given: dict[str, str]) -> tuple[list[str], list[Words]]:
+    """Return the robots of a launch file, and what it starts with these arguments."""
+    made = runpy.run_path(file)
+    return list(made["ROBOTS"]), list(visit(made["generate_launch_description"](), Context(given)))
+
+
 def main(file: str, *given: str) -> None:
     install()
-    context = Context(dict(it.split(":=", 1) for it in given))
-    made = runpy.run_path(file)
-    starts = list(visit(made["generate_launch_description"](), context))
-    print(json.dumps({"robots": list(made["ROBOTS"]), "starts": starts}))
+    robots, starts = starts_of(file, dict(it.split(":=", 1) for it in given))
+    own = {} if given else {it: starts_of(file, {"robots": it})[1] for it in robots}
+    print(json.dumps({"robots": robots, "starts": starts, "own": own}))
 
 
 if __name__ == "__main__":

@@ -370,7 +370,7 @@ def test_odometry_of_a_node_of_the_stack(fleet: Any) -> None:
 
 @pytest.mark.parametrize(
     ("simulator", "level"),
-    [("", "warning"), ("simulator: none\n", "warning"), ("simulator: gazebo\n", "note")],
+    [("", "note"), ("simulator: none\n", "warning"), ("simulator: gazebo\n", "note")],
 )
 def test_a_pose_in_a_simulator_is_of_use_beside_a_localisation(
     fleet: Any, simulator: str, level: str

@@ -157,6 +157,25 @@ def test_a_script_spawns_the_text(tmp_path: Path) -> None:
     assert robot.description.startswith("<robot")
 
 
+@pytest.mark.parametrize("link", ["lidar_link", "wheel"])
+def test_frames_that_only_the_description_has_meet_those_of_another_robot(
+    link: str, tmp_path: Path
+) -> None:
+    """robot_state_publisher sends the description's frames, whatever the simulator gets: ``arm`` has
+    ``left_LINK`` and ``arm_left`` has ``LINK``."""
+    file = Path(written(tmp_path, "both"))
+    (tmp_path / "left.urdf").write_text(URDF.replace(f'"{link}"', f'"left_{link}"'))
+    fleet = yaml.safe_load(file.read_text()) | {"separators": {"link": "_"}}
+    arm, left = fleet["robots"]
+    arm |= {"name": "arm", "description": "left.urdf"}
+    left |= {"name": "arm_left"}
+    file.write_text(yaml.safe_dump(fleet))
+    met = [it for it in planned_fleet(file).fleet.table.problems if it.code == "MG402"]
+    assert [it.names for it in met] == [(f"arm_left_{link}",)]
+    assert met[0].file.endswith("left.urdf")
+    assert f"left_{link}" in (tmp_path / "left.urdf").read_text().splitlines()[met[0].line - 1]
+
+
 @pytest.mark.more
 def test_two_robots_of_one_model_and_of_none(tmp_path: Path) -> None:
     path = Path(written(tmp_path, "L2"))

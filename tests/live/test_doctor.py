@@ -215,8 +215,9 @@ def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixt
     ("fault", "more", "code"),
     [
         (("MG402", "error"), [], 1),
-        (("MG312", "warning"), [], 0),
-        (("MG312", "warning"), ["--fail-on", "warning"], 1),
+        (("MG312", "error"), [], 1),
+        (("MG308", "warning"), [], 0),
+        (("MG308", "warning"), ["--fail-on", "warning"], 1),
         (("MG402", "error"), ["--ignore", "MG402"], 0),
         (("MG402", "error"), ["--select", "MG3"], 0),
     ],

@@ -45,10 +45,6 @@ SILENT: dict[str, Callable[[System], System]] = {
         added("/robot1/lidar_driver", (PUBLISHES, "/_raw/scan", SCAN)),
         added("/robot2/lidar_driver", (PUBLISHES, "/_raw/scan", SCAN)),
     ),
-    "a robot's own server is not started, another robot's is": both(
-        added("/robot1/patrol", (CALLS, "/robot1/look_around", NAVIGATE)),
-        added("/robot2/camera", (SERVES, "/robot2/look_around", NAVIGATE)),
-    ),
     "a service that only the other robot has": both(
         added("/robot2/arm", (SERVES, "/robot2/handover", TRIGGER)),
         added("/robot1/arm", (CALLS, "/robot2/handover", TRIGGER)),
@@ -120,6 +116,15 @@ SILENT: dict[str, Callable[[System], System]] = {
 @pytest.mark.parametrize("name", SILENT)
 def test_it_is_no_fault(name: str) -> None:
     assert [str(it) for it in diagnose(SILENT[name](nav2_with_tools())).findings] == []
+
+
+def test_a_robots_own_server_is_not_started() -> None:
+    graph = both(
+        added("/robot1/patrol", (CALLS, "/robot1/look_around", NAVIGATE)),
+        added("/robot2/camera", (SERVES, "/robot2/look_around", NAVIGATE)),
+    )(nav2_with_tools())
+    (it,) = diagnose(graph).findings
+    assert (it.code, it.level, it.node) == ("MG304", "warning", "/robot1/patrol")
 
 
 @pytest.mark.more

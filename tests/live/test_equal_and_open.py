@@ -44,7 +44,7 @@ OTHERWISE = {
         "/robot2/battery publishes /robot2/battery_state"
         " sensor_msgs/msg/BatteryState reliable volatile",
         "",
-        "MG327",
+        "MG322",
     ),
     "a state": ("/robot2/amcl is active", "/robot2/amcl is inactive", "MG511"),
     "a type": ("odom nav_msgs/msg/Odometry", "odom geometry_msgs/msg/PoseStamped", "MG328"),

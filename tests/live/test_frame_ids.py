@@ -242,6 +242,26 @@ def test_a_rate_is_that_of_numbers_and_stamps(
     assert rate_of(messages) == rate
 
 
+def test_one_message_in_a_while_is_a_slow_sensor(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A second message is waited for, and the look ends without it."""
+    now = [100.0]
+    monkeypatch.setattr("multibot_rewrite.producers.ros.headers.time.monotonic", lambda: now[0])
+    receive: list[Callable[[bytes, int], None]] = []
+    samples = HeaderSamples(lambda *it: receive.append(it[3]) or (lambda: None))  # type: ignore[arg-type, func-returns-value]
+    samples.update([end("/scan")])
+    assert samples.keep_waiting(1.5)
+    # A body's sensor is waited for longer than others.
+    now[0] += 2.9
+    assert samples.keep_waiting(1.5)
+    now[0] += 0.2
+    assert not samples.keep_waiting(1.5)
+    now[0] -= 2.6
+    receive[0](serialized("laser", stamp=10.0), 1)
+    assert samples.keep_waiting(1.5) and samples.heard()[0].rate == 0.0
+    now[0] += 2.0
+    assert not samples.keep_waiting(1.5) and samples.heard()[0].rate == 0.4
+
+
 def test_images_and_topics_of_two_have_no_rate() -> None:
     second = [(1, 10.0), (11, 11.0)]
     assert rate_of(second) == 10.0
@@ -273,9 +293,13 @@ def test_the_child_of_odometry_is_heard() -> None:
     assert [(it.frame, it.child) for it in samples.heard()] == [("odom", "base"), ("odom", "")]
 
 
-def slower(rate: float, topic: str = "scan", type_: str = SCAN) -> list[Finding]:
+def slower(
+    rate: float, topic: str = "scan", type_: str = SCAN, read: bool = False
+) -> list[Finding]:
     """Two robots, the second of which sends at this rate, the first at 10 Hz."""
-    lines = (f"/{it}/lidar publishes /{it}/{topic} {type_}" for it in ("robot1", "robot2"))
+    both = ("robot1", "robot2")
+    lines = [f"/{it}/lidar publishes /{it}/{topic} {type_}" for it in both]
+    lines += [f"/{it}/amcl subscribes /{it}/{topic} {type_}" for it in both if read]
     graph = read_system("".join(f"running: {it}\n" for it in lines))
     one = Heard(f"/robot1/{topic}", "laser", rate=10.0)
     heard = (one, one._replace(topic=f"/robot2/{topic}", rate=rate))
@@ -286,6 +310,10 @@ def test_a_sensor_that_is_three_times_slower_than_a_siblings_is_told() -> None:
     (it,) = slower(3.3)
     assert (it.code, it.robot, it.node) == ("MG326", "robot2", "/robot2/lidar")
     assert it.message.startswith("publishes /robot2/scan at 3.3 Hz, /robot1/scan comes at 10.0 Hz")
+    # Read by nobody it hurts nobody; so seldom it is as good as none for who reads it.
+    assert [it.level for it in slower(0.4)] == ["warning"]
+    assert [it.level for it in slower(0.4, read=True)] == ["error"]
+    assert [it.level for it in slower(1.0, read=True)] == ["warning"]
     # So many are usual, or nobody knows, or what it sends is no measure of a sensor.
     assert not slower(3.4) and not slower(0.0)
     assert not slower(1.0, "goal", "geometry_msgs/msg/PoseStamped")

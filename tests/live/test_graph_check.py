@@ -410,7 +410,7 @@ def with_costmap(*names: str, published: str = "/robot1/scan") -> tuple[System, 
 def test_a_topic_that_is_planned_above_is_enough() -> None:
     wanted, graph = with_costmap("/robot1/local_costmap/scan", published="/robot1/other")
     (other,) = check(wanted, graph)
-    assert (other.code, other.level, other.names[1]) == ("MG303", "warning", "/robot1/other")
+    assert (other.code, other.level, other.names[1]) == ("MG303", "error", "/robot1/other")
     end = planned_end(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/scan", SCAN, "/scan")
     found = check(wanted._replace(ends=(*wanted.ends, end)), graph)
     assert [f.code for f in found] == ["MG303"]

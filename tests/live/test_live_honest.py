@@ -94,8 +94,10 @@ def test_the_participants_beyond_32_are_not_called_missing(ros: None, tmp_path: 
     done = at_a_crowd(tmp_path)
     assert_inconclusive(done)
     assert done.stdout.count(": inconclusive: MG101 node /robot") == 36 - LIMIT
-    limit, verdict, _ = done.stderr.splitlines()
-    assert "32 participants of one machine under LOCALHOST" in limit
+    *reasons, verdict, _ = done.stderr.splitlines()
+    (limit,) = (it for it in reasons if "32 participants of one machine under LOCALHOST" in it)
+    # On a busy machine there are more reasons.
+    assert f"{LIMIT} of about 36 nodes seen: 4 of 36 programs" in "\n".join(reasons)
     assert "use range SUBNET for all, or a discovery server with ROS_SUPER_CLIENT=TRUE" in limit
     assert verdict.endswith("inconclusive, the view may be incomplete")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import struct
+import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,12 +19,15 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
+from multibot_rewrite.producers.ros.assemble import frames
 from multibot_rewrite.producers.ros.headers import HeaderSamples
 from multibot_rewrite.producers.ros.tf_subscriptions import Pace, TfSubscriptions
+from multibot_rewrite.producers.snapshot_file import read_snapshot
 from multibot_rewrite.producers.zenoh.cdr import read_joint_names, read_tf
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Heard, Qos
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Heard, Qos, System
 
 CLOCK, JOINTS, TF, ODOM, POSE = (
     "rosgraph_msgs/msg/Clock",
@@ -133,6 +137,48 @@ def paced(*rates: float) -> list[Finding]:
 def fresh(seen: Index, **more: Any) -> Index:
     """The index of a system that is changed: what it remembers is of the other."""
     return seen._replace(system=seen.system._replace(**more), memo={})
+
+
+def aged(*ages: float, clock: bool = False, senders: tuple[str, ...] = ()) -> list[Finding]:
+    """What is said of the first transforms when they are so old."""
+    lines = MOVING + "running: /sim publishes /clock rosgraph_msgs/msg/Clock\n" * clock
+    seen = read_system(lines)
+    ages += (0.0,) * (len(seen.system.edges) - len(ages))
+    edges = [it._replace(age=age) for it, age in zip(seen.system.edges, ages, strict=True)]
+    edges = [it._replace(publishers=senders or it.publishers) for it in edges]
+    return [it for it in judge(fresh(seen, edges=tuple(edges))) if it.code == "MG417"]
+
+
+def test_transforms_that_are_stamped_with_another_time() -> None:
+    (it,) = aged(30.0)
+    assert (it.level, it.node, it.robot) == ("error", "/robot1/drive", "robot1")
+    assert it.message == "the stamps of robot1/odom -> robot1/base_link on /tf are 30 s old"
+    # What localizers stamp ahead, and the network's delay.
+    assert not aged(-2.0, 2.0)
+    (ahead,) = aged(0.0, -10.0)
+    assert ahead.robot == "robot2" and "10 s in the future" in ahead.message
+    (zero,) = aged(math.inf)
+    assert (zero.level, zero.names) == ("warning", ("robot1/base_link",))
+    (machine,) = aged(2.0, clock=True)
+    assert "not of /clock" in machine.message
+    assert not aged(30.0, senders=("/rosbag2_player",))
+    # Of two of the robot the one that is no publisher of its description.
+    (it,) = aged(30.0, senders=("/robot1/robot_state_publisher", "/robot1/ekf", "/robot2/ekf"))
+    assert it.node == "/robot1/ekf"
+
+
+def test_the_age_of_a_transform_is_that_of_its_youngest_message(tmp_path: Path) -> None:
+    receive: list[Callable[..., None]] = []
+    session = TfSubscriptions(lambda *it: receive.append(it[3]) or (lambda: None))  # type: ignore[arg-type, func-returns-value]
+    volatile = Qos("UNKNOWN", 0, "RELIABLE", "VOLATILE", math.inf, math.inf, "AUTOMATIC", math.inf)
+    ends = [End(TOPIC, PUBLISHES, "/tf", TF, "", "/a", volatile, "")]
+    session.update(ends, False)
+    for number, behind in enumerate((31.0, 30.0, 33.0)):
+        receive[0](read_tf(transform("odom", "base_link", time.time() - behind)), number)
+    (edge,) = frames(session.transforms(), ends, ages=session.ages)
+    assert 29.9 <= edge.age <= 30.9
+    (tmp_path / "a.json").write_bytes(to_json(System(edges=(edge._replace(age=math.inf),))))
+    assert read_snapshot(str(tmp_path / "a.json")).edges[0].age == math.inf
 
 
 def test_tf_that_is_three_times_slower_than_a_siblings_is_told() -> None:

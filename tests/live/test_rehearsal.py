@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import nullcontext
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from paths import FIXTURES, ROBOTS
@@ -201,7 +203,10 @@ def test_the_bridge_of_a_plan_has_its_topics_and_what_the_world_serves() -> None
 - {topic_name: /r1/cmd_vel, ros_type_name: geometry_msgs/msg/Twist, direction: ROS_TO_GZ}
 - {service_name: /world/hall/control, ros_type_name: ros_gz_interfaces/srv/ControlWorld}
 """
-    topics = bridged_by([OutputFile("bridge.yaml", rows.encode())])
+    robot = SimpleNamespace(spec=SimpleNamespace(name="r1", namespace="r1"))
+    fleet = SimpleNamespace(maybe_real=())
+    plan: Any = SimpleNamespace(fleet=fleet, robots=(robot,), launched_words=())
+    topics = bridged_by(plan, [OutputFile("bridge.yaml", rows.encode())])
     ((stub, _),) = bridge_stub(topics)
     assert [it[:4] for it in ends(stub)] == [
         (TOPIC, PUBLISHES, "/clock", "rosgraph_msgs/msg/Clock"),

@@ -22,7 +22,8 @@ from graph_cases import (
 from graph_examples import read_example
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.rules.check import check
+from multibot_rewrite.rules.check import check, side_by_side
+from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, System, Topic
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")
@@ -196,8 +197,12 @@ def test_a_drive_that_does_not_run(layout: str) -> None:
         lambda it: None if (it.child, it.topic) == (footprint, own) else it,
         Edge(odom, "world", own.replace("tf", "tf_static", 1), True, ()),
     )(without_node(healthy(layout), drive))
-    (finding,) = (it for it in check(plan, graph) if it.code == "MG406")
+    (finding,) = tf_tree_in_pieces.check(side_by_side(plan, graph)[1])  # type: ignore[misc]
     assert finding.hint.startswith(f"{drive}, which sends {odom} -> {footprint}, does not run")
+    # The node that is missing is the finding.
+    told = [it for it in check(plan, graph) if it.code in ("MG101", "MG406")]
+    assert [(it.code, it.node) for it in told] == [("MG101", drive)]
+    assert "MG406 comes of it" in told[0].hint
 
 
 @pytest.mark.sample(1)

@@ -289,7 +289,7 @@ def test_when_the_observation_ends(
 
 def test_a_look_without_a_processor_is_not_quiet() -> None:
     changed_ = LastChange(0.0, 0.0)
-    found = [why_settled(it, changed_, False, 9.0, starved=True) for it in (3.5, 8.9, 9.0)]
+    found = [why_settled(it, changed_, False, 9.0, unsure=True) for it in (3.5, 8.9, 9.0)]
     assert found == ["", "", TIMEOUT]
 
 

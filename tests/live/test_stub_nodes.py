@@ -36,7 +36,8 @@ PROCESS = ("--ros-args", "-r", "__ns:=/box", "-r", "m:=n")
 
 class Transform:
     def __init__(self, child_frame_id: str) -> None:
-        self.child_frame_id, self.header = child_frame_id, SimpleNamespace(frame_id="")
+        self.child_frame_id = child_frame_id
+        self.header = SimpleNamespace(frame_id="", stamp=SimpleNamespace())
 
     def __str__(self) -> str:
         return f"{self.header.frame_id}>{self.child_frame_id}"

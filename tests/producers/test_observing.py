@@ -11,7 +11,7 @@ import pytest
 
 from multibot_rewrite.producers.ros import look, observe, ros
 from multibot_rewrite.producers.ros.request import Request
-from multibot_rewrite.system.records import EXPECTED, PUBLISHES, TOPIC, Caveat, End
+from multibot_rewrite.system.records import EXPECTED, PUBLISHES, TIMEOUT, TOPIC, Caveat, End
 
 SCAN = End(TOPIC, PUBLISHES, "/scan", "sensor_msgs/msg/LaserScan", "", "/lidar", None, "p1")
 
@@ -84,14 +84,53 @@ def test_when_the_graph_is_settled_the_names_that_came_last_are_known(
     updates: list[Any] = []
     heard: Any = SimpleNamespace(update=updates.append)
     made = session(clock)
-    why, unchanged, last = observe._wait_until_settled(made, {}, heard)
-    assert (why, last) == (observe.QUIET, ("/lidar", "/scan"))
+    alone: Any = SimpleNamespace(missed=lambda _: (), lossy=False)
+    why, unchanged, last, missed = observe._wait_until_settled(made, {}, heard, alone)
+    assert (why, last, missed) == (observe.QUIET, ("/lidar", "/scan"), ())
     assert updates[-1] == [SCAN] and made.node == [b"0 nodes so far", b"1 node so far"]
     quiet = observe.assemble.QUIET_SECONDS
     assert clock.now == pytest.approx(1.1 + quiet, abs=0.21)
     assert unchanged.observed == pytest.approx(quiet, abs=0.01)
     clock.ends = clock.now
-    assert observe._wait_until_settled(made, {}, heard)[0] == ""
+    assert observe._wait_until_settled(made, {}, heard, alone)[0] == ""
+
+
+@pytest.mark.parametrize(
+    ("theirs", "ends"),
+    [
+        # The second participant has the lidar's end after 2 s, too: packets were lost.
+        (lambda now: [SCAN] if now > 2 else [], (observe.QUIET, 11.6, True, ())),
+        (lambda now: [SCAN] if now > 0.5 else [], (observe.QUIET, 3.6, False, ())),
+        (lambda _: [], (TIMEOUT, 15.0, True, ("/lidar",))),
+    ],
+)
+def test_two_participants_see_whether_the_network_loses_packets(
+    clock: Clock,
+    monkeypatch: pytest.MonkeyPatch,
+    theirs: Any,
+    ends: tuple[str, float, bool, tuple[str, ...]],
+) -> None:
+    made = session(clock)
+    other = made._replace(node=[b"second"])
+
+    def overview(it: look.GraphSession) -> tuple[list[str], list[End]]:
+        return ["/lidar"], theirs(clock.now) if it.node == other.node else [SCAN]
+
+    monkeypatch.setattr(look, "overview", overview)
+    monkeypatch.setattr(observe, "overview", overview)
+    monkeypatch.setattr(observe, "view", lambda *_: (["/lidar"], [SCAN]))
+    monkeypatch.setattr(observe, "lost_here", lambda _: 0)
+    monkeypatch.setattr(observe, "_enough", lambda *_: observe.assemble.QUIET_SECONDS)
+    second = look.SecondParticipant(made, None)  # type: ignore[arg-type]
+    second._second = other
+    heard: Any = SimpleNamespace(update=lambda _: None)
+    why, _, _, missed = observe._wait_until_settled(made, {}, heard, second)
+    reason, seconds, lossy, nodes = ends
+    assert (why, second.lossy, missed) == (reason, lossy, nodes)
+    assert clock.now == pytest.approx(seconds, abs=1.1)
+    assert [it.code for it in observe.assemble.seen_by_one(missed)] == (
+        ["network-loses-packets"] if nodes else []
+    )
 
 
 @pytest.mark.parametrize(
@@ -122,7 +161,7 @@ def test_what_may_be_missing_in_a_snapshot_is_told(
     )
     monkeypatch.setattr(observe, "Ears", lambda _: heard)
     late = SimpleNamespace(starved=lambda: [Caveat("late", True, "")])
-    monkeypatch.setattr(observe, "_wait_until_settled", lambda *_: (why, late, ("/a",)))
+    monkeypatch.setattr(observe, "_wait_until_settled", lambda *_: (why, late, ("/a",), ()))
     monkeypatch.setattr(observe, "complete_view", lambda *_: (["/lidar"], [SCAN]))
     monkeypatch.setattr(observe.assemble, "cut_short", lambda *_: [Caveat("cut", True, "")])
     monkeypatch.setattr(

@@ -814,10 +814,11 @@ INSTEAD_OF = {
 @pytest.mark.parametrize("name", INSTEAD_OF)
 def test_what_is_sent_in_place_of_what_is_read(name: str) -> None:
     lines, meant = INSTEAD_OF[name]
-    node, _, wanted, *_ = lines[0].split()
+    node, _, wanted, type_, *_ = lines[0].split()
     by = next((it.split()[0] for it in lines if f"publishes /robot1/{meant} " in it), "")
+    level = "error" if type_ in (SCAN, STATES) else "warning"
     said = (
-        f"MG303 warning {node}: subscribes to {wanted}, which no node publishes; {by} publishes"
+        f"MG303 {level} {node}: subscribes to {wanted}, which no node publishes; {by} publishes"
         f" /robot1/{meant}; pass the rule {wanted}:=/robot1/{meant}, or write /robot1/{meant} in its"
         " parameters"
     )
@@ -876,8 +877,12 @@ PARTS = {
     "odometer": ("subscribes", "scan", SCAN),
 }
 LACKS_SCAN = (
-    "/robot2/lidar: lacks /robot2/scan beside /robot1/lidar, which publishes /robot1/scan;"
-    " /robot2/odometer has it in vain; a remap rule, a parameter or a version of its own?"
+    "/robot2/lidar: lacks /robot2/scan, which /robot1/lidar has; it is used by"
+    " /robot2/odometer in vain; see its log; a remap rule, a parameter or a version of its own?"
+)
+NO_LIDAR = (
+    "robot2: robot2 has no lidar, as robot1 has (/robot1/lidar); /robot2/scan is used by"
+    " /robot2/odometer in vain; start it for this robot too"
 )
 
 
@@ -897,14 +902,16 @@ def has_no(robot: int, node: str) -> list[str]:
     ("lines", "found"),
     [
         ((*made_of(1), *made_of(2)), []),
-        ((*made_of(1), *made_of(2, "lidar")), has_no(2, "lidar")),
+        ((*made_of(1), *made_of(2, "lidar")), [NO_LIDAR]),
         # Of two robots nobody waits for it; of three the one differs from the others.
         ((*made_of(1), *made_of(2, "lidar", "odometer")), []),
         ((*made_of(1), *made_of(2), *made_of(3, "odometer")), has_no(3, "odometer")),
-        # Each has one of its own.
-        ((*made_of(1), *made_of(2, "lidar"), "/robot2/camera"), []),
-        # Two nodes in common say nothing.
-        ((*made_of(1, "planner"), *made_of(2, "planner", "lidar")), []),
+        # Each has one of its own, or few in common: by the reader that waits.
+        ((*made_of(1), *made_of(2, "lidar"), "/robot2/camera"), [NO_LIDAR]),
+        ((*made_of(1, "planner"), *made_of(2, "planner", "lidar")), [NO_LIDAR]),
+        # Each has one of its own, or few in common, and nobody waits.
+        ((*made_of(1), *made_of(2, "odometer"), "/robot2/camera"), []),
+        ((*made_of(1, "lidar"), *made_of(2, "planner", "lidar", "odometer")), []),
         ((*made_of(1), *made_of(2, "lidar"), "/robot2/lidar"), [LACKS_SCAN]),
         (
             (*made_of(1), *made_of(2, "lidar"), f"/robot2/lidar publishes /robot2/x {TEXT}"),
@@ -917,8 +924,9 @@ def has_no(robot: int, node: str) -> list[str]:
 )
 def test_what_a_robot_lacks_that_its_likes_have(lines: tuple[str, ...], found: list[str]) -> None:
     judged = judge(read_system("\n".join(f"running: {it}" for it in lines)))
-    told = [it for it in judged if it.code == "MG327"]
+    told = [it for it in judged if it.code in ("MG322", "MG327")]
     assert [f"{it.node or it.robot}: {it.message}; {it.hint}" for it in told] == found
+    assert all((it.level == "error") is (it.code == "MG322") for it in told)
 
 
 @pytest.mark.parametrize("reader", ["/robot1/viewer", "/rviz2"])

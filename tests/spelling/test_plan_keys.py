@@ -233,7 +233,7 @@ DRIVES, R1 = "robots[0].nodes[0]", "robots[0]"
         ("frames: [b1/base]", "frames: b1/base", f"{R1}.frames: expected a list"),
         ("- name: r1\n", "-\n", f"{R1}.name: missing; it is needed"),
         ("- name: r1\n", "- nam: r1\n", f"{R1}.nam: unknown key; the keys are name, frames, tf_topic"),
-        ("    ends:\n    - [publ", "    end:\n    - [publ", "plugin, known, ends, parameters"),
+        ("    ends:\n    - [publ", "    end:\n    - [publ", "plugin, known, untold, ends, parameters"),
         ("[/clock]", "/clock", 'shared_topics: expected a list, not "/clock"'),
         ("one_sender: true", "one_sender: 1", "topics[0].one_sender: expected true or false, not 1"),
         ("{durability: VOLATILE}", "[]", "topics[0].qos: expected a mapping, as {durability: trans"),

@@ -49,7 +49,7 @@ def chain_rows() -> tuple[Fault, ...]:
         Fault(
             "rqt_robot_steering against Nav2", nav,
             added("/rqt_gui_py_node_99", (PUBLISHES, "/robot1/cmd_vel", TWIST)),
-            "MG312", ("/rqt_gui_py_node_99", "twist_mux"), WARNING,
+            "MG312", ("/rqt_gui_py_node_99", "twist_mux"), ERROR,
         ),
         Fault(
             "robot1's stop button stops robot2", nav,

@@ -37,6 +37,8 @@ FAULT = "MF823"
 WHOLE = 8
 # The lines of a plan that say where in a fleet file a finding is.
 PLACE = (b"line: ", b"column: ")
+# Where the findings of a plan begin.
+GAPS = b"gaps:"
 
 
 def write(fleet: DrawnFleet, folder: Path) -> None:
@@ -72,7 +74,9 @@ def judge(fleet: DrawnFleet, folder: Path, whole: bool = True) -> None:
 
 def _judge(fleet: DrawnFleet, whole: bool) -> None:
     out = Path("out")
-    code, said = run("build", FILE, "-o", str(out), "--fail-on", "error", "-q", *trusted(fleet))
+    code, said = run("build", FILE, "-o", str(out), "--fail-on", "error", *trusted(fleet))
+    lines = said.splitlines()
+    assert sorted(lines) == sorted({*lines}), "a line is said twice"
     causes = causes_of(fleet)
     if causes:
         assert code in (1, 2), f"builds, in spite of: {causes}"
@@ -153,7 +157,10 @@ def _without_paths(data: bytes) -> bytes:
     a library call has none."""
     named = (b"<parameters>", FILE.encode(), SITE.encode(), DICT.encode())
     lines = (it for it in data.splitlines() if not it.lstrip().startswith((b"#", *PLACE)))
-    return b"\n".join(it for it in lines if not any(one in it for one in named))
+    kept = [it for it in lines if not any(one in it for one in named)]
+    # Findings are in the order of their files, and the fleet file has two names.
+    first = next((at for at, it in enumerate(kept) if it.startswith(GAPS)), len(kept))
+    return b"\n".join([*kept[:first], *sorted(kept[first:])])
 
 
 def _assert_as_checked(fleet: DrawnFleet, graph: LaunchGraph, out: Path) -> None:

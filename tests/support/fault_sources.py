@@ -7,6 +7,7 @@ own format, and returns the system that is read of it.
 
 from __future__ import annotations
 
+import time
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -104,7 +105,9 @@ class Router:
             if it.topic == topic:
                 voices = (b"a" * 16, b"b" * 16) if it.several else (b"a" * 16,)
                 for voice in voices * (1 if latched else 2):
-                    received(tf_message((it.parent, it.child), numbers=it.transform or AT), voice)
+                    stamp = divmod(time.time_ns() - int(it.age * 10**9), 10**9)
+                    edge, numbers = (it.parent, it.child), it.transform or AT
+                    received(tf_message(edge, numbers=numbers, stamp=stamp), voice)
         return lambda: None
 
     def deliver(self) -> None:

@@ -2,7 +2,8 @@
 """Small plans and graphs as lines of text, in which the examples of graph rules are written.
 
 Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in the graph) or
-``as planned:`` (it is in both). Behind it comes one of:
+``as planned:`` (it is in both); of a graph and an earlier look at it with ``earlier:``, ``running:`` or
+``as before:``. Behind it comes one of:
 
     NODE                                a node; a second such line is a second node of that name
     NODE ROLE NAME [TYPE] [as CODE_NAME] [QOS ...]     the node publishes, subscribes, serves or calls
@@ -17,6 +18,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     transform PARENT -> CHILD on TOPIC [at X Y Z] [by NODES] [twice]    a transform, who publishes
                                                      there, and whether several of them send it
     frame_id FRAME on TOPIC [NUMBER s old]     the frame that a message on the topic names, and its age
+    description on TOPIC: no links, or links NAMES; joints NAMES     what a latched description names
     joints NAME on TOPIC                the joint that a message on the topic names
     /clock runs, /clock goes back NUMBER s     the time on it
     NODE is STATE, NODE has PARAMETER VALUE          what it answers when it is asked for its state
@@ -53,6 +55,7 @@ from multibot_rewrite.system.records import (
     SUBSCRIBES,
     TOPIC,
     Address,
+    Description,
     Edge,
     End,
     Heard,
@@ -91,6 +94,7 @@ LOOKS_UP = re.compile(r"(/\S+) looks up (\S+)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
 CAME = re.compile(r"(/\S+) came (\d+) times")
 JOINTS = re.compile(r"joints (\S+) on (/\S+)")
+DESCRIBED = re.compile(r"description on (/\S+): (?:no links|links ([^;]+)(?:; joints (.+))?)")
 CLOCK_TIME = re.compile(r"(/clock) (?:runs|goes back ([\d.]+) s)")
 FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)(?: ([\d.]+) s old)?")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
@@ -116,6 +120,17 @@ def read_example(text: str) -> tuple[System, System]:
     for line in (*planned, *running):
         assert _is_known(line), f"not in the language of examples: {line}"
     return read_plan(planned), read_graph(running)
+
+
+def read_looks(text: str) -> tuple[System, System]:
+    """The earlier look and the graph of an example."""
+    pairs = [line.split(": ", 1) for line in text.splitlines()]
+    assert {where for where, _ in pairs} <= {"earlier", "running", "as before"}, text
+    before, after = (
+        [rest for where, rest in pairs if where in (own, "as before")]
+        for own in ("earlier", "running")
+    )
+    return read_graph(before), read_graph(after)
 
 
 def read_system(text: str) -> Index:
@@ -177,6 +192,7 @@ def _is_known(line: str) -> bool:
         FRAME_ID,
         JOINTS,
         CLOCK_TIME,
+        DESCRIBED,
         INTERFACE,
         HOLDS,
         LOOKS_UP,
@@ -276,6 +292,10 @@ def read_graph(lines: list[str]) -> System:
             Address(kind, name, value, node) for node, kind, name, value in _words(HOLDS, lines)
         ),
         lookups=tuple(Lookup(node, frame) for node, frame in _words(LOOKS_UP, lines)),
+        descriptions=tuple(
+            Description(topic, *(tuple(filter(None, it.split(", "))) for it in named))
+            for topic, *named in _words(DESCRIBED, lines)
+        ),
     )
     return with_answers(seen, read_states(lines))
 

@@ -59,6 +59,7 @@ NEEDS = {
     "MG307": (QOS, READERS),
     "MG309": (QOS, READERS),
     "MG326": (HEADERS, NODES),
+    "MG322": (NODES,),
     "MG327": (NODES,),
     "MG417": (HEADERS, AGES),
     "MG416": (TRANSFORMS, NUMBERS),

@@ -16,7 +16,7 @@ from graph_faults import FAULTS, LIVE, needed
 from healthy_systems import SYSTEMS, plan
 from paths import fixture_text
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.rules.check import check
@@ -53,11 +53,15 @@ def cell(fault: Fault, column: str) -> Cell:
     source = SOURCES[column]
     found = diagnose(source.read(fault.change(fault.system()))).findings
     lacks = next((it for it in needed(fault) if it in source.lacks), "")
-    return _cell(fault, found, lacks)
+    return _cell(fault, found, lacks, column == "check-launch")
 
 
-def _cell(fault: Fault, found: tuple[Finding, ...], lacks: str = "") -> Cell:
-    own = [it for it in found if (it.code, it.level) == (fault.code, fault.level)]
+def _cell(
+    fault: Fault, found: tuple[Finding, ...], lacks: str = "", may_be_more: bool = False
+) -> Cell:
+    """``may_be_more``: an error may be a warning, as another launch file may start what is missing."""
+    levels = {fault.level, WARNING} if may_be_more else {fault.level}
+    own = [it for it in found if it.code == fault.code and it.level in levels]
     cause = any(all(word in str(it) for word in fault.words) for it in own)
     codes = sorted({it.code for it in found})
     return Cell(tuple(codes), cause, "" if fault.code in codes else lacks)

@@ -206,10 +206,17 @@ def _send_frames(node: Any, topic: str, static: bool, edges: list[list[str]]) ->
         transform.transform.translation.x = 1.5
         message.transforms.append(transform)
     publisher = node.create_publisher(type_, topic, _qos(["latched"] if static else []))
-    if static:
+
+    def publish() -> None:
+        now = node.get_clock().now().to_msg()
+        for transform in message.transforms:
+            transform.header.stamp = now
         publisher.publish(message)
+
+    if static:
+        publish()
     else:
-        node.create_timer(0.1, lambda: publisher.publish(message))
+        node.create_timer(0.1, publish)
 
 
 def _send_header(node: Any, topic: str, type_: str, frame: str, *words: str) -> None:

@@ -128,15 +128,15 @@ def command_rows() -> tuple[Fault, ...]:
         ),
         Fault(
             "a joystick against Nav2", nav, added("/robot1/teleop_twist_joy_node", send1),
-            "MG312", ("teleop_twist_joy_node", "collision_monitor", "twist_mux"), WARNING,
+            "MG312", ("teleop_twist_joy_node", "collision_monitor", "twist_mux"), ERROR,
         ),
         Fault(
             "ros2 topic pub on cmd_vel", nav, added("/_ros2cli_4711", send1),
-            "MG312", ("/_ros2cli_4711", cmd1), WARNING,
+            "MG312", ("/_ros2cli_4711", cmd1), ERROR,
         ),
         Fault(
             "a fleet manager drives as well", nav, added("/fleet_manager", send1),
-            "MG312", ("/fleet_manager", cmd1), WARNING,
+            "MG312", ("/fleet_manager", cmd1), ERROR,
         ),
         Fault(
             "a joystick in the root", nav, added("/teleop_node", (PUBLISHES, "/cmd_vel", TWIST)),

@@ -95,16 +95,16 @@ def open_rows() -> tuple[Fault, ...]:
         Fault(
             "the lidar is remapped, amcl is not", single,
             renamed("/scan", "/narrow_scan", "/lidar_driver"),
-            "MG303", ("/lidar_driver publishes /narrow_scan", "/scan:=/narrow_scan"), WARNING,
+            "MG303", ("/lidar_driver publishes /narrow_scan", "/scan:=/narrow_scan"), ERROR,
         ),
         Fault(
             "the EKF reads imu/data, the driver sends imu", single, ekf("", "odom", "imu/data"),
-            "MG303", ("/imu/data", "/imu_driver publishes /imu"), WARNING,
+            "MG303", ("/imu/data", "/imu_driver publishes /imu"), ERROR,
         ),
         Fault(
             "the EKF reads wheel/odometry, the drive sends odom", single,
             ekf("", "wheel/odometry", "imu"),
-            "MG303", ("/wheel/odometry", "/diff_drive publishes /odom"), WARNING,
+            "MG303", ("/wheel/odometry", "/diff_drive publishes /odom"), ERROR,
         ),
         Fault(
             "the driver is in another namespace than the commands", single,
@@ -138,7 +138,7 @@ def open_rows() -> tuple[Fault, ...]:
         Fault(
             "the joints are sent under another name", single,
             renamed("/joint_states", "/joints", "/joint_states"),
-            "MG303", ("/robot_state_publisher", "publishes /joints"), WARNING,
+            "MG303", ("/robot_state_publisher", "publishes /joints"), ERROR,
         ),
         Fault(
             "the map is in another namespace", single,
@@ -159,7 +159,7 @@ def open_rows() -> tuple[Fault, ...]:
                 added("/depth_camera", (PUBLISHES, "/camera/depth/points", CLOUD)),
                 added("/local_costmap/local_costmap", (SUBSCRIBES, "/points", CLOUD)),
             ),
-            "MG303", ("/points", "/camera/depth/points"), WARNING,
+            "MG303", ("/points", "/camera/depth/points"), ERROR,
         ),
         Fault(
             "navsat_transform reads gps/fix, the driver sends fix", nav,
@@ -167,7 +167,7 @@ def open_rows() -> tuple[Fault, ...]:
                 added("/robot1/navsat_transform", (SUBSCRIBES, "/robot1/gps/fix", FIX)),
                 added("/robot1/gps_driver", (PUBLISHES, "/robot1/fix", FIX)),
             ),
-            "MG303", ("/robot1/gps/fix", "/robot1/gps_driver publishes /robot1/fix"), WARNING,
+            "MG303", ("/robot1/gps/fix", "/robot1/gps_driver publishes /robot1/fix"), ERROR,
         ),
         Fault(
             "a service below its node's name", single,
@@ -183,7 +183,7 @@ def open_rows() -> tuple[Fault, ...]:
                 added("/arm_controller", (SERVES, "/arm_controller/follow_joint_trajectory", FOLLOW)),
                 added("/move_group", (CALLS, "/arm/follow_joint_trajectory", FOLLOW)),
             ),
-            "MG304", ("/arm/follow_joint_trajectory", "/arm_controller serves"), WARNING,
+            "MG304", ("/arm/follow_joint_trajectory", "/arm_controller serves"), ERROR,
         ),
         Fault(
             "a client has a robot's name, the robot has none", single,
@@ -331,7 +331,7 @@ def like_rows() -> tuple[Fault, ...]:
         Fault(
             "robot2's drive takes no commands", nav,
             without_end("/robot2/diff_drive", "/robot2/cmd_vel"),
-            "MG327", ("/robot2/diff_drive", "lacks /robot2/cmd_vel"), WARNING,
+            "MG322", ("/robot2/diff_drive", "lacks /robot2/cmd_vel"), ERROR,
         ),
         Fault(
             "the battery of one of three robots is off", three, without("/robot2/battery"),

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Asks the real rcl about names, in a process of its own."""
+"""Asks the real rcl about names, in a process of its own that lives as long as the tests."""
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+import tempfile
+import threading
+from collections.abc import Iterator, Sequence
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 from paths import SUPPORT
@@ -33,25 +37,44 @@ def _told() -> dict[str, Any]:
     return {}
 
 
-def _asked(cases: Sequence[str]) -> list[Any]:
-    """What rcl says to each case. One process answers all; it ends when its stdin does."""
-    domain = str(150 + os.getpid() % 50)
+def _asked(cases: Sequence[str]) -> Iterator[Any]:
+    """Yield what rcl says to each case. One process answers all of these tests."""
+    child, errors = _child()
+    assert child.stdin and child.stdout
+    watch = threading.Timer(SECONDS, child.kill)
+    watch.start()
+    try:
+        for case in cases:
+            child.stdin.write(f"{case}\n")
+            child.stdin.flush()
+            answer = child.stdout.readline()
+            if not answer:
+                raise AssertionError(Path(errors).read_text()[-2000:])
+            yield json.loads(answer)
+    finally:
+        watch.cancel()
+
+
+@cache
+def _child() -> tuple[subprocess.Popen[str], str]:
+    """Start the process that answers, and the file of what it says besides; it ends when its stdin
+    does."""
     here = {
-        "ROS_DOMAIN_ID": domain,
+        "ROS_DOMAIN_ID": str(150 + os.getpid() % 50),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         # Shared memory may hang where several runs start hundreds of participants at once.
         "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
     }
-    done = subprocess.run(
+    said, errors = tempfile.mkstemp(prefix="rcl_names_")
+    child = subprocess.Popen(
         [sys.executable, str(CHILD)],
-        input="".join(f"{it}\n" for it in cases),
-        capture_output=True,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=said,
         text=True,
-        timeout=SECONDS,
         env={**os.environ, **here},
-        check=False,
     )
-    assert done.returncode == 0, done.stderr[-2000:]
-    answers = [json.loads(line) for line in done.stdout.splitlines()]
-    assert len(answers) == len(cases), done.stderr[-2000:]
-    return answers
+    os.close(said)
+    atexit.register(os.unlink, errors)
+    atexit.register(child.communicate)
+    return child, errors

@@ -10,7 +10,8 @@ from typing import Any, cast
 
 import yaml
 from fleet_folder import planned_fleet
-from graph_examples import read_example, read_system
+from graph_calls import diagnose, seen_plan
+from graph_examples import read_example, read_looks, read_system
 from paths import fixture_text
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
@@ -189,6 +190,9 @@ def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 def system_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """A graph in the lines of ``graph_examples``, and its plan for a rule that asks for one."""
+    if "as before: " in example:
+        before, graph = read_looks(example)
+        return check(seen_plan(diagnose(before)), graph, before=before)
     if rule.options["planned"]:
         return check(*read_example(example))
     return judge(read_system(example))

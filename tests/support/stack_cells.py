@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations, product
 from pathlib import Path
 from typing import NamedTuple
@@ -24,6 +24,7 @@ from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.robot_choice import Choice
+from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
 ROOT = Path(__file__).parents[2]
 STACKS = tuple(yaml.safe_load(own_text(knowledge.__file__, "stacks.yaml"))["stacks"])
@@ -161,6 +162,13 @@ def cells(robot: str) -> Iterator[Cell]:
     return (it for it in (Cell(*words) for words in every) if lives(it))
 
 
+def is_driven(cell: Cell) -> bool:
+    """Is it built and judged by the drive test?"""
+    return (
+        cell.robot in ("gz", "classic", "sdf") and cell.simulator == "gazebo" and not refused(cell)
+    )
+
+
 def findings(cell: Cell, folder: Path) -> tuple[Finding, ...]:
     """What the build of a cell says that is no note."""
     file = folder / "fleet.yaml"
@@ -170,22 +178,31 @@ def findings(cell: Cell, folder: Path) -> tuple[Finding, ...]:
 
 def of_file(file: Path) -> tuple[Finding, ...]:
     """Return what the build of a fleet file says that is no note."""
-    folder = file.parent
+    return built(file, file.parent / "out")[0]
+
+
+def built(file: Path, out: Path) -> tuple[tuple[Finding, ...], tuple[OutputFile, ...]]:
+    """Return what the build of a fleet file into a folder says that is no note, and the files that it
+    would write."""
     plan = planned_fleet(file, choice=Choice())
     try:
-        made = make_outputs(plan, str(folder / "out"))
+        made = make_outputs(plan, str(out))
     except UsageError as error:
-        return (Finding(NOTHING, ERROR, str(error)),)
-    back = read_back(plan, made, str(folder / "out"))
+        return (Finding(NOTHING, ERROR, str(error)),), ()
+    back = read_back(plan, made, str(out))
     told = (it for it in made.findings if it._replace(level=ERROR) not in back)
     every = dict.fromkeys((*told, *back, *plan.fleet.table.problems))
-    return tuple(it for it in every if it.level != NOTE)
+    return tuple(it for it in every if it.level != NOTE), made.files
 
 
 def faults(cell: Cell, folder: Path) -> list[str]:
     """What is wrong with a cell: an error that its input does not have, one that is missing, and
     warnings between what only the build adds."""
-    found = findings(cell, folder)
+    return wrong_in(cell, findings(cell, folder))
+
+
+def wrong_in(cell: Cell, found: Sequence[Finding]) -> list[str]:
+    """The same, of what its build has ``found``."""
     errors = {it.code for it in found if it.level == ERROR}
     wanted = refused(cell)
     # What follows from hardware of another world may be said of its spawners as well.

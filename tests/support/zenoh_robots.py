@@ -13,6 +13,7 @@ import json
 import struct
 import sys
 import threading
+import time
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from typing import Any, NamedTuple
@@ -100,12 +101,15 @@ class Robot(NamedTuple):
         from zenoh import ext
 
         key = f"{self.domain}/{topic.strip('/')}/{TF_TYPE}/{TF_HASH}"
-        data = tf_message(*edges)
+
+        def data() -> bytes:
+            return tf_message(*edges, stamp=divmod(time.time_ns(), 10**9))
+
         attachment = struct.pack("<qqB", 1, 2, 16) + gid.ljust(16, b"g")
         if latched:
             cache = ext.CacheConfig(max_samples=1)
             publisher = ext.declare_advanced_publisher(self.session, key, cache=cache)
-            publisher.put(data, attachment=attachment)
+            publisher.put(data(), attachment=attachment)
             yield
             publisher.undeclare()
             return
@@ -113,7 +117,7 @@ class Robot(NamedTuple):
 
         def send() -> None:
             while not stop.wait(period):
-                self.session.put(key, data, attachment=attachment)
+                self.session.put(key, data(), attachment=attachment)
 
         thread = threading.Thread(target=send)
         thread.start()
@@ -159,12 +163,15 @@ def mangled(name: str) -> str:
 
 
 def tf_message(
-    *edges: tuple[str, str], mark: str = "<", numbers: tuple[float, ...] = (1, 2, 3, 0, 0, 0, 1)
+    *edges: tuple[str, str],
+    mark: str = "<",
+    numbers: tuple[float, ...] = (1, 2, 3, 0, 0, 0, 1),
+    stamp: tuple[int, int] = (7, 8),
 ) -> bytes:
-    """A TFMessage in CDR, little endian or big; all its transforms have these numbers."""
+    """A TFMessage in CDR, little endian or big; its transforms have these numbers and this stamp."""
     data = struct.pack(f"{mark}I", len(edges))
     for edge in edges:
-        data += b"\0" * (-len(data) % 4) + struct.pack(f"{mark}iI", 7, 8)
+        data += b"\0" * (-len(data) % 4) + struct.pack(f"{mark}iI", *stamp)
         for name in edge:
             text = name.encode() + b"\0"
             data += b"\0" * (-len(data) % 4) + struct.pack(f"{mark}I", len(text)) + text

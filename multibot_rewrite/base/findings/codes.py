@@ -26,7 +26,11 @@ def find_rules(word: str, rules: Mapping[str, Rule]) -> list[Rule]:
 
 def no_rule(word: str, rules: Mapping[str, Rule]) -> str:
     """The message that no rule has that code."""
-    near = _near(word, rules)
+    known = known_beginnings(rules)
+    # The longest code that the word begins with, or the code or name most like it.
+    begun = (word[:size].upper() for size in range(len(word), 2, -1))
+    near = next((it for it in begun if it in known), "")
+    near = near or nearest(word.upper(), sorted(known)) or near_name(word, rules)
     hint = f"did you mean {near!r}?" if near else f"see {ASKED}"
     return f"no rule has the code {word!r}, and none begins with it; {hint}"
 
@@ -46,14 +50,6 @@ def find_codes(words: Iterable[str], where: str, rules: Mapping[str, Rule]) -> t
 def names_to_codes(rules: Mapping[str, Rule]) -> dict[str, str]:
     """Return the code of each rule by the rule's name."""
     return {it.name: code for code, it in rules.items()}
-
-
-def _near(word: str, rules: Mapping[str, Rule]) -> str:
-    """Return the longest code that the word begins with, or the code or name most like it."""
-    known = known_beginnings(rules)
-    begun = (word[:size].upper() for size in range(len(word), 2, -1))
-    found = next((it for it in begun if it in known), "")
-    return found or nearest(word.upper(), sorted(known)) or near_name(word, rules)
 
 
 def near_name(word: str, rules: Mapping[str, Rule]) -> str:

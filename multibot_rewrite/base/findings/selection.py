@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from multibot_rewrite.base.findings.finding import LEVELS, Finding
+from multibot_rewrite.base.findings.finding import LEVELS, Finding, Remap
 
 # In the place of a level: the rule is off.
 OFF = "off"
@@ -96,16 +96,24 @@ def with_members(
     order = {robot: at for at, robot in enumerate(dict.fromkeys(names.values()))}
     groups: dict[Finding, list[tuple[str, Finding]]] = {}
     for it in findings:
-        robot = it.robot or next(iter(it.robots), "") or _only_robot(it, names)
+        robot = it.robot or next(iter(it.robots), "")
+        if not robot:
+            # The one robot that it speaks of.
+            text = f"{it.message} {it.hint} {it.node}"
+            said = {of for word, of in names.items() if _pattern(word).search(text)}
+            robot = said.pop() if len(said) == 1 else ""
         groups.setdefault(_without(it, robot, names), []).append((robot, it))
-    return [(_first(members, order), [it for _, it in members]) for members in groups.values()]
-
-
-def _only_robot(finding: Finding, names: Mapping[str, str]) -> str:
-    """The robot that a finding without one speaks of; empty for none or several."""
-    text = f"{finding.message} {finding.hint} {finding.node}"
-    found = {robot for word, robot in names.items() if _pattern(word).search(text)}
-    return found.pop() if len(found) == 1 else ""
+    found = []
+    for members in groups.values():
+        (robot, first), *more = members
+        # What is grouped already keeps its robots.
+        met = [*first.robots, *(name for it, other in more for name in other.robots or (it,))]
+        others = dict.fromkeys(name for name in met if name and name != robot)
+        # In the order of the fleet, robot2 before robot10.
+        rest = sorted(others, key=lambda it: order.get(it, len(order)))
+        first = first._replace(robots=(robot, *rest)) if rest else first
+        found.append((first, [it for _, it in members]))
+    return found
 
 
 def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
@@ -121,6 +129,7 @@ def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
         node=blank(finding.node),
         robot=_SLOT,
         names=tuple(map(blank, finding.names)),
+        remaps=tuple(Remap(*map(blank, it)) for it in finding.remaps),
         robots=(),
     )
 
@@ -134,15 +143,3 @@ def said_of(text: str, finding: Finding, robot: str) -> str:
 def _pattern(word: str, *, escaped: bool = False) -> re.Pattern[str]:
     inner = word if escaped else re.escape(word)
     return re.compile(rf"(?<![A-Za-z0-9])(?:{inner})(?![A-Za-z0-9])")
-
-
-def _first(members: list[tuple[str, Finding]], order: Mapping[str, int]) -> Finding:
-    """The first finding; the others' robots are in the order of the fleet, robot2 before robot10."""
-    (robot, first), *more = members
-    # What is grouped already keeps its robots.
-    met = [*first.robots, *(name for it, found in more for name in found.robots or (it,))]
-    others = dict.fromkeys(name for name in met if name and name != robot)
-    if not others:
-        return first
-    rest = sorted(others, key=lambda it: order.get(it, len(order)))
-    return first._replace(robots=(robot, *rest))

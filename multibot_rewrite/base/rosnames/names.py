@@ -45,7 +45,13 @@ def check_topic_name(name: str) -> NameFault | None:
     """
     if _PLAIN.fullmatch(name):
         return None
-    return _ends(name) or _braces_and_letters(name) or _first_letters(name)
+    if not name:
+        return NameFault("it is empty", 0)
+    if name[0] in _DIGITS:
+        return _digit_first(name, 0)
+    if name.endswith("/"):
+        return _slash_last(name)
+    return _braces_and_letters(name) or _first_letters(name)
 
 
 def check_name_in_code(name: str) -> NameFault | None:
@@ -73,14 +79,6 @@ def check_node_name(name: str) -> NameFault | None:
         return NameFault("it is empty", 0)
     fault = _letters(name, _TOKEN, "a letter, a digit or an underscore")
     return fault or _digit_first(name, 0)
-
-
-def _ends(name: str) -> NameFault | None:
-    if not name:
-        return NameFault("it is empty", 0)
-    if name[0] in _DIGITS:
-        return _digit_first(name, 0)
-    return _slash_last(name) if name.endswith("/") else None
 
 
 def _braces_and_letters(name: str) -> NameFault | None:
@@ -188,8 +186,18 @@ def check_robot_name(name: str) -> str:
     A token is a letter or underscore followed by letters, digits and underscores: the name has to
     serve as node name, namespace and topic segment alike.
     """
-    problem = _token_problem(name)
-    if not problem:
+    other = next((it for it in enumerate(name, 1) if it[1] not in _TOKEN), None)
+    if not name:
+        problem = "it is empty"
+    elif len(name) > MAX_TOKEN:
+        problem = f"it has {len(name)} characters, ROS 2 allows {MAX_TOKEN}"
+    elif name[0] in _DIGITS:
+        problem = f"it starts with the digit {name[0]!r}, which no ROS 2 name may"
+    elif other:
+        problem = f"character {other[0]}, {other[1]!r}, is not a letter, a digit or an underscore"
+    elif "__" in name:
+        problem = "it has two underscores in a row, which no remap rule can hold"
+    else:
         return name
     raise UsageError(f"robot name {name!r}: {problem}; use for example {propose_token(name)!r}")
 
@@ -207,21 +215,6 @@ def check_robot_names(names: Iterable[str]) -> tuple[str, ...]:
             raise UsageError(f"robot name {name!r} is given twice; every robot needs its own")
         seen[name] = name
     return tuple(seen)
-
-
-def _token_problem(name: str) -> str:
-    if not name:
-        return "it is empty"
-    if len(name) > MAX_TOKEN:
-        return f"it has {len(name)} characters, ROS 2 allows {MAX_TOKEN}"
-    if name[0] not in _LETTERS and name[0] in _TOKEN:
-        return f"it starts with the digit {name[0]!r}, which no ROS 2 name may"
-    for place, letter in enumerate(name, 1):
-        if letter not in _TOKEN:
-            return f"character {place}, {letter!r}, is not a letter, a digit or an underscore"
-    if "__" in name:
-        return "it has two underscores in a row, which no remap rule can hold"
-    return ""
 
 
 def propose_token(name: str) -> str:

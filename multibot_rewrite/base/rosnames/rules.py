@@ -79,7 +79,9 @@ def parse_remap(text: str) -> RemapRule | None:
 def read_remap(text: str) -> RemapRule | NameFault:
     """The rule that rcl makes of ``text``, or why it refuses it and at which character."""
     token = _TOKEN.match(text)
-    prefixed = token and text.startswith(":", token.end()) and not _ends_source(text, token.end())
+    # A colon may be that of ``:=`` or of a scheme, not that of a node's name.
+    colon = token.end() if token and not text.startswith(SCHEMES) else len(text)
+    prefixed = text.startswith(":", colon) and not text.startswith(":=", colon)
     node = token[0] if token and prefixed else ""
     at = len(node) + 1 if node else 0
     for key, form in ((NAMESPACE_KEY, _NAMESPACE), *((key, _TOKEN) for key in NODE_KEYS)):
@@ -91,11 +93,6 @@ def read_remap(text: str) -> RemapRule | NameFault:
     if source is None:
         return _refused(text, at, "a name")
     return _sides(text, node, scheme, source.span(), _PATH)
-
-
-def _ends_source(text: str, at: int) -> bool:
-    """Whether the colon at ``at`` is that of ``:=`` or of a scheme, not that of a node's name."""
-    return text.startswith(":=", at) or text.startswith(SCHEMES)
 
 
 def _sides(
@@ -127,7 +124,9 @@ def split_remap(text: str) -> RemapRule | None:
     known before xacro has run.
     """
     left, found, right = text.partition(":=")
-    node, at = _node_part(left)
+    colon = left.find(":")
+    node = "" if colon <= 0 or left.startswith("://", colon) else left[:colon]
+    at = len(node) + 1 if node else 0
     scheme = next((s for s in SCHEMES if left.startswith(s, at)), "")
     source_at = at + len(scheme)
     target_at = len(left) + 2 + next((len(s) for s in SCHEMES if right.startswith(s)), 0)
@@ -135,14 +134,6 @@ def split_remap(text: str) -> RemapRule | None:
     if not found or not source.strip() or not target.strip() or ":" in source or ":=" in target:
         return None
     return RemapRule(node, source, target, source_at, target_at, scheme)
-
-
-def _node_part(left: str) -> tuple[str, int]:
-    """The ``node:`` part of a rule's left side and where the name after it starts."""
-    colon = left.find(":")
-    if colon <= 0 or left.startswith("://", colon):
-        return "", 0
-    return left[:colon], colon + 1
 
 
 def remapped_node(node: str, namespace: str, rules: Iterable[RemapRule]) -> tuple[str, str]:

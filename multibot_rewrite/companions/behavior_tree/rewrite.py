@@ -52,7 +52,8 @@ def port_data() -> Mapping[str, Any]:
 
 def ports_of(document: Document) -> Iterator[tuple[_Element, Site]]:
     """Every literal with the kind of name it is; models for editors are left out."""
-    trees = _trees(document.root)
+    found = {str(it.get("ID", "")): it for it in document.root.iter("BehaviorTree")}
+    trees = _Trees(found, str(document.root.get("BTCPP_format", "3")).startswith("4"))
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         if is_model(element):
             yield from _model_default(document, element, start, trees)
@@ -77,11 +78,6 @@ def character(document: Document, at: int) -> int:
     """Templates count characters, documents bytes."""
     source = document.source
     return at if source.isascii() else len(source[:at].decode())
-
-
-def _trees(root: _Element) -> _Trees:
-    found = {str(it.get("ID", "")): it for it in root.iter("BehaviorTree")}
-    return _Trees(found, str(root.get("BTCPP_format", "3")).startswith("4"))
 
 
 def is_model(element: _Element) -> bool:
@@ -197,17 +193,14 @@ def named_ports(document: Document, context: Context) -> NamedFile:
     free = [it for element, it in every if element.tag != "include"]
     included = tuple(it for element, it in every if element.tag == "include")
     names = tuple(it for it in free if it.kind)
-    others = tuple(site for it in free if not it.kind for site in _others(it))
-    text = document.source.decode()
-    return NamedFile(TREE, document.file, text, context, {}, names, others, included=included)
-
-
-def _others(site: Site) -> Iterator[Site]:
-    """What may be a name: the whole value, or the strings of a script."""
     known = port_data()
-    if site.key in known["keep"]:
-        return
-    texts = [site.text]
-    if site.key in known["scripts"]:
-        texts = [it.strip() for it in site.text.replace('"', "'").split("'")[1::2]]
-    yield from (site._replace(text=it) for it in texts)
+    others = []
+    for site in (it for it in free if not it.kind and it.key not in known["keep"]):
+        # The strings of a script, otherwise the whole value.
+        inside = site.text.replace('"', "'").split("'")[1::2]
+        texts = [it.strip() for it in inside] if site.key in known["scripts"] else [site.text]
+        others += [site._replace(text=it) for it in texts]
+    text = document.source.decode()
+    return NamedFile(
+        TREE, document.file, text, context, {}, names, tuple(others), included=included
+    )

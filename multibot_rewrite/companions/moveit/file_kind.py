@@ -6,7 +6,7 @@ names: read from ``moveit.yaml``, which explains its own form.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -70,7 +70,14 @@ def find_names(
         _below(root, rules, walk)
     free = (it for it in _scalars(root) if id(it) not in walk.claimed and is_text(it))
     others = [site_at(it, "", str(it.value)) for it in free]
-    return walk.found, others, [site_at(it, "", str(it.value)) for it in _twice(root)]
+    twice = []
+    for node in _nodes(root):
+        seen: set[str] = set()
+        for key, _ in pairs(node):
+            if key.value in seen and not is_merge(key):
+                twice.append(site_at(key, "", str(key.value)))
+            seen.add(key.value)
+    return walk.found, others, twice
 
 
 def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
@@ -99,16 +106,21 @@ def _below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
         for item in node.value:
             _below(item, rule, walk)
     elif isinstance(node, yaml.ScalarNode):
-        _value(node, rule, walk)
+        if isinstance(rule, str) and is_text(node):
+            walk.claimed.add(id(node))
+            walk.found.extend(_named(node, rule))
     elif isinstance(rule, Mapping):
         for key, value in entries(node):
-            _entry(key, value, rule, walk)
-
-
-def _value(node: yaml.ScalarNode, rule: Shape, walk: _Walk) -> None:
-    if isinstance(rule, str) and is_text(node):
-        walk.claimed.add(id(node))
-        walk.found.extend(_named(node, rule))
+            match = _resolved(str(key.value), 0, value, rule, walk.names)
+            if match is None:
+                continue
+            marks, below = match
+            walk.claimed.add(id(key))
+            slot = slot_of(key)
+            walk.found.extend(
+                Site(kind, without_robot(text), "", slot, at, len(text)) for at, text, kind in marks
+            )
+            _below(value, below, walk)
 
 
 def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
@@ -120,19 +132,6 @@ def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
         return
     for it in _NAME.finditer(slot.value, *found.span("names")):
         yield Site(found["kind"], without_robot(it[0]), "", slot, it.start(), len(it[0]))
-
-
-def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Shapes, walk: _Walk) -> None:
-    match = _resolved(str(key.value), 0, value, rules, walk.names)
-    if match is None:
-        return
-    marks, rule = match
-    walk.claimed.add(id(key))
-    slot = slot_of(key)
-    walk.found.extend(
-        Site(kind, without_robot(text), "", slot, at, len(text)) for at, text, kind in marks
-    )
-    _below(value, rule, walk)
 
 
 def _resolved(
@@ -170,7 +169,13 @@ def _exact(
     for kind, telling, rule in _wild(rules):
         if kind in KINDS and _declared(names, kind, word):
             return ((at, word, kind),), rule
-        if telling and value is not None and _tells(value, telling):
+        if not telling or value is None:
+            continue
+        if "map" in telling:
+            tells = isinstance(value, yaml.MappingNode) or value.tag == "tag:yaml.org,2002:null"
+        else:
+            tells = not {str(key.value) for key, _ in entries(value)}.isdisjoint(telling)
+        if tells:
             return ((at, word, kind),), rule
     return None
 
@@ -195,12 +200,6 @@ def _wild(rules: Shapes) -> Iterator[tuple[str, tuple[str, ...], Shape]]:
             yield kind, tuple(telling.split()), rule
 
 
-def _tells(value: yaml.Node, telling: Iterable[str]) -> bool:
-    if "map" in telling:
-        return isinstance(value, yaml.MappingNode) or value.tag == "tag:yaml.org,2002:null"
-    return not {str(key.value) for key, _ in entries(value)}.isdisjoint(telling)
-
-
 def _scalars(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
     """Every scalar once, keys included."""
     for node in _nodes(root):
@@ -221,15 +220,6 @@ def _nodes(root: yaml.Node | None) -> Iterator[yaml.Node]:
             waiting += [it for pair in node.value for it in pair]
         elif isinstance(node, yaml.SequenceNode):
             waiting += node.value
-
-
-def _twice(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
-    for node in _nodes(root):
-        seen: set[str] = set()
-        for key, _ in pairs(node):
-            if key.value in seen and not is_merge(key):
-                yield key
-            seen.add(key.value)
 
 
 EMPTY = "empty"
@@ -268,7 +258,14 @@ def find_kind(document: YamlText) -> MoveitKind | None:
     _refuse_params(document, root, _DEPTH)
     paths = set(_paths(root))
     known = (kind for kind in kinds() if not paths.isdisjoint(kind.marks))
-    if kind := next(known, None) or _by_values(root) or _by_name(document.file):
+    if kind := next(known, None):
+        return kind
+    # A file of numbers only holds joint positions.
+    values = [value for _, value in entries(root)]
+    if values and all(it.tag.endswith((":float", ":int", "!degrees", "!radians")) for it in values):
+        return next(kind for kind in kinds() if kind.name == "initial_positions")
+    name = os.path.basename(document.file).lower()
+    if kind := next((kind for kind in kinds() if any(it in name for it in kind.files)), None):
         return kind
     words = ", ".join(str(key.value) for key, _ in list(entries(root))[:4])
     what = f"not a known kind of MoveIt file: it starts with {words or 'nothing'}; leave it out,"
@@ -308,16 +305,3 @@ def _paths(root: yaml.Node) -> Iterator[str]:
         yield from (str(key.value), first)
         for word in (rest.partition(".")[0], *(str(below.value) for below, _ in entries(value))):
             yield from (f"{first}.{word}", f"*.{word}")
-
-
-def _by_values(root: yaml.Node) -> MoveitKind | None:
-    """A file of numbers only holds joint positions."""
-    values = [value for _, value in entries(root)]
-    if values and all(it.tag.endswith((":float", ":int", "!degrees", "!radians")) for it in values):
-        return next(kind for kind in kinds() if kind.name == "initial_positions")
-    return None
-
-
-def _by_name(file: str) -> MoveitKind | None:
-    name = os.path.basename(file).lower()
-    return next((kind for kind in kinds() if any(it in name for it in kind.files)), None)

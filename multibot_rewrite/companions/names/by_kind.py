@@ -88,21 +88,18 @@ def controller(context: Context, value: str) -> str:
 
 def node(context: Context, value: str) -> str:
     """A node's name as others use it; a node that serves all robots keeps its name."""
-    place = context.nodes.get(value.strip("/"), "")
+    bare = value.strip("/")
+    place = context.nodes.get(bare, "")
     if place and NAMESPACE_SLOT not in place:
         return place if context.topics.naming.topics == NAMESPACE else value
+    below = place.startswith(f"/{NAMESPACE_SLOT}/") if place else is_apart(bare, context.distro)
     # A relative name is also the id of Nav2's bonds, so it stays; the remap rules lead to the node.
-    if _is_apart(context, value.strip("/")) and context.topics.naming.topics != NAMESPACE:
+    if below and context.topics.naming.topics != NAMESPACE:
         return f"/{NAMESPACE_SLOT}{value}" if value.startswith("/") else value
     above, slash, name = value.rpartition("/")
     if slash and not above and context.topics.naming.topics == NAMESPACE and is_plain(value):
         return f"/{NAMESPACE_SLOT}{value}"
     return above + slash + controller(context, name)
-
-
-def _is_apart(context: Context, value: str) -> bool:
-    place = context.nodes.get(value, "")
-    return place.startswith(f"/{NAMESPACE_SLOT}/") if place else is_apart(value, context.distro)
 
 
 def namespace(context: Context, value: str) -> str:
@@ -151,6 +148,7 @@ def before_frames(between: str) -> Speller:
 
 def words(context: Context, value: str) -> str:
     """Text with names of the description in it: ``joints(shoulder,elbow)``."""
+
     return _WORD.sub(lambda found: _word(context, found[0]), value)
 
 

@@ -17,7 +17,7 @@ from multibot_rewrite.companions.context import NAMESPACE_SLOT, Context
 from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, is_apart
 from multibot_rewrite.spelling.of_runs import parsed, placed, target_of
 from multibot_rewrite.spelling.table import run_of
@@ -57,8 +57,12 @@ def spell_topic(
     """What a topic or service named by a parameter of ``node`` (the stack's name) becomes."""
     if not is_plain(value) or value.startswith("~") or check_name_in_code(value):
         return TopicText(value)
-    outside = _is_outside(context, node, reach, facts)
-    meant = _in_full(node, value, reach) if outside else value
+    meant = value
+    # Only a full name is right where a name is resolved in another namespace than the layout's: one
+    # that goes to a costmap, and those of nodes that stand apart.
+    apart = facts[node].apart if node in facts else is_apart(node, context.distro)
+    if (reach == FROM_PARENT or apart) and context.topics.naming.topics != NAMESPACE:
+        meant = expand(value, f"/{node.rpartition('/')[0]}" if reach == FROM_NODE else "/", "")
     text = _spelled(context, kind, meant, reach == IN_FULL)
     made_absolute = reach == IN_FULL and not value.startswith("/")
     ruled = _ruled_node(facts.get(node), value, context) if node in context.nodes else None
@@ -69,22 +73,6 @@ def spell_topic(
     )
 
 
-def _is_outside(context: Context, node: str, reach: str, facts: Facts) -> bool:
-    """Is a name resolved in another namespace than the layout's, so that only a full name is right?
-
-    A name that goes to a costmap is (``FROM_PARENT``), and those of nodes that stand apart.
-    """
-    if reach == FROM_PARENT:
-        return context.topics.naming.topics != NAMESPACE
-    apart = facts[node].apart if node in facts else is_apart(node, context.distro)
-    return apart and context.topics.naming.topics != NAMESPACE
-
-
-def _in_full(node: str, value: str, reach: str) -> str:
-    """The full name that a value means for a single robot."""
-    return expand(value, f"/{node.rpartition('/')[0]}" if reach == FROM_NODE else "/", "")
-
-
 def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
     """The name for a robot; ``absolute`` if it is not resolved in the robot's namespace."""
     naming = context.topics.naming
@@ -92,35 +80,25 @@ def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
     if value.strip("/") in naming.shared_topics:
         return lead + value if absolute or naming.topics == NAMESPACE else value
     full = lead + value if absolute else value
-    return _below_node(context, full) or spell(context.topics, kind, full)
-
-
-def _below_node(context: Context, value: str) -> str:
-    """A name below another node's, such as its private services, follows the node's name."""
-    head, slash, rest = value.strip("/").partition("/")
+    # A name below another node's, such as its private services, follows the node's name.
+    head, slash, rest = full.strip("/").partition("/")
     place = context.nodes.get(head, "")
-    if not slash or not place or context.topics.naming.topics == NAMESPACE:
-        return ""
-    relative = not value.startswith("/") and place.count("/") == 1
-    return f"{place.lstrip('/') if relative else place}/{rest}"
+    if slash and place and naming.topics != NAMESPACE:
+        relative = not full.startswith("/") and place.count("/") == 1
+        return f"{place.lstrip('/') if relative else place}/{rest}"
+    return spell(context.topics, kind, full)
 
 
 def _ruled_node(node: NodeFacts | None, value: str, context: Context) -> NodeFacts | None:
     """The node with only those endpoints whose rules could match the name."""
     if node is None or node.shared:
         return None
-    bare = value.strip("/")
-    found = [it for it in node.endpoints if it.name.strip("/") == bare and _ruled(it, context)]
-    return node._replace(endpoints=tuple(found)) if found else None
-
-
-def _ruled(endpoint: Endpoint, context: Context) -> bool:
-    if endpoint.fixed:
-        return False
-    naming = context.topics.naming
-    return bool(
-        endpoint.remapped or target_of(endpoint.name, endpoint.kind, NAMESPACE_SLOT, naming)
-    )
+    bare, naming = value.strip("/"), context.topics.naming
+    found = (it for it in node.endpoints if it.name.strip("/") == bare and not it.fixed)
+    ruled = [
+        it for it in found if it.remapped or target_of(it.name, it.kind, NAMESPACE_SLOT, naming)
+    ]
+    return node._replace(endpoints=tuple(ruled)) if ruled else None
 
 
 def _ruled_text(
@@ -130,7 +108,11 @@ def _ruled_text(
     naming = context.topics.naming
     table = run_of(NAMESPACE_SLOT, node, naming, context.nodes)
     bound = bind(table.name, table.namespace, parsed(table.rules))
-    wanted = _wanted(context, kind, texts[1], node)
+    # The robot's name for the topic that the text means for a single robot with the stack's rules.
+    meant = expand(texts[1], "/", "")
+    remapped = {expand(it.name, "/", ""): it.remapped for it in node.endpoints}.get(meant, "")
+    wanted = _spelled(context, kind, expand(remapped or meant, "/", ""), True)
+    wanted = wanted if wanted.startswith("/") else f"/{wanted}"
     parent = placed(NAMESPACE_SLOT, "node", naming, node.apart)[0]
     root = parent if reach == FROM_PARENT else table.namespace
     resolved = [resolve_bound(expand(text, root, table.name), kind, bound) for text in texts]
@@ -140,11 +122,3 @@ def _ruled_text(
     # A rule also moves names that the node derives: <costmap>_updates, <image>/compressed.
     ruled = naming.topics != NAMESPACE and reach == FROM_NODE
     return TopicText(good[-1] if ruled else good[0])
-
-
-def _wanted(context: Context, kind: str, value: str, node: NodeFacts) -> str:
-    """The robot's name for the topic that the value means for a single robot with the stack's rules."""
-    meant = expand(value, "/", "")
-    remapped = {expand(it.name, "/", ""): it.remapped for it in node.endpoints}.get(meant, "")
-    full = _spelled(context, kind, expand(remapped or meant, "/", ""), True)
-    return full if full.startswith("/") else f"/{full}"

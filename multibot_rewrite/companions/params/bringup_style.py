@@ -60,12 +60,9 @@ def for_bringup(
     findings = tuple(it for it in made if isinstance(it, Finding))
     named = {below_namespace(it.path, namespace) for it in sections.values()}
     added = {f"**/{node}": values for node, values in more.items() if node in named}
-    return f"{spliced(document, splices)}{_lines(added)}", findings
-
-
-def _lines(sections: Values) -> str:
-    """Sections at the end of a file; their keys are others than those of the file."""
-    return f"\n{parameters_text(sections)[1:-1]}\n" if sections else ""
+    # The keys of these sections are others than those of the file.
+    behind = f"\n{parameters_text(added)[1:-1]}\n" if added else ""
+    return spliced(document, splices) + behind, findings
 
 
 def _changed(document: YamlText, section: RawSection, namespace: str) -> Iterator[Splice | Finding]:

@@ -144,7 +144,12 @@ def _claim(
             names.sites.extend(_in_key(it, param) for it in marks)
             break
     if param is None or param.kind != "keep":
-        _values(job, key, items(value), param, _reach(param, layer, job.release))
+        reach = FROM_NODE
+        if param and param.absolute:
+            plugin = next((str(it.value) for key, it in layer.value if key.value == "plugin"), "")
+            outside = is_absolute(param, job.release) or is_below_costmap(plugin)
+            reach = IN_FULL if outside else FROM_PARENT
+        _values(job, key, items(value), param, reach)
     else:
         names.kept.extend(it for it in items(value) if isinstance(it, yaml.ScalarNode))
 
@@ -158,18 +163,13 @@ def _in_key(mark: _Mark, param: Param) -> Site:
     return site._replace(together=id(key))
 
 
-def _reach(param: Param | None, layer: yaml.MappingNode, release: str) -> str:
-    if param is None or not param.absolute:
-        return FROM_NODE
-    plugin = next((str(it.value) for key, it in layer.value if key.value == "plugin"), "")
-    outside = is_absolute(param, release) or is_below_costmap(plugin)
-    return IN_FULL if outside else FROM_PARENT
-
-
 def _values(
     job: _Job, key: yaml.ScalarNode, scalars: list[yaml.Node], param: Param | None, reach: str
 ) -> None:
     kind = param.kind if param else ""
+    # The releases in which the node takes off a slash that a frame starts with.
+    strips = job.section.node.strips if job.section.node else ""
+    is_stripped = bool(strips) and has_release(strips, job.release)
     for scalar in scalars:
         if not isinstance(scalar, yaml.ScalarNode):
             continue
@@ -182,15 +182,9 @@ def _values(
             job.names.unclaimed.append(scalar)
             continue
         made = Site(kind, _without_robot(text, kind), str(key.value), slot_of(scalar))
-        bare = kind == "frame" and _is_stripped(job)
+        bare = kind == "frame" and is_stripped
         site = made._replace(is_sure=param is not None, together=id(key), bare=bare, param=param)
         job.names.sites.append(site._replace(node=job.node, reach=reach))
-
-
-def _is_stripped(job: _Job) -> bool:
-    """Does the node take off a slash that a frame starts with?"""
-    words = job.section.node.strips if job.section.node else ""
-    return bool(words) and has_release(words, job.release)
 
 
 def _without_robot(text: str, kind: str) -> str:
@@ -205,15 +199,11 @@ def name_in(scalar: yaml.ScalarNode) -> str:
     text = str(scalar.value)
     if scalar.tag != STRING or (text in _BOOLEANS and not scalar.style):
         return ""
-    if scalar.style:
+    if scalar.style or not _NUMBER.match(text):
         return text
-    return "" if _NUMBER.match(text) and _is_number(text) else text
-
-
-def _is_number(text: str) -> bool:
-    # 1e-9 is a string for PyYAML and a number for rcl.
     try:
+        # 1e-9 is a string for PyYAML and a number for rcl.
         float(text)
     except ValueError:
-        return False
-    return True
+        return text
+    return ""

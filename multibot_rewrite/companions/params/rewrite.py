@@ -26,7 +26,7 @@ from multibot_rewrite.companions.context import (
 from multibot_rewrite.companions.named_file import PARAMS, Companion, NamedFile
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.names.placeholders import without_robot
-from multibot_rewrite.companions.params.name_sites import NO_NAMES, Page, SectionNames, find_names
+from multibot_rewrite.companions.params.name_sites import NO_NAMES, find_names
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
@@ -75,7 +75,22 @@ def rewrite_params(
             frozenset(at_run_time),
             clock,
         )
-        return _params(job, beside, is_first)
+        file = read_params(document, context, job.known, job.own)
+        job = job._replace(known=job.known._replace(sent=file.sent))
+        sections = [section for section, _ in file.pages]
+        pages = [it for it in file.pages if not it[0].shared]
+        found = [RawSection(*it[:3]) for it in sections]
+        others = [it for other in beside for it in without_own(raw_sections(other), job.own)]
+        made = [
+            *key_splices(document, sections),
+            *(it for section in sections for it in clock_splices(job, section)),
+            *(it for page in pages for it in name_splices(job, *page)),
+            *default_lines(job, pages, others),
+            *lacking_sections(job, found, others, is_first),
+        ]
+        template = make_template(document.text, [it for it in made if isinstance(it, Splice)])
+        pieces = (document.bom + template.pieces[0], *template.pieces[1:])
+        return Companion(FileTemplate(pieces), file, _once(made))
 
 
 def rewrite_values(job: ParamsJob) -> Companion:
@@ -90,52 +105,20 @@ def rewrite_values(job: ParamsJob) -> Companion:
         pages = (it for it in file.pages if not it[0].shared)
         made = [one for it in pages for one in name_splices(job, *it)]
         splices = [it for it in made if isinstance(it, Splice)]
-        findings = [it for it in made if isinstance(it, Finding)]
-        return Companion(make_template(job.document.text, splices), file, _once(findings))
+        return Companion(make_template(job.document.text, splices), file, _once(made))
 
 
-def _params(job: ParamsJob, beside: Sequence[YamlText], is_first: bool) -> Companion:
-    document, context = job.document, job.context
-    file = read_params(document, context, job.known, job.own)
-    job = job._replace(known=job.known._replace(sent=file.sent))
-    found = [RawSection(*section[:3]) for section, _ in file.pages]
-    others = [it for other in beside for it in without_own(raw_sections(other), job.own)]
-    made = [*_made(job, file.pages, others), *lacking_sections(job, found, others, is_first)]
-    splices = [it for it in made if isinstance(it, Splice)]
+def _once(made: Iterable[Splice | Finding]) -> tuple[Finding, ...]:
+    """What is the same at many places is reported at the first; its slots read ``<robot>``."""
     findings = [it for it in made if isinstance(it, Finding)]
-    template = make_template(document.text, splices)
-    pieces = (document.bom + template.pieces[0], *template.pieces[1:])
-    return Companion(FileTemplate(pieces), file, _once(findings))
-
-
-def _made(
-    job: ParamsJob, every: Sequence[Page], others: Sequence[RawSection]
-) -> Iterator[Splice | Finding]:
-    sections = [section for section, _ in every]
-    pages = [it for it in every if not it[0].shared]
-    yield from key_splices(job.document, sections)
-    for section in sections:
-        yield from clock_splices(job, section)
-    for section, names in pages:
-        yield from name_splices(job, section, names)
-    yield from default_lines(job, pages, others)
-
-
-def _once(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """What is the same at many places is reported at the first."""
     first: dict[tuple[str, str], Finding] = {}
     for found in sorted(findings, key=lambda it: (it.line, it.column, it.code)):
-        first.setdefault((found.code, found.message), found)
-    return tuple(_in_words(it) for it in first.values())
-
-
-def _in_words(found: Finding) -> Finding:
-    """A finding is about every robot: its slots read ``<robot>``."""
-    message, hint = (
-        text.replace(NAMESPACE_SLOT, "<robot>").replace(TAG_SLOT, "<robot>")
-        for text in (found.message, found.hint)
-    )
-    return found._replace(message=message, hint=hint)
+        message, hint = (
+            text.replace(NAMESPACE_SLOT, "<robot>").replace(TAG_SLOT, "<robot>")
+            for text in (found.message, found.hint)
+        )
+        first.setdefault((found.code, found.message), found._replace(message=message, hint=hint))
+    return tuple(first.values())
 
 
 def read_params(
@@ -149,9 +132,18 @@ def read_params(
         (it, NO_NAMES if it.shared else find_names(document, it, known, context.distro))
         for it in sections
     )
+    # The frames that nodes of the file make themselves: no description has them.
+    sites = [site for _, page in pages for site in page.sites]
+    sent = frozenset(it.text.lstrip("/") for it in sites if it.own)
+    others = (
+        site_at(it, "", str(it.value), in_key=in_key)
+        for _, page in pages
+        for found, in_key in ((page.unclaimed, False), (page.keys, True))
+        for it in found
+    )
     names = (
         *(site for it in sections for site in _keys(it, own)),
-        *(it for _, names in pages for it in names.sites),
+        *sites,
     )
     return NamedFile(
         PARAMS,
@@ -160,41 +152,26 @@ def read_params(
         context,
         {},
         names,
-        tuple(it for _, page in pages for it in _others(page)),
+        tuple(others),
         tuple(site_at(key, "", str(key.value)) for _, page in pages for key in page.twice),
         document,
         pages,
         known,
-        sent=known.sent | _own_frames(pages),
+        sent=known.sent | sent,
         is_for_one=bool(own),
     )
-
-
-def _own_frames(pages: Iterable[Page]) -> frozenset[str]:
-    """The frames that nodes of the file make themselves: no description has them."""
-    sites = (site for _, names in pages for site in names.sites)
-    return frozenset(it.text.lstrip("/") for it in sites if it.own)
 
 
 def _keys(section: ParamSection, own: Collection[str]) -> Iterator[Site]:
     """The keys above a section, without what its path has not: the robot that the file is for. A
     namespace that is the root's or the robot's alone is no name of a node."""
     first, *rest = section.keys
-    name = _without(first.value, own)
+    bare = first.value.strip("/")
+    words = (it for it in own if f"{bare}/".startswith(f"{it}/"))
+    name = next((bare.removeprefix(it).strip("/") for it in words), first.value)
     if not rest or not first.value or name not in ("", "/"):
         yield site_at(first, SECTION, without_robot(name or first.value))
     yield from (site_at(it, SECTION, without_robot(it.value), in_key=True) for it in rest)
-
-
-def _without(key: str, own: Collection[str]) -> str:
-    bare = key.strip("/")
-    words = (it for it in own if f"{bare}/".startswith(f"{it}/"))
-    return next((bare.removeprefix(it).strip("/") for it in words), key)
-
-
-def _others(names: SectionNames) -> Iterator[Site]:
-    yield from (site_at(it, "", str(it.value)) for it in names.unclaimed)
-    yield from (site_at(it, "", str(it.value), in_key=True) for it in names.keys)
 
 
 _PATTERN = re.compile(r"/[A-Za-z0-9_/*]+")
@@ -215,14 +192,13 @@ def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Sp
                 message = f"the sections below {key.value!r} need different names: {other}, {text}"
                 hint = "write each section under its own key, as in node: ros__parameters:"
                 made.append(found_at(document, key, MIXED_KEY, message, hint))
-    made += [_key_splice(key, text) for key, text in new.values() if text != key.value]
+    for key, text in new.values():
+        if text != key.value:
+            splice = replaced(key, text)
+            # A pattern needs no quotes unless it starts with a star.
+            is_plain = not key.style and _PATTERN.fullmatch(text)
+            made.append(splice._replace(new=text) if is_plain else splice)
     return made
-
-
-def _key_splice(key: yaml.ScalarNode, text: str) -> Splice:
-    """A pattern needs no quotes unless it starts with a star."""
-    splice = replaced(key, text)
-    return splice if key.style or not _PATTERN.fullmatch(text) else splice._replace(new=text)
 
 
 def _texts(section: ParamSection) -> list[str]:

@@ -73,8 +73,14 @@ class RawSection(NamedTuple):
 
 def raw_sections(document: YamlText) -> list[RawSection]:
     """Every section in its order; InputError for a file that rcl rejects or that has no section."""
-    _check_file(document)
-    found = list(_below(document, document.root, ()))
+    is_map = document.root is None or isinstance(document.root, yaml.MappingNode)
+    has_parameters = document.root is None or PARAMETERS in document.text
+    # Hardly any file has one, and this search is far quicker.
+    marks = anchors(document) if has_parameters and _MARK.search(document.text) else ()
+    for line, text in marks:
+        place = f"{document.file}:{line}"
+        raise InputError(f"{place}: rcl takes no anchors or aliases ({text}); write the value out")
+    found = list(_below(document, document.root, ())) if has_parameters and is_map else []
     if not found:
         raise _other_kind(document)
     return found
@@ -82,24 +88,11 @@ def raw_sections(document: YamlText) -> list[RawSection]:
 
 def without_own(found: Iterable[RawSection], own: Collection[str]) -> list[RawSection]:
     """The sections of a file that is for one robot, without the words that stand for it."""
-    return [it._replace(path=_without(it.path, own)) for it in found]
-
-
-def _without(path: str, own: Collection[str]) -> str:
-    above = (f"{word}/" for word in own)
-    return next((path.removeprefix(it) for it in above if path.startswith(it)), path)
-
-
-def _check_file(document: YamlText) -> None:
-    if document.root is not None and PARAMETERS not in document.text:
-        raise _other_kind(document)
-    # Hardly any file has one, and this search is far quicker.
-    for line, text in anchors(document) if _MARK.search(document.text) else ():
-        place = f"{document.file}:{line}"
-        raise InputError(f"{place}: rcl takes no anchors or aliases ({text}); write the value out")
-    if isinstance(document.root, yaml.MappingNode):
-        return
-    raise _other_kind(document)
+    made = []
+    for it in found:
+        above = next((f"{word}/" for word in own if it.path.startswith(f"{word}/")), "")
+        made.append(it._replace(path=it.path.removeprefix(above)))
+    return made
 
 
 def _other_kind(document: YamlText) -> InputError:
@@ -138,7 +131,9 @@ def _looks_like(root: yaml.Node | None) -> str:
 def _below(
     document: YamlText, node: yaml.Node | None, above: tuple[yaml.ScalarNode, ...]
 ) -> Iterator[RawSection]:
-    _check_keys(document, node)
+    for key, _ in node.value if isinstance(node, yaml.MappingNode) else ():
+        if not isinstance(key, yaml.ScalarNode):
+            raise refused(document, key, NO_NAME)
     for key, value in pairs(node):
         if key.value != PARAMETERS:
             yield from _below(document, value, (*above, key))
@@ -155,14 +150,6 @@ def _below(
             raise refused(document, value, f"{PARAMETERS} must hold names and values")
 
 
-def _check_keys(document: YamlText, node: yaml.Node | None) -> None:
-    if not isinstance(node, yaml.MappingNode):
-        return
-    for key, _ in node.value:
-        if not isinstance(key, yaml.ScalarNode):
-            raise refused(document, key, NO_NAME)
-
-
 def identify_sections(
     found: Iterable[RawSection], context: Context, known: KnownNodes
 ) -> list[ParamSection]:
@@ -170,22 +157,21 @@ def identify_sections(
     found = list(found)
     types = controller_types(found)
     made = [_section(it, context, known, types) for it in found]
-    packages = {it.node.package for it in made if it.node and _is_by_words(it, known)}
-    return [it._replace(node=None) if _is_of(packages, it) else it for it in made]
+    wild = [it for it in made if it.wild and it.node]
+    # The packages that the file is for: parameters alone tell a node in any namespace.
+    packages = {
+        it.node.package
+        for it in wild
+        if it.node and it.path.rpartition("/")[2] not in known.names and not it.node.types
+    }
 
+    def is_namesake(it: ParamSection) -> bool:
+        # A name says less than parameters: the plugins of mavros are called camera and imu.
+        if not packages or not it.wild or it.node is None or it.node.package in packages:
+            return False
+        return all(name not in it.node.params for name, _ in flattened(it.body))
 
-def _is_by_words(it: ParamSection, known: KnownNodes) -> bool:
-    """Is a section for a node in any namespace known by its parameters alone?"""
-    by_name = it.path.rpartition("/")[2] in known.names
-    return it.wild and it.node is not None and not by_name and not it.node.types
-
-
-def _is_of(packages: Collection[str], it: ParamSection) -> bool:
-    """Is a known node only called like a node of the packages that the file is for? A name says less
-    than parameters: the plugins of mavros are called camera and imu."""
-    if not packages or not it.wild or it.node is None or it.node.package in packages:
-        return False
-    return all(name not in it.node.params for name, _ in flattened(it.body))
+    return [it._replace(node=None) if is_namesake(it) else it for it in made]
 
 
 def _section(
@@ -197,30 +183,21 @@ def _section(
     everybodys = f"/{it.path}" if it.path in WORLD_NODES else ""
     place = context.nodes.get(name if wild else it.path, everybodys)
     shared = bool(place) and NAMESPACE_SLOT not in place
+    naming = context.topics.naming
     if filled:
         full = it.path
+    elif wild:
+        # A pattern matches in any namespace; only the node's own name in it can change.
+        places = {at.rpartition("/")[2] for at in apart_nodes(context.distro)}
+        ends = context.nodes.get(name, "").endswith(f"{NAMESPACE_SLOT}/{name}")
+        kept = name in ANY or name in places or ends
+        own = name if kept else spelled(naming, NAMESPACE_SLOT, "node", name)
+        full = f"/{it.path.removesuffix(name)}{own}"
     else:
-        full = _full_wild(it.path, name, context) if wild else place or _full(it.path, context)
+        full = place or full_name(it.path, naming, is_apart(it.path, context.distro))
     inner = name.endswith(INNER)
     node = None if name in ANY else identify_node(name, it.body, known, types)
     return ParamSection(it.keys, it.path, it.body, full, node, wild, shared, inner)
-
-
-def _full(path: str, context: Context) -> str:
-    return full_name(path, context.topics.naming, is_apart(path, context.distro))
-
-
-def _keeps_name(name: str, context: Context) -> bool:
-    """Does a node of this name run under it in every layout?"""
-    places = {it.rpartition("/")[2] for it in apart_nodes(context.distro)}
-    return name in places or context.nodes.get(name, "").endswith(f"{NAMESPACE_SLOT}/{name}")
-
-
-def _full_wild(path: str, name: str, context: Context) -> str:
-    """A pattern matches in any namespace; only the node's own name in it can change."""
-    kept = name in ANY or _keeps_name(name, context)
-    own = name if kept else spelled(context.topics.naming, NAMESPACE_SLOT, "node", name)
-    return f"/{path[: len(path) - len(name)]}{own}"
 
 
 def identify_node(

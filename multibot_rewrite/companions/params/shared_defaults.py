@@ -66,7 +66,11 @@ def default_lines(
     beside: Sequence[RawSection],
 ) -> Iterator[Splice | Finding]:
     """Lines for the first section of each known node, without those that ``beside`` sets."""
-    everywhere = _set_anywhere(pages, beside)
+    # What is set for which nodes, if patterns or other files set more than the section itself.
+    several = beside or any(it.wild for it, _ in pages)
+    bodies = [(it.full, it.body) for it, _ in pages] if several else []
+    bodies += [(f"/{it.path}", it.body) for it in beside]
+    everywhere = [(full, {name for name, _ in flattened(body)}) for full, body in bodies]
     done: set[str] = set()
     for section, _ in pages:
         if section.node is None or section.shared or section.inner or section.full in done:
@@ -105,17 +109,6 @@ def missing_defaults(
                 )
 
 
-def _set_anywhere(
-    pages: Sequence[tuple[ParamSection, SectionNames]], beside: Sequence[RawSection]
-) -> list[tuple[str, set[str]]]:
-    """What is set for which nodes, if patterns or other files set more than the section itself."""
-    if not beside and not any(it.wild for it, _ in pages):
-        return []
-    bodies = [(it.full, it.body) for it, _ in pages]
-    bodies += [(f"/{it.path}", it.body) for it in beside]
-    return [(full, {name for name, _ in flattened(body)}) for full, body in bodies]
-
-
 def _set_for(section: ParamSection, everywhere: Iterable[tuple[str, set[str]]]) -> set[str]:
     """What is set by any section that is, or may be, for the same node."""
     found: set[str] = set()
@@ -147,8 +140,11 @@ def inserted(
         return Splice(at, at, text)
     if before.strip():
         return not_inserted(document, body, lines)
-    end = newline(document) + before
-    return Splice(at, at, "".join(f"{text}{end}" for text in _texts(lines)))
+    end, text = newline(document) + before, ""
+    for comment in dict.fromkeys(line.comment for line in lines):
+        own = (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
+        text += "".join(f"{it}{end}" for it in (comment, *own))
+    return Splice(at, at, text)
 
 
 def not_inserted(
@@ -163,19 +159,21 @@ def not_inserted(
     return found_at(document, node, NOT_INSERTED, message, "write each parameter on its own line")
 
 
-def _texts(lines: Sequence[DefaultLine]) -> Iterator[str]:
-    for comment in dict.fromkeys(line.comment for line in lines):
-        yield comment
-        yield from (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
-
-
 def lacking_sections(
     job: ParamsJob, found: Sequence[RawSection], beside: Iterable[RawSection], is_first: bool
 ) -> Iterator[Splice | Finding]:
     """The sections that a file lacks, behind its end; ``found`` are those it has, ``beside`` those of
     the robot's other files. The first file gets those of the stack's nodes as well."""
-    every = [*found, *beside]
-    lacking = [(_key(path, job.context), it) for path, it in _of_controllers(job, found, every)]
+    every, lacking = [*found, *beside], []
+    named = {it.path.rpartition("/")[2] for it in every}
+    for manager in (it for it in found if it.path.rpartition("/")[2] == MANAGER):
+        types = controller_types([manager])
+        for name in (it for it in types if it not in named):
+            node = identify_node(name, None, job.known, types)
+            path = f"{manager.path.removesuffix(MANAGER)}{name}"
+            here = _set_by_all(path, every)
+            if lines := list(missing_defaults(job.context, node, here)) if node else []:
+                lacking.append((_key(path, job.context), lines))
     lacking += _of_nodes(job.context, job.known, job.at_run_time, every) if is_first else ()
     if takes_sections(job.document):
         end, at = newline(job.document), len(job.document.text)
@@ -198,23 +196,6 @@ def takes_sections(document: YamlText) -> bool:
     plain = isinstance(root, yaml.MappingNode) and not root.flow_style
     ends = re.search(r"^(?:\.\.\.|---)", document.text[1:], re.MULTILINE)
     return plain and root is not None and root.start_mark.column == 0 and not ends
-
-
-def _of_controllers(
-    job: ParamsJob, found: Sequence[RawSection], every: Sequence[RawSection]
-) -> Iterator[tuple[str, list[DefaultLine]]]:
-    """The paths of controllers that no section is for, and what they need."""
-    named = {it.path.rpartition("/")[2] for it in every}
-    for manager in (it for it in found if it.path.rpartition("/")[2] == MANAGER):
-        types = controller_types([manager])
-        for name in (it for it in types if it not in named):
-            node = identify_node(name, None, job.known, types)
-            path = f"{manager.path.removesuffix(MANAGER)}{name}"
-            lines = (
-                list(missing_defaults(job.context, node, _set_by_all(path, every))) if node else []
-            )
-            if lines:
-                yield path, lines
 
 
 def _of_nodes(

@@ -23,7 +23,6 @@ from multibot_rewrite.companions.sites import Site, found_in
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, replaced
 from multibot_rewrite.knowledge.parameter_entries import GRAPH_NAME_KINDS, RUN_TIME, SWITCH_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_absolute
-from multibot_rewrite.knowledge.records import Param
 
 # Frames and links are one tree; the odometry's frame is in it, and in no description.
 FRAMES = ("frame", "link")
@@ -40,23 +39,17 @@ def in_doubt(
 ) -> dict[str, yaml.ScalarNode]:
     """The kinds of names that stay in a section, each with a value that may be one of them."""
     found: dict[str, yaml.ScalarNode] = {}
-    if is_guessed(section) and names.sites:
-        for scalar in names.unclaimed:
-            for kind in _kinds_of(context, name_in(scalar), names):
+    # ``odom`` alone may be a topic.
+    has_frame = any(it.kind in FRAMES for it in names.sites)
+    for scalar in names.unclaimed if is_guessed(section) and names.sites else ():
+        text = name_in(scalar)
+        bare = text.removeprefix("/")
+        if is_declared(context.names, "frame", bare) or (bare == ODOM and has_frame):
+            for kind in FRAMES:
                 found.setdefault(kind, scalar)
+        elif is_declared(context.names, "joint", text):
+            found.setdefault("joint", scalar)
     return found
-
-
-def _kinds_of(context: Context, text: str, names: SectionNames) -> tuple[str, ...]:
-    bare = text.removeprefix("/")
-    if is_declared(context.names, "frame", bare) or (bare == ODOM and _has_frame(names)):
-        return FRAMES
-    return ("joint",) if is_declared(context.names, "joint", text) else ()
-
-
-def _has_frame(names: SectionNames) -> bool:
-    """``odom`` alone may be a topic."""
-    return any(it.kind in FRAMES for it in names.sites)
 
 
 # Controllers make an empty prefix of it; an empty parameter may stand for the namespace.
@@ -111,8 +104,12 @@ def name_splices(
         yield from _about_topic(job, site, new)
     for site in names.sites:
         if site.kind in SWITCH_KINDS:
-            yield from (_off if site.kind == "off" else _no_prefix)(job, site)
-    yield from _filled(job, names)
+            yield from _switched(job, site)
+    # Values that are not known to be names, with what stands for the robot in them filled in.
+    for scalar in (*names.unclaimed, *names.kept):
+        text = filled(str(scalar.value), NAMESPACE_SLOT)
+        if text != scalar.value and scalar.style not in ("|", ">"):
+            yield replaced(scalar, text)
 
 
 def is_filled(site: Site) -> bool:
@@ -125,28 +122,16 @@ def _spelled(job: ParamsJob, site: Site, stays: bool) -> TopicText:
     if stays and site.kind == "frame":
         return TopicText(site.text)
     if is_filled(site) and not site.in_key:
-        return TopicText(_as_robot(job, site))
+        if site.kind not in RUN_TIME:
+            return TopicText(NAMESPACE_SLOT if site.kind in GRAPH_NAME_KINDS else TAG_SLOT)
+        # No prefix where frames have it already.
+        run_time = job.context.names.naming.layout.at_run_time
+        return TopicText(renamed(job.context, site) if run_time else "")
     if site.bare and is_plain(site.text):
         site = site._replace(text=site.text.removeprefix("/"))
     if site.in_key or site.kind not in GRAPH:
         return TopicText(renamed(job.context, site))
     return spell_site(job.context, job.facts, site)
-
-
-def _as_robot(job: ParamsJob, site: Site) -> str:
-    """What stands for the robot alone: its name, and no prefix where frames have it already."""
-    if site.kind in RUN_TIME:
-        run_time = job.context.names.naming.layout.at_run_time
-        return renamed(job.context, site) if run_time else ""
-    return NAMESPACE_SLOT if site.kind in GRAPH_NAME_KINDS else TAG_SLOT
-
-
-def _filled(job: ParamsJob, names: SectionNames) -> Iterator[Splice]:
-    """Values that are not known to be names, with what stands for the robot in them filled in."""
-    for scalar in (*names.unclaimed, *names.kept):
-        text = filled(str(scalar.value), NAMESPACE_SLOT)
-        if text != scalar.value and scalar.style not in ("|", ">"):
-            yield replaced(scalar, text)
 
 
 def frames_stay(job: ParamsJob, section: ParamSection) -> bool:
@@ -158,16 +143,14 @@ def renamed(context: Context, site: Site) -> str:
     """The name of a site for a robot; topics and services also depend on the node's remap rules."""
     # A value that is a frame only by its parameter's name may be a word such as enu.
     guessed = not site.is_sure and site.kind in _UNSURE
-    if site.kind in GRAPH or (guessed and not _is_certain(context, site)):
+    if site.kind == "interface":
+        certain = any(is_component(context, it) for it in site.text.split("/")[:-1])
+    else:
+        known = site.kind in KINDS and is_declared(context.names, site.kind, site.text.lstrip("/"))
+        certain = known or site.text == "odom"
+    if site.kind in GRAPH or (guessed and not certain):
         return site.text
     return spell_site(context, {}, site).text
-
-
-def _is_certain(context: Context, site: Site) -> bool:
-    if site.kind == "interface":
-        return any(is_component(context, it) for it in site.text.split("/")[:-1])
-    declared = site.kind in KINDS and is_declared(context.names, site.kind, site.text.lstrip("/"))
-    return declared or site.text == "odom"
 
 
 WRONG_TARGET = declare(
@@ -194,14 +177,10 @@ def _about_topic(job: ParamsJob, site: Site, made: TopicText) -> Iterator[Findin
         yield found_in(job.document.file, site.slot, WRONG_TARGET, message, hint)
     if site.param and made.made_absolute and made.text != site.text:
         message = "relative topics of a costmap are resolved below the costmap: made absolute"
-        hint = f"{_others(site.param)} resolve them below the robot: set distro: if the file is for one"
+        found = [it for it in RELEASES if not is_absolute(site.param, it)]
+        others = f"{', '.join(found[:-1])} and {found[-1]}" if len(found) > 1 else "".join(found)
+        hint = f"{others} resolve them below the robot: set distro: if the file is for one"
         yield found_in(job.document.file, site.slot, MADE_ABSOLUTE, message, hint)
-
-
-def _others(param: Param) -> str:
-    """The releases that resolve a relative topic in the robot's namespace."""
-    found = [it for it in RELEASES if not is_absolute(param, it)]
-    return f"{', '.join(found[:-1])} and {found[-1]}" if len(found) > 1 else "".join(found)
 
 
 UNCLEAR_SWITCH = declare(
@@ -213,29 +192,18 @@ UNCLEAR_SWITCH = declare(
 )
 
 
-def _off(job: ParamsJob, site: Site) -> Iterator[Splice | Finding]:
-    """A switch that makes the node put a namespace before frames that are renamed already."""
-    if site.text.lower() in ("true", "yes", "on", "y"):
-        yield Splice(site.slot.start, site.slot.end, "false")
-    elif _is_open(site):
-        hint = "true adds the namespace to frames that already have the robot's name"
-        yield _unclear(job, site, "false", hint)
-
-
-def _no_prefix(job: ParamsJob, site: Site) -> Iterator[Splice | Finding]:
-    """A prefix for frames that are renamed already; a default says what an empty one stands for."""
-    if _is_open(site):
-        hint = "a prefix is put before frames that already have the robot's name"
-        yield _unclear(job, site, NO_PREFIX, hint)
-    elif site.text != NO_PREFIX and (site.text or (site.param and site.param.default)):
-        yield written(job.document.text, job.document.file, site.slot, NO_PREFIX)
-
-
-def _unclear(job: ParamsJob, site: Site, wanted: str, hint: str) -> Finding:
-    message = f"{site.key} is {site.text} and must turn out {wanted}"
-    return found_in(job.document.file, site.slot, UNCLEAR_SWITCH, message, hint)
-
-
-def _is_open(site: Site) -> bool:
-    """Does only a launch file tell the value?"""
-    return "$" in site.text or "<" in site.text
+def _switched(job: ParamsJob, site: Site) -> Iterator[Splice | Finding]:
+    """A switch or a prefix of a node for frames that are renamed already: it is turned off. A default
+    says what an empty prefix stands for."""
+    is_off, text = site.kind == "off", site.text
+    wanted = "false" if is_off else NO_PREFIX
+    if is_off and text.lower() in ("true", "yes", "on", "y"):
+        yield Splice(site.slot.start, site.slot.end, wanted)
+    elif "$" in text or "<" in text:
+        # Only a launch file tells the value.
+        what = "true adds the namespace to" if is_off else "a prefix is put before"
+        message = f"{site.key} is {text} and must turn out {wanted}"
+        hint = f"{what} frames that already have the robot's name"
+        yield found_in(job.document.file, site.slot, UNCLEAR_SWITCH, message, hint)
+    elif not is_off and text != wanted and (text or (site.param and site.param.default)):
+        yield written(job.document.text, job.document.file, site.slot, wanted)

@@ -130,7 +130,12 @@ def _group(job: RvizJob, at: int) -> str:
 
     def made(one: RvizItem) -> Iterator[Splice]:
         yield from item_splices(document, one, robot, job.colours[at])
-        yield from _renamed(one, robot)
+        # Each window needs its own title; a list of other displays no longer holds.
+        name, visible = value(one.node, "Name"), value(one.node, "Visibility")
+        if one.flag == DOCK and isinstance(name, yaml.ScalarNode):
+            yield replaced(name, titled(one, robot))
+        if visible is not None and visible.value:
+            yield Splice(visible.start_mark.index, end_of(visible), "{}")
 
     copies = [
         cut_out(document, one.block.start, one.block.end, _kept(one, own, made))
@@ -148,16 +153,6 @@ def group_text(document: YamlText, name: str, column: int, displays: Iterable[st
     head = f"{lead}- Class: {GROUP}{end}{lead}  Displays:{end}"
     body = "".join(moved(it, 4) for it in displays)
     return f"{head}{body}{lead}  Enabled: true{end}{lead}  Name: {quoted(name)}{end}"
-
-
-def _renamed(one: RvizItem, robot: RvizRobot) -> Iterator[Splice]:
-    """Each window needs its own title; a list of other displays no longer holds."""
-    name = value(one.node, "Name")
-    if one.flag == DOCK and isinstance(name, yaml.ScalarNode):
-        yield replaced(name, titled(one, robot))
-    beside = value(one.node, "Visibility")
-    if beside is not None and beside.value:
-        yield Splice(beside.start_mark.index, end_of(beside), "{}")
 
 
 def titled(one: RvizItem, robot: RvizRobot) -> str:
@@ -179,29 +174,21 @@ def entries(document: YamlText, one: RvizItem, robots: Robots) -> Iterator[Splic
     """A shared display lists the frames of all robots; its tree comes from tf anyway."""
     for place_map, deep in (("Frames", False), ("Tree", True)):
         node = value(one.node, place_map)
-        if one.flag != SHARED or not any(_moves(one, place_map, robot) for robot in robots):
+        changed = (place.key for robot in robots for place, _ in changed_values(one, robot))
+        if one.flag != SHARED or not any(it.startswith(place_map) for it in changed):
             continue
         if deep and node is not None:
             yield Splice(node.start_mark.index, end_of(node), "{}")
             continue
         for (key, _), block in entry_blocks(document, node):
-            yield Splice(block.start, block.end, _for_all(document, one, key, block, robots))
-
-
-def _moves(one: RvizItem, key: str, robot: RvizRobot) -> bool:
-    return any(place.key.startswith(key) for place, _ in changed_values(one, robot))
-
-
-def _for_all(
-    document: YamlText, one: RvizItem, key: yaml.ScalarNode, block: Block, robots: Robots
-) -> str:
-    place = next(
-        (it for it in one.places if it.slot.start == key.start_mark.index and is_name(it)), None
-    )
-    if place is None or place.kind != FRAME:
-        return cut_out(document, block.start, block.end)
-    made = dict.fromkeys(replaced(key, robot_value(place, robot)) for robot in robots)
-    return "".join(cut_out(document, block.start, block.end, [one]) for one in made)
+            start, end, _ = block
+            places = (it for it in one.places if it.slot.start == key.start_mark.index)
+            place = next(filter(is_name, places), None)
+            edits: Iterable[tuple[Splice, ...]] = [()]
+            if place and place.kind == FRAME:
+                edits = dict.fromkeys((replaced(key, robot_value(place, it)),) for it in robots)
+            copies = (cut_out(document, start, end, one) for one in edits)
+            yield Splice(start, end, "".join(copies))
 
 
 def tools(job: RvizJob) -> Iterator[Splice]:
@@ -227,18 +214,14 @@ def tool_edits(document: YamlText, tool: RvizItem, robot: RvizRobot) -> Iterator
     if topic == default:
         return
     if not is_block(tool.node):
-        at = _end_of_entries(document, tool.node)
+        # Before the brace, or before a comma at the end.
+        last, brace = end_of(tool.node.value[-1][1]), tool.node.end_mark.index - 1
+        at = last if "," in document.text[last:brace] else brace
         yield Splice(at, at, f", Topic: {quoted(topic)}")
     else:
         lead = " " * tool.node.start_mark.column
         at = end_of(tool.node)
         yield Splice(at, at, f"{newline(document)}{lead}Topic: {quoted(topic)}")
-
-
-def _end_of_entries(document: YamlText, node: yaml.Node) -> int:
-    """Where a map in braces takes one more entry: before the brace, or before a comma at the end."""
-    last, brace = end_of(node.value[-1][1]), node.end_mark.index - 1
-    return last if "," in document.text[last:brace] else brace
 
 
 def panels(job: RvizJob) -> Iterator[Splice]:
@@ -248,8 +231,16 @@ def panels(job: RvizJob) -> Iterator[Splice]:
         if for_one_process(panel):
             yield Splice(panel.block.start, panel.block.end, remark(document, panel))
             continue
-        tree = value(panel.node, "Property Tree Widget")
-        yield from _collapsed(document, value(tree, "Expanded"), _gone(job))
+        # Tree paths that start at a display that is in a group now are removed.
+        expanded = value(value(panel.node, "Property Tree Widget"), "Expanded")
+        if isinstance(expanded, yaml.SequenceNode) and is_block(expanded):
+            gone = _gone(job)
+            found = list(zip(expanded.value, blocks(document, expanded), strict=True))
+            left = [block for item, block in found if gone.match(str(item.value))]
+            if found and len(left) == len(found):
+                yield Splice(expanded.start_mark.index, end_of(expanded), "[]")
+            else:
+                yield from (Splice(block.start, block.end, "") for block in left)
         source = value(panel.node, "SyncSource")
         for one in _docks(job):
             if isinstance(source, yaml.ScalarNode) and one.name == source.value != "":
@@ -269,20 +260,6 @@ def _gone(job: RvizJob) -> re.Pattern[str]:
     kept = {one.name for one in shown if any(it.block.start not in job.own for it in leaves([one]))}
     names = sorted({one.name for one in shown} - kept)
     return re.compile(rf"/(?:{'|'.join(map(re.escape, names))})\d+(?:/|$)" if names else r"(?!)")
-
-
-def _collapsed(
-    document: YamlText, expanded: yaml.Node | None, gone: re.Pattern[str]
-) -> Iterator[Splice]:
-    """Remove tree paths that start at a display that is in a group now."""
-    if not isinstance(expanded, yaml.SequenceNode) or not is_block(expanded):
-        return
-    found = list(zip(expanded.value, blocks(document, expanded), strict=True))
-    left = [block for item, block in found if gone.match(str(item.value))]
-    if found and len(left) == len(found):
-        yield Splice(expanded.start_mark.index, end_of(expanded), "[]")
-        return
-    yield from (Splice(block.start, block.end, "") for block in left)
 
 
 def windows(job: RvizJob) -> Iterator[Splice]:

@@ -14,7 +14,7 @@ from typing import Any
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, make_naming
 from multibot_rewrite.companions.rviz.display_groups import leaves
-from multibot_rewrite.companions.rviz.read_config import TOPIC, RvizItem, palette, read_config
+from multibot_rewrite.companions.rviz.read_config import TOPIC, palette, read_config
 from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import TF_PREFIX, RvizRobot
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, quoted
@@ -53,14 +53,16 @@ def windows_of_plan(plan: System, relayed: bool) -> tuple[RvizText, ...]:
     if len({it.tf_topic for it in plan.robots}) == 1 or (relayed and layout.frames):
         own = [*_displays(shared, ""), *lines]
         return (RvizText("", _text(own, robots, world_of_plan(plan))),)
-    return tuple(
-        RvizText(
-            it.robot.name,
-            _text([*_displays(shared, ""), group], [it], _root(plan, it.robot)),
-            remaps=_tf_topics(it.robot, layout.namespaced),
-        )
-        for it, group in zip(robots, lines, strict=True)
-    )
+    made = []
+    for it, group in zip(robots, lines, strict=True):
+        # The frame that the robot's frames hang on.
+        own_frames = {*it.robot.frames, *it.robot.other_frames}
+        parents = (edge.parent for edge in plan.edges if edge.child in own_frames)
+        root = next(parents, next(iter(it.robot.frames), ""))
+        text = _text([*_displays(shared, ""), group], [it], root)
+        remaps = _tf_topics(it.robot, layout.namespaced)
+        made.append(RvizText(it.robot.name, text, remaps=remaps))
+    return tuple(made)
 
 
 def _tf_topics(robot: Robot, namespaced: bool) -> tuple[tuple[str, str], ...]:
@@ -73,13 +75,6 @@ def _tf_topics(robot: Robot, namespaced: bool) -> tuple[tuple[str, str], ...]:
         parts[places[-1 if namespaced else 0]] = static
     other = "/".join(parts) if places else f"/{static}{robot.tf_topic.removeprefix(f'/{tf}')}"
     return (f"/{tf}", robot.tf_topic), (f"/{static}", other)
-
-
-def _root(plan: System, robot: Robot) -> str:
-    """The frame that the robot's frames hang on."""
-    own = {*robot.frames, *robot.other_frames}
-    parents = (it.parent for it in plan.edges if it.child in own)
-    return next(parents, next(iter(robot.frames), ""))
 
 
 def _group(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
@@ -174,22 +169,21 @@ def bridged_window(
     document: YamlText, robots: Sequence[RvizRobot], world: str
 ) -> tuple[RvizText, tuple[Finding, ...]]:
     """The config for all robots, and what it cannot show; raises as ``rewrite_rviz``."""
-    texts, _ = rewrite_rviz(document, [_bridged(it, world) for it in robots], world=world)
+    shared = [world] if world else []
+    naming = make_naming(layout=AT_RUN_TIME, affix=PREFIX, shared_frames=shared)
+    bridged = []
+    for it in robots:
+        own = it.topics.robot
+        names = it.names._replace(naming=naming, robot=own)
+        bridged.append(it._replace(names=names, tf_prefix=own))
+    texts, _ = rewrite_rviz(document, bridged, world=world)
     shown = next(it for it in texts if not it.robot)
     return shown, tuple(_bare_headers(document))
 
 
-def _bridged(robot: RvizRobot, world: str) -> RvizRobot:
-    """The robot as it is on ``/tf``."""
-    shared = [world] if world else []
-    naming = make_naming(layout=AT_RUN_TIME, affix=PREFIX, shared_frames=shared)
-    own = robot.topics.robot
-    names = robot.names._replace(naming=naming, robot=own)
-    return robot._replace(names=names, tf_prefix=own)
-
-
 def _bare_headers(document: YamlText) -> Iterator[Finding]:
-    found = [it for it in leaves(read_config(document).displays) if _shows_messages(it)]
+    shown = ((it, {at.kind for at in it.places}) for it in leaves(read_config(document).displays))
+    found = [it for it, kinds in shown if TOPIC in kinds and TF_PREFIX not in kinds]
     if found:
         names = ", ".join(it.name or it.cls for it in found)
         message = (
@@ -197,8 +191,3 @@ def _bare_headers(document: YamlText) -> Iterator[Finding]:
         )
         hint = "each robot has a window for it; or take layout both"
         yield found_at(document, found[0].node, BARE_HEADERS, message, hint)
-
-
-def _shows_messages(one: RvizItem) -> bool:
-    kinds = {it.kind for it in one.places}
-    return TOPIC in kinds and TF_PREFIX not in kinds

@@ -74,7 +74,12 @@ def read_config(document: YamlText) -> RvizConfig:
         raise InputError(
             f"{document.file}: not an RViz config: it has no {MANAGER!r}; save it with rviz2"
         )
-    _refuse(document)
+    for node in _maps(document.root):
+        cls = text_of(node, "Class")
+        if cls.startswith(ROS1):
+            what = f"this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2"
+            raise refused(document, node, what, FOR_ROS_1)
+    refuse_anchors(document)
     displays = value(manager, "Displays")
     return RvizConfig(
         document,
@@ -83,15 +88,6 @@ def read_config(document: YamlText) -> RvizConfig:
         tuple(_shown(document, value(manager, "Tools"), "tools")),
         tuple(_shown(document, value(document.root, "Panels"), "panels")),
     )
-
-
-def _refuse(document: YamlText) -> None:
-    for node in _maps(document.root):
-        cls = text_of(node, "Class")
-        if cls.startswith(ROS1):
-            what = f"this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2"
-            raise refused(document, node, what, FOR_ROS_1)
-    refuse_anchors(document)
 
 
 def _maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
@@ -112,18 +108,17 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
         cls = text_of(item, "Class")
         below = _shown(document, value(item, "Displays"), what) if cls == GROUP else ()
         names = data["displays"].get(cls, data["any"])
-        places = () if cls == GROUP else tuple(_places(item, names))
+        places = []
+        # RViz keeps links and frames that it has seen once: those are keys.
+        for path, kind in names.items() if cls != GROUP else ():
+            lead = "/" if kind in (TOPIC, GRAPH_NAMESPACE) else ""
+            for at in _found(item, path.split(".")):
+                text = without_robot(str(at.value), lead)
+                places.append(site_at(at, kind, text, path, "*" in path))
         known = what != "displays" or cls == GROUP or cls in data["displays"]
         flag = data["flags"].get(cls, "")
-        yield RvizItem(block, item, cls, text_of(item, "Name"), flag, known, places, tuple(below))
-
-
-def _places(item: yaml.Node, names: Mapping[str, str]) -> Iterator[Site]:
-    """RViz keeps links and frames that it has seen once: those are keys."""
-    for path, kind in names.items():
-        for node in _found(item, path.split(".")):
-            lead = "/" if kind in (TOPIC, GRAPH_NAMESPACE) else ""
-            yield site_at(node, kind, without_robot(str(node.value), lead), path, "*" in path)
+        name = text_of(item, "Name")
+        yield RvizItem(block, item, cls, name, flag, known, tuple(places), tuple(below))
 
 
 def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarNode]:

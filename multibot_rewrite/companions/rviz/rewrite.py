@@ -33,7 +33,6 @@ from multibot_rewrite.companions.rviz.read_config import (
     PROCESS,
     Colour,
     RvizConfig,
-    RvizItem,
     fixed_frame,
     palette,
     read_colour,
@@ -44,7 +43,7 @@ from multibot_rewrite.companions.rviz.read_config import (
 )
 from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, is_name, item_splices
 from multibot_rewrite.companions.rviz.window_checks import config_findings
-from multibot_rewrite.companions.sites import Site, site_at
+from multibot_rewrite.companions.sites import site_at
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
@@ -110,7 +109,10 @@ def rewrite_rviz(
     made = make(len(robots))
     # All others differ from these in names only.
     for text in made if len(robots) <= PROVED else make(PROVED):
-        _prove(text.text, document.file)
+        try:
+            compose_yaml(text.text, document.file)
+        except InputError as error:
+            raise ProofError(f"the rewritten config is broken: {error}") from None
     return made, tuple(config_findings(config, robots, world, together))
 
 
@@ -135,13 +137,6 @@ def _colour(robot: RvizRobot, at: int, count: int) -> Colour | None:
     return palette(at) if count > 1 else None
 
 
-def _prove(text: str, file: str) -> None:
-    try:
-        compose_yaml(text, file)
-    except InputError as error:
-        raise ProofError(f"the rewritten config is broken: {error}") from None
-
-
 def _tf_topics(robot: RvizRobot) -> tuple[tuple[str, str], ...]:
     """The remappings to the robot's tf topics, with absolute targets."""
     name, naming = robot.topics.robot, robot.topics.naming
@@ -157,12 +152,18 @@ def _for_all(
     config: RvizConfig, robots: Sequence[RvizRobot], colours: tuple[Colour | None, ...], world: str
 ) -> RvizText:
     job = make_rviz_job(config, robots, colours)
+    # The world frame, if some robot has its own version of the Fixed Frame.
+    node = fixed_frame(config)
+    fixed = []
+    if isinstance(node, yaml.ScalarNode) and world:
+        own = any(frame_of(node, robot) != node.value for robot in robots)
+        fixed = [replaced(node, world)] if own else []
     splices = [
         *robot_groups(job),
         *tools(job),
         *panels(job),
         *windows(job),
-        *_fixed_frame(config, robots, world),
+        *fixed,
         *_views(config, robots),
     ]
     relays = [(target, topic) for robot in robots for topic, target in _tf_topics(robot)]
@@ -198,46 +199,30 @@ def frame_splices(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
     return [replaced(node, new)] if isinstance(node, yaml.ScalarNode) and new != node.value else []
 
 
-def _fixed_frame(config: RvizConfig, robots: Sequence[RvizRobot], world: str) -> list[Splice]:
-    """The world frame, if some robot has its own version of the Fixed Frame."""
-    node = fixed_frame(config)
-    if not isinstance(node, yaml.ScalarNode) or not world:
-        return []
-    own = any(frame_of(node, robot) != node.value for robot in robots)
-    return [replaced(node, world)] if own else []
-
-
 def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
     """The current view follows the first robot; each robot has a saved view that follows it."""
     document = config.document
     current, saved = views_of(config)
     copies = ""
-    if _follows(current, robots):
+    if current is not None and _follows(current, robots):
         yield from frame_splices(value(current, "Target Frame"), robots[0])
-        listed = isinstance(saved, yaml.SequenceNode)
-        column = saved.start_mark.column if saved and listed else _column(config) + 2
-        copies = "".join(_saved(document, current, robot, column) for robot in robots)
+        views, listed = value(config.manager, "Views"), isinstance(saved, yaml.SequenceNode)
+        column = views.start_mark.column + 2 if views is not None else 2
+        column = saved.start_mark.column if saved and listed else column
+        lines = blocks(document, current)
+        start, end = lines[0].start, lines[-1].end
+        for robot in robots:
+            text = _named(document, current, robot, start, end)
+            copies += as_item(text, lines[0].column, column)
     if isinstance(saved, yaml.SequenceNode) and saved.value and is_block(saved):
-        yield from _saved_views(document, saved, robots)
+        for view, (start, end, _) in zip(saved.value, blocks(document, saved), strict=True):
+            if _follows(view, robots):
+                made = [_named(document, view, robot, start, end) for robot in robots]
+                yield Splice(start, end, "".join(made))
         yield inserted(document, blocks(document, saved)[-1].end, copies)
     elif copies and isinstance(saved, yaml.ScalarNode):
-        end = newline(document)
-        yield Splice(saved.start_mark.index, saved.end_mark.index, f"{end}{copies}".rstrip())
-
-
-def _saved_views(
-    document: YamlText, saved: yaml.SequenceNode, robots: Sequence[RvizRobot]
-) -> Iterator[Splice]:
-    for view, (start, end, _) in zip(saved.value, blocks(document, saved), strict=True):
-        if _follows(view, robots):
-            made = [_named(document, view, robot, start, end) for robot in robots]
-            yield Splice(start, end, "".join(made))
-
-
-def _column(config: RvizConfig) -> int:
-    """Where the keys of ``Views`` start."""
-    views = value(config.manager, "Views")
-    return int(views.start_mark.column) if views is not None else 0
+        text = f"{newline(document)}{copies}".rstrip()
+        yield Splice(saved.start_mark.index, saved.end_mark.index, text)
 
 
 def _follows(view: yaml.Node | None, robots: Sequence[RvizRobot]) -> bool:
@@ -245,14 +230,6 @@ def _follows(view: yaml.Node | None, robots: Sequence[RvizRobot]) -> bool:
     if not isinstance(target, yaml.ScalarNode) or not is_block(view):
         return False
     return any(frame_of(target, robot) != target.value for robot in robots)
-
-
-def _saved(document: YamlText, view: yaml.Node | None, robot: RvizRobot, column: int) -> str:
-    """A view as an entry of the saved ones, with the robot's name and frame."""
-    assert view is not None
-    lines = blocks(document, view)
-    text = _named(document, view, robot, lines[0].start, lines[-1].end)
-    return as_item(text, lines[0].column, column)
 
 
 def _named(document: YamlText, view: yaml.Node, robot: RvizRobot, start: int, end: int) -> str:
@@ -271,8 +248,20 @@ def read_rviz(document: YamlText, context: Context) -> NamedFile:
     """The names of a config; raises InputError for one that is not for RViz 2."""
     config = read_config(document)
     shown = (*leaves(config.displays), *config.tools)
-    names = (*_frames(config), *(it for one in shown for it in filter(is_name, one.places)))
-    others = tuple(site for one in shown for site in _others(one))
+    frames = (
+        it for it in (fixed_frame(config), *targets(config)) if isinstance(it, yaml.ScalarNode)
+    )
+    names = (
+        *(site_at(it, FRAME, without_robot(str(it.value), "")) for it in frames),
+        *(it for one in shown for it in filter(is_name, one.places)),
+    )
+    claimed = {it.slot.start for one in shown for it in one.places}
+    others = tuple(
+        site_at(it, "", str(it.value))
+        for one in shown
+        for it in _scalars(one.node)
+        if it.start_mark.index not in claimed and is_text(it)
+    )
     return NamedFile(
         RVIZ,
         document.file,
@@ -295,19 +284,6 @@ def read_for(document: YamlText, robots: Sequence[RvizRobot], release: str) -> N
     }
     names = robots[0].names._replace(declared=declared)
     return read_rviz(document, Context(names, names, {}, release))
-
-
-def _frames(config: RvizConfig) -> Iterator[Site]:
-    for node in (fixed_frame(config), *targets(config)):
-        if isinstance(node, yaml.ScalarNode):
-            yield site_at(node, FRAME, without_robot(str(node.value), ""))
-
-
-def _others(one: RvizItem) -> Iterator[Site]:
-    claimed = {it.slot.start for it in one.places}
-    for node in _scalars(one.node):
-        if node.start_mark.index not in claimed and is_text(node):
-            yield site_at(node, "", str(node.value))
 
 
 def _scalars(node: yaml.Node) -> Iterator[yaml.ScalarNode]:

@@ -83,16 +83,14 @@ def item_splices(
 ) -> list[Splice]:
     """The splices that make a display or tool show the robot."""
     made = [*splices_of(document.text, document.file, changed_values(one, robot))]
-    return made + ([*_painted(one, colour)] if colour else [])
-
-
-def _painted(one: RvizItem, colour: Colour) -> Iterator[Splice]:
-    """The robot's colour as RViz writes it, if the display has one colour for all its data."""
-    flat = text_of(one.node, "Color Transformer") == "FlatColor"
-    text = "; ".join(map(str, colour))
-    for it in one.places:
-        if it.kind == COLOUR or (it.kind == FLAT_COLOUR and flat):
-            yield Splice(it.slot.start, it.slot.end, text)
+    if colour:
+        # As RViz writes it, if the display has one colour for all its data.
+        kinds = [COLOUR]
+        if text_of(one.node, "Color Transformer") == "FlatColor":
+            kinds.append(FLAT_COLOUR)
+        slots = (it.slot for it in one.places if it.kind in kinds)
+        made += [Splice(it.start, it.end, "; ".join(map(str, colour))) for it in slots]
+    return made
 
 
 def frame_of(node: yaml.Node | None, robot: RvizRobot) -> str:

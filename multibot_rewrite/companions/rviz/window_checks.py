@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TypeGuard
 
 import yaml
 
@@ -14,7 +15,6 @@ from multibot_rewrite.companions.rviz.read_config import (
     DOCK,
     PROCESS,
     RvizConfig,
-    RvizItem,
     fixed_frame,
     value,
     views_of,
@@ -45,28 +45,7 @@ def _tf_topic(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Fi
 OWN_FIXED_FRAME = declare("MF201", "rviz-fixed-frame-of-one-robot", WARNING, formats=("rviz",))
 
 
-def _fixed_frame(config: RvizConfig, robots: Robots, world: str) -> Iterator[Finding]:
-    node = fixed_frame(config)
-    if not isinstance(node, yaml.ScalarNode):
-        return
-    if any(frame_of(node, robot) != node.value for robot in robots):
-        now = f"it is {world!r} now" if world else "no frame is shared by all robots"
-        message = f"Fixed Frame {node.value!r} differs from robot to robot; {now}"
-        hint = "publish a transform from it to each robot, see pose:" if world else "set world:"
-        yield found_at(config.document, node, OWN_FIXED_FRAME, message, hint)
-
-
 FIRST_ROBOT_VIEW = declare("MF213", "rviz-view-follows-first-robot", WARNING, formats=("rviz",))
-
-
-def _view(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
-    node = value(views_of(config)[0], "Target Frame")
-    if not isinstance(node, yaml.ScalarNode) or len(robots) < 2:
-        return
-    if any(frame_of(node, robot) != node.value for robot in robots):
-        message = f"the view follows {node.value!r}; it now follows robot {robots[0].name!r}"
-        hint = "each robot has a saved view"
-        yield found_at(config.document, node, FIRST_ROBOT_VIEW, message, hint)
 
 
 LEFT_OUT = declare("MF202", "rviz-panel-left-out", WARNING, formats=("rviz",))
@@ -94,14 +73,6 @@ def _left_out(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
 VISIBILITY_RESET = declare("MF212", "rviz-camera-visibility-reset", WARNING, formats=("rviz",))
 
 
-def _visibility(config: RvizConfig, one: RvizItem) -> Iterator[Finding]:
-    for key, there in pairs(one.node) if one.flag == DOCK else ():
-        if key.value == "Visibility" and pairs(there):
-            message = f"Visibility of {one.name!r} is reset: the displays are in groups now"
-            hint = "choose the displays again in rviz2"
-            yield found_at(config.document, key, VISIBILITY_RESET, message, hint)
-
-
 def config_findings(
     config: RvizConfig, robots: Robots, world: str, together: bool
 ) -> Iterator[Finding]:
@@ -110,7 +81,30 @@ def config_findings(
     ``together``: one window shows all ``robots``, in the frame ``world``.
     """
     found = [*_tf_topic(config, robots, together), *_left_out(config, robots)]
-    if together:
-        found += [*_fixed_frame(config, robots, world), *_view(config, robots)]
-        found += [it for one in leaves(config.displays) for it in _visibility(config, one)]
+    found += _in_one_window(config, robots, world) if together else ()
     yield from sorted(found, key=lambda it: (it.line, it.column, it.code))
+
+
+def _in_one_window(config: RvizConfig, robots: Robots, world: str) -> Iterator[Finding]:
+    def differs(node: yaml.Node | None) -> TypeGuard[yaml.ScalarNode]:
+        if not isinstance(node, yaml.ScalarNode):
+            return False
+        return any(frame_of(node, robot) != node.value for robot in robots)
+
+    document, node = config.document, fixed_frame(config)
+    if differs(node):
+        now = f"it is {world!r} now" if world else "no frame is shared by all robots"
+        message = f"Fixed Frame {node.value!r} differs from robot to robot; {now}"
+        hint = "publish a transform from it to each robot, see pose:" if world else "set world:"
+        yield found_at(document, node, OWN_FIXED_FRAME, message, hint)
+    node = value(views_of(config)[0], "Target Frame")
+    if len(robots) > 1 and differs(node):
+        message = f"the view follows {node.value!r}; it now follows robot {robots[0].name!r}"
+        hint = "each robot has a saved view"
+        yield found_at(document, node, FIRST_ROBOT_VIEW, message, hint)
+    for one in (it for it in leaves(config.displays) if it.flag == DOCK):
+        for key, there in pairs(one.node):
+            if key.value == "Visibility" and pairs(there):
+                message = f"Visibility of {one.name!r} is reset: the displays are in groups now"
+                hint = "choose the displays again in rviz2"
+                yield found_at(document, key, VISIBILITY_RESET, message, hint)

@@ -66,10 +66,6 @@ def unread_arguments(
     """Arguments that are given and that no file of a xacro knows; ``known`` are those that it knows."""
     for name in unread:
         message = f"argument {name!r} is given, and no file of this xacro declares or reads it"
-        yield Problem(root, message, None, _meant(name, known), (), UNREAD)
-
-
-def _meant(name: str, known: Sequence[str]) -> str:
-    more = ", ..." if len(known) > _LISTED else ""
-    listed = f"its arguments are {', '.join(known[:_LISTED])}{more}" if known else "it has none"
-    return did_you_mean_one_of(name, known) or listed
+        more = ", ..." if len(known) > _LISTED else ""
+        listed = f"its arguments are {', '.join(known[:_LISTED])}{more}" if known else "it has none"
+        yield Problem(root, message, None, did_you_mean_one_of(name, known) or listed, (), UNREAD)

@@ -5,11 +5,9 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator
-from itertools import chain, islice
+from itertools import chain
 from operator import attrgetter
 from typing import TYPE_CHECKING
-
-from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, locate
 from multibot_rewrite.base.lazy import without_comments
@@ -69,8 +67,14 @@ def leftover_xacro(inventory: Inventory) -> Iterator[Problem]:
         message = f"xacro element <{str(element.tag).rpartition('}')[2]}>"
         yield Problem(element, message, None, hint, (), "MB105")
     elif _may_substitute(source):
-        for element, value in islice(_substitutions(document), 1):
-            yield Problem(element, f"xacro substitution {value!r}", None, hint, (), "MB105")
+        # Claimed or not; comments do not count.
+        for it in document.elements:
+            values = (*it.values(), it.text or "", *(child.tail or "" for child in it))
+            found = next((value for value in values if "${" in value or "$(arg" in value), None)
+            if found is not None:
+                message = f"xacro substitution {' '.join(str(found).split())!r}"
+                yield Problem(it, message, None, hint, (), "MB105")
+                return
 
 
 def _may_substitute(source: bytes) -> bool:
@@ -79,15 +83,6 @@ def _may_substitute(source: bytes) -> bool:
         return False
     rest = without_comments(source)
     return b"${" in rest or b"$(arg" in rest
-
-
-def _substitutions(document: Document) -> Iterator[tuple[_Element, str]]:
-    """Elements and values that hold one, claimed or not; comments do not count."""
-    for element in document.elements:
-        values = (*element.values(), element.text or "", *(c.tail or "" for c in element))
-        for value in values:
-            if "${" in value or "$(arg" in value:
-                yield element, " ".join(str(value).split())
 
 
 _TAG = attrgetter("tag")
@@ -177,22 +172,18 @@ def loosely_written(document: Document) -> Iterator[Problem]:
             line, _ = locate(source, offset)
             hint = f"{_MENDS[what]}; {_READERS}"
             yield Problem(element, f"{what} in line {line}", None, hint, (), CODE)
-    for prefix, uri in _undeclared(document):
-        found = next((it for it in document.elements if _uses(it, uri)), document.root)
-        message = f"the prefix {prefix!r} is not declared"
-        hint = f'declare it on the root element: xmlns:{prefix}="{uri}"; {_READERS}'
-        yield Problem(found, message, None, hint, (), CODE)
-
-
-def _undeclared(document: Document) -> Iterator[tuple[str, str]]:
-    """The prefixes that reading added to the root, with what they stand for."""
+    # The prefixes that reading added to the root, with what they stand for.
     start = document.starts[0]
     written = document.source[start : tag_end(document.source, start)]
     for prefix, uri in document.root.nsmap.items():
         if prefix and b"xmlns:" + prefix.encode() not in written:
-            yield prefix, uri
-
-
-def _uses(element: _Element, uri: str) -> bool:
-    names = (str(element.tag), *map(str, element.attrib))
-    return any(it.startswith(f"{{{uri}}}") for it in names)
+            space = f"{{{uri}}}"
+            using = (
+                it
+                for it in document.elements
+                if any(str(name).startswith(space) for name in (it.tag, *it.attrib))
+            )
+            found = next(using, document.root)
+            message = f"the prefix {prefix!r} is not declared"
+            hint = f'declare it on the root element: xmlns:{prefix}="{uri}"; {_READERS}'
+            yield Problem(found, message, None, hint, (), CODE)

@@ -85,8 +85,7 @@ def _boxes(file: _File, node: _Element, above: _Rows, visits: Iterator[int]) -> 
         raise ValueError("too many nodes, or a skin, which its bones move")
     rows = reduce(_product, filter(None, map(_transform, node)), above)
     for it in node.iterchildren("{*}instance_geometry"):
-        columns = file.corners[_target(it.get("url", ""))]
-        if columns:
+        if columns := file.corners[_target(it.get("url", ""))]:
             ends = [_ends(row, columns) for row in rows]
             yield Extent(*zip(*ends, strict=True))
     for it in node.iterchildren("{*}instance_node"):

@@ -45,7 +45,10 @@ def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     """All of them; they do not depend on the robots' names."""
     for of_naming in (prefix_only, leading_slashes, moved_tf, process_wide):
         yield from of_naming(inventory, renames.naming)
-    yield from one_description(inventory, renames.naming, _moved(inventory, renames))
+    spelt = zip(inventory.claims, renames.values, strict=True)
+    # The elements with a name that is below another one, which is renamed.
+    moved = {it.element for it, names in spelt if it.site.form == "below" and names}
+    yield from one_description(inventory, renames.naming, moved)
     yield from world_systems(inventory)
     for of_names in (hardwired, of_px4, outside_frames, reordered):
         yield from of_names(inventory, renames)
@@ -117,7 +120,7 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
             hint = "with several robots in one Gazebo use --topics namespace"
             yield _host(host, "MB426", message, hint)
         return
-    inside = {host.element for host in inventory.hosts if _holds_for_all(host.node.section)}
+    inside = {host.element for section, host in _known_hosts(inventory) if section.process_wide}
     for claim in inventory.claims if inside else ():
         rule = split_remap(claim.value) if claim.site.form in ("remap", "argument") else None
         if rule is None or inside.isdisjoint(claim.element.iterancestors()):
@@ -139,12 +142,6 @@ def one_description(
         if name.startswith("/") and not renamed and it not in moved:
             message = f"<{it.tag}> {name!r} is the same for all robots"
             yield Problem(it, message, "", "use the part after the last slash", (), "MB410")
-
-
-def _moved(inventory: Inventory, renames: RenameMap) -> Container[_Element]:
-    """The elements with a name that is below another one, which is renamed."""
-    spelt = zip(inventory.claims, renames.values, strict=True)
-    return {it.element for it, names in spelt if it.site.form == "below" and names}
 
 
 def world_systems(inventory: Inventory) -> Iterator[Problem]:
@@ -191,10 +188,6 @@ def of_px4(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
 
 def _host(host: Host, code: str, message: str, hint: str) -> Problem:
     return Problem(host.element, message, None, hint, (), code)
-
-
-def _holds_for_all(section: VocabularySection | None) -> bool:
-    return section is not None and section.process_wide
 
 
 def _known_hosts(inventory: Inventory) -> Iterator[tuple[VocabularySection, Host]]:
@@ -263,10 +256,14 @@ def ignored_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Namespaces of models that plugins of theirs put in front of their relative topics."""
     models = _with_namespace(inventory) if _are_read(tree) else []
-    below = _below(inventory, tree) if models else []
+    release = tree.vocabulary.release
+    below = [
+        host.element
+        for section, host in (_known_hosts(inventory) if models else ())
+        if section.model_namespace and has_release(section.model_namespace, release)
+    ]
     for model in models:
-        count = sum(model in plugin.iterancestors() for plugin in below)
-        if count:
+        if count := sum(model in plugin.iterancestors() for plugin in below):
             puts = f"{plural(count, 'plugin')} {'puts' if count == 1 else 'put'}"
             what = f"the namespace {namespace_of(model)!r} of {_named(model)}"
             message = f"{puts} {what} in front of relative topics, if Gazebo was built with that"
@@ -276,13 +273,6 @@ def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 def _are_read(tree: Tree) -> bool:
     sections = tree.vocabulary.find("element", "sdf.model")
     return any(has_release(it.model_namespace, tree.vocabulary.release) for it in sections)
-
-
-def _below(inventory: Inventory, tree: Tree) -> list[_Element]:
-    release = tree.vocabulary.release
-    sections = ((host.element, host.node.section) for host in inventory.hosts)
-    words = ((element, section.model_namespace) for element, section in sections if section)
-    return [element for element, of in words if of and has_release(of, release)]
 
 
 def _with_namespace(inventory: Inventory) -> list[_Element]:

@@ -87,21 +87,17 @@ def read_robot(root: _Element) -> Robot:
 
 
 def _link(element: _Element) -> Link:
-    inertial = next(element.iterchildren("inertial"), None)
     name = element.get("name", "")
-    return Link(name, element, None if inertial is None else _inertial(inertial))
-
-
-def _inertial(element: _Element) -> Inertial:
-    parts = {it.tag: it for it in reversed(element)}
+    inertial = next(element.iterchildren("inertial"), None)
+    if inertial is None:
+        return Link(name, element)
+    parts = {it.tag: it for it in reversed(inertial)}
     mass, inertia = parts.get("mass"), parts.get("inertia")
     values = [] if inertia is None else [number(inertia.get(it)) for it in MOMENTS]
     moments = tuple([it for it in values if it is not None])
-    return Inertial(
-        element,
-        None if mass is None else value_of(mass, "value"),
-        moments if len(moments) == len(MOMENTS) else None,
-    )
+    weight = None if mass is None else value_of(mass, "value")
+    whole = moments if len(moments) == len(MOMENTS) else None
+    return Link(name, element, Inertial(inertial, weight, whole))
 
 
 def _firsts(things: Sequence[_Named]) -> dict[str, _Named]:
@@ -195,13 +191,8 @@ def loops(robot: Robot) -> list[list[Joint]]:
             path[name] = next(it for it in robot.above[name] if _ties(it) and it.parent in rest)
             name = path[name].parent
         if name in path:
-            found.append(_from(path, name)[::-1])
+            found.append(list(path.values())[list(path).index(name) :][::-1])
     return found
-
-
-def _from(path: Mapping[str, Joint], name: str) -> list[Joint]:
-    """The joints of a path, from the one above ``name`` on."""
-    return list(path.values())[list(path).index(name) :]
 
 
 def _not_of_a_tree(robot: Robot) -> dict[str, None]:

@@ -98,7 +98,17 @@ def shared_with(
         raise ProofError(
             f"{document.file}: {it.name!r} ({it.path}) is a frame that tf does not have"
         )
-    found = [*_would_share(document, reading, robot, naming, vocabulary)]
+    found = [*_changed(document, reading, robot, naming, vocabulary)]
+    of_plugins: dict[int, list[RuntimeName]] = {}
+    for it in same_for_all(reading.names, robot, naming):
+        if it.of_controllers:
+            of_plugins.setdefault(it.number, []).append(it)
+            continue
+        element, message = it.element_in(document.root), said(ALL, it)
+        found.append(Problem(element, message, None, advice(it), (), code_of(it)))
+    for names in of_plugins.values():
+        plugin = names[0].element_in(document.root)
+        found.append(_of_controllers(plugin, names, naming, vocabulary.release))
     yield from found
     if not found and robot.encode() not in text:
         yield from _same_text(document, naming, vocabulary)
@@ -107,21 +117,6 @@ def shared_with(
 
         hint = robot_instead(document.file)
         yield Problem(document.root, "the robot has no link", None, hint, (), NO_LINK)
-
-
-def _would_share(
-    document: Document, reading: Reading, robot: str, naming: Naming, vocabulary: Vocabulary
-) -> Iterator[Problem]:
-    yield from _changed(document, reading, robot, naming, vocabulary)
-    of_plugins: dict[int, list[RuntimeName]] = {}
-    for it in same_for_all(reading.names, robot, naming):
-        if it.of_controllers:
-            of_plugins.setdefault(it.number, []).append(it)
-        else:
-            element, message = it.element_in(document.root), said(ALL, it)
-            yield Problem(element, message, None, advice(it), (), code_of(it))
-    for names in of_plugins.values():
-        yield _of_controllers(names[0].element_in(document.root), names, naming, vocabulary.release)
 
 
 def _same_text(document: Document, naming: Naming, vocabulary: Vocabulary) -> Iterator[Problem]:
@@ -144,7 +139,12 @@ def _changed(
     if b":=" not in document.source and not images and not _alike(reading, robot):
         return
     before = read_tree(document.root, vocabulary)
-    yield from _lost(document, before, reading, naming)
+    for lost in lost_rules(before, reading):
+        if lost.name.strip("/") not in naming.shared_topics:
+            plugin = next(islice(document.root.iter("plugin"), lost.number, None), document.root)
+            message = f"{lost.rule!r} is for {lost.name}, and matches nothing after the rewrite"
+            hint = "write the topic and the left side of its rule the same way"
+            yield Problem(plugin, message, None, hint, (), LOST_RULE)
     for it, other in parted(before, reading):
         one, two = (name.name.replace(robot, ROBOT) for name in (it, other))
         message = (
@@ -169,18 +169,6 @@ def _alike(reading: Reading, robot: str) -> bool:
     topics = {it.name for it in every if it.kind in (TOPIC, SERVICE)}
     bare = {it.replace(robot, "").replace("/", "").replace("_", "") for it in topics}
     return len(bare) < len(topics)
-
-
-def _lost(
-    document: Document, before: Reading, reading: Reading, naming: Naming
-) -> Iterator[Problem]:
-    """Rules of the file that match no name any more."""
-    for it in lost_rules(before, reading):
-        if it.name.strip("/") not in naming.shared_topics:
-            plugin = next(islice(document.root.iter("plugin"), it.number, None), document.root)
-            message = f"{it.rule!r} is for {it.name}, and matches nothing after the rewrite"
-            hint = "write the topic and the left side of its rule the same way"
-            yield Problem(plugin, message, None, hint, (), LOST_RULE)
 
 
 def _of_controllers(

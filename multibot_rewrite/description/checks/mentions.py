@@ -28,7 +28,6 @@ MENTIONED = ("link", "joint", "light")
 HARDWARE, PLUGIN = "hardware", "plugin"
 # Of these urdfdom reads attributes and children.
 NO_TEXT = frozenset({"link", "joint"})
-_NODE = "ros/"
 # Frames that no description declares are common words: they count where the key says so.
 _FRAME_KEY = lazy_compile(r"(?:^|_)(?:frame|frame_id|link)$")
 # What is between names: of lists and paths, of structures, and of what has parts. A name may hold
@@ -127,7 +126,7 @@ def _is_unread(element: etree._Element, attribute: str, vocabulary: Vocabulary) 
         elif parent.tag == PLUGIN:
             every = [values_of_plugin(parent, vocabulary, it) for it in (False, True)]
             # A node's own element has a known content.
-            name = path[:-1] if path.startswith(_NODE) else str(element.tag)
+            name = path[:-1] if path.startswith("ros/") else str(element.tag)
         else:
             element = parent
             continue

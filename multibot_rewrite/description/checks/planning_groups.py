@@ -13,7 +13,6 @@ Groups = Mapping[str, _Element]
 # What Pinocchio (parsers/srdf.hxx) and HPP read of an SRDF and MoveIt does not: the first is how the
 # free flyer of a model is called.
 FREE_FLYER = "root_joint"
-_OF_PINOCCHIO = ("rotor_params", "gripper", "handle", "specificities")
 
 
 def text_of(element: _Element, attribute: str = "name") -> str:
@@ -25,7 +24,7 @@ def is_pinocchios(root: _Element) -> bool:
     """Is an SRDF written for Pinocchio, which takes no group and no robot's name from it?"""
     states = list(root.iterchildren("group_state"))
     return (
-        any(True for _ in root.iterchildren(*_OF_PINOCCHIO))
+        any(True for _ in root.iterchildren("rotor_params", "gripper", "handle", "specificities"))
         or (any(map(len, states)) and not any("group" in it.attrib for it in states))
         or any(text_of(it) == FREE_FLYER for state in states for it in state.iterchildren("joint"))
     )

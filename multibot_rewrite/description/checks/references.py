@@ -70,22 +70,16 @@ def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Pro
         claim, part = it
         known = (known for kind in part.kinds for known in declared.get(kind, ()))
         message = f"{where(claim)} names the {' or '.join(part.kinds)} {part.text!r}, "
-        message += _fault(part, declared)
+        found = (kind for kind in sorted(CLOSED_KINDS) if part.text in declared.get(kind, ()))
+        other = next(found, "")
+        message += f"which is a {other}" if other else "which is not declared"
         code, hint = _code(claim.site, part), guesses.hint(part.text, known)
-        mild = code in (_LINK, JOINT) and not _ends_the_loading(claim.site)
+        # A description is rejected for such a name in a joint, and in most of ros2_control.
+        site = claim.site
+        of_system = site.section == "element ros2_control" and not site.path.startswith("hardware/")
+        is_fatal = of_system or site.section == "element joint"
+        mild = code in (_LINK, JOINT) and not is_fatal
         yield about(claim, code, message, hint)._replace(level=WARNING if mild else "")
-
-
-def _fault(part: NamePart, declared: Declared) -> str:
-    found = (kind for kind in sorted(CLOSED_KINDS) if part.text in declared.get(kind, ()))
-    other = next(found, "")
-    return f"which is a {other}" if other else "which is not declared"
-
-
-def _ends_the_loading(site: SiteRow) -> bool:
-    """Is a description rejected for a name that nothing declares there?"""
-    of_system = site.section == "element ros2_control" and not site.path.startswith("hardware/")
-    return of_system or site.section == "element joint"
 
 
 def _code(site: SiteRow, part: NamePart) -> str:

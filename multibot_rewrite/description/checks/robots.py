@@ -7,13 +7,13 @@ from collections.abc import Collection, Iterable, Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
 from multibot_rewrite.base.model import Claim
-from multibot_rewrite.base.naming import FRAME_KINDS, NO_OWN_NAMES, TOPIC_KINDS, Naming, removal
+from multibot_rewrite.base.naming import FRAME_KINDS, NO_OWN_NAMES, TOPIC_KINDS, removal
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.spelling import is_reached, must_be_declared
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import finding
-from multibot_rewrite.description.steps.renames import NameKey, RenameMap
+from multibot_rewrite.description.steps.renames import RenameMap
 
 strip_other_robot = declare(
     "MB107", "strip-other-robot", ERROR, options={"strip": "robot1"}, formats=("rewrite",)
@@ -22,11 +22,6 @@ strip_other_robot = declare(
 strip_other_options = declare(
     "MB108", "strip-other-options", ERROR, options={"strip": "robot1"}, formats=("rewrite",)
 )
-
-
-def _changing(renames: RenameMap) -> Iterator[NameKey]:
-    """The names in values that change, each as often as it is there."""
-    return ((it.kind, it.text, it.namespaced) for value in renames.values for it in value)
 
 
 def taken_names(
@@ -39,7 +34,8 @@ def taken_names(
     naming = renames.naming._replace(own=NO_OWN_NAMES)
     for robot in robots if kept else ():
         for kind, name, claim in kept:
-            stem = _stem(naming, robot, kind, name)
+            span = removal(naming, robot, kind, name)
+            stem = name[: span[0]] + name[span[1] :] if span else ""
             is_own = (kind, stem) in renames.naming.own
             if stem in inventory.declared.get(kind, ()) and not is_own:
                 message = (
@@ -78,21 +74,6 @@ def _kept(inventory: Inventory, renames: RenameMap) -> Iterator[tuple[str, str, 
             yield from ((kind, it.text, claim) for it in lost for kind in it.kinds)
 
 
-def _declarations(
-    inventory: Inventory, renames: RenameMap
-) -> Iterator[tuple[str, str, Claim, bool]]:
-    """Kind, name and claim of what this document itself declares, and whether it changes."""
-    for claim, spelling in zip(inventory.claims, renames.values, strict=True):
-        kind, name = claim.site.kinds[0], claim.value.strip()
-        if claim.site.role == "declares" and name and kind in inventory.declared:
-            yield kind, name, claim, bool(spelling)
-
-
-def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
-    span = removal(naming, robot, kind, name)
-    return name[: span[0]] + name[span[1] :] if span else ""
-
-
 def meeting(
     inventory: Inventory, renames: RenameMap, pairs: Collection[tuple[str, str, str]]
 ) -> Iterator[Problem]:
@@ -109,7 +90,11 @@ def meeting_descriptions(
     """Names that two robots both have, each in a description of its own."""
     first: dict[tuple[str, str], str] = {}
     for robot, inventory, renames in made:
-        names = {(name[0], renames.spelled(robot, *name)) for name in _changing(renames)}
+        names = {
+            (it.kind, renames.spelled(robot, it.kind, it.text, it.namespaced))
+            for value in renames.values
+            for it in value
+        }
         for kind, name in sorted(names | set(renames.naming.own)):
             other = first.setdefault((kind, name), robot)
             if other != robot:
@@ -119,8 +104,10 @@ def meeting_descriptions(
 
 def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[Finding]:
     """Links and joints without the affix that ``--undo`` is to take off."""
-    for kind, name, claim, changes in _declarations(inventory, renames):
-        if changes and removal(renames.naming, robot, kind, name) is None:
+    for claim, spelling in zip(inventory.claims, renames.values, strict=True):
+        kind, name = claim.site.kinds[0], claim.value.strip()
+        declares = claim.site.role == "declares" and name and kind in inventory.declared
+        if declares and spelling and removal(renames.naming, robot, kind, name) is None:
             message = f"{kind} {name!r} does not have the name of {robot}"
             hint = "give --undo the robot and the options that the file was made with"
             if robot in name:

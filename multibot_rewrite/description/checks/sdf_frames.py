@@ -26,7 +26,6 @@ from multibot_rewrite.description.checks.poses import (
 )
 
 MODEL = "__model__"
-_FRAMES = ("link", "joint", "frame", "model")
 
 
 class Named(NamedTuple):
@@ -52,7 +51,7 @@ class Named(NamedTuple):
 
 
 def named_in(model: _Element, scope: str) -> Iterator[Named]:
-    for it in model.iterchildren(*_FRAMES):
+    for it in model.iterchildren("link", "joint", "frame", "model"):
         name = f"{scope}{it.get('name', '')}"
         yield Named(name, it, scope)
         if it.tag == "model":

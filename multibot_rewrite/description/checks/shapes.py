@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
+from multibot_rewrite.description.checks.links_and_joints import read_robot
 from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.description.checks.poses import (
     HERE,
@@ -137,7 +137,11 @@ def reach_of(root: _Element) -> float:
     """The radius in metres of the upright cylinder around the root link that holds the robot's
     collisions, else its visuals, with every joint at 0; 0 where nothing of it has a size,
     and for an SDF."""
-    return _reach(_posed_links(read_robot(root)))
+    robot = read_robot(root)
+    poses = link_poses(robot)
+    return _reach(
+        [(it.element, poses[it.name], origin_of) for it in robot.links if it.name in poses]
+    )
 
 
 def filled_by(root: _Element) -> float:
@@ -147,12 +151,6 @@ def filled_by(root: _Element) -> float:
 
 
 _Placed = tuple[_Element, Pose, Callable[[_Element], Pose | None]]
-
-
-def _posed_links(robot: Robot) -> list[_Placed]:
-    """Each link with its pose, and what says the pose of its shapes."""
-    poses = link_poses(robot)
-    return [(it.element, poses[it.name], origin_of) for it in robot.links if it.name in poses]
 
 
 def _posed_links_of_sdf(root: _Element) -> list[_Placed]:

@@ -34,7 +34,8 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     # An SRDF starts nothing.
     parts = [] if inventory.format == SRDF else [*active_parts(root, tree.vocabulary)]
     # Once: so are the others.
-    old = next((it for it in parts if _is_classic(it) and it.is_known), None)
+    known = (it for it in parts if it.kind == PLUGIN and it.is_known)
+    old = next((it for it in known if it.name.startswith(CLASSIC)), None)
     if old and not lacks_classic(release, inventory.document.source):
         old = None
     for part in parts:
@@ -51,10 +52,6 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             )
             hint = "write it for ROS 2, with <ros>, or take it out"
             yield Problem(part.element, message, None, hint, (), CODES[PLUGIN])
-
-
-def _is_classic(part: ActivePart) -> bool:
-    return part.kind == PLUGIN and part.name.startswith(CLASSIC)
 
 
 def _is_of_both(part: ActivePart, vocabulary: Vocabulary) -> bool:
@@ -81,8 +78,7 @@ def _said(part: ActivePart, vocabulary: Vocabulary, guesses: Guesses) -> tuple[s
         return f"{who} is known by its parameters alone: what it opens is not known", SAY_IT
     kind = "hardware" if part.kind == HARDWARE else "plugin" if part.kind == PLUGIN else "sensor"
     name = library_key(part.name) if part.kind == PLUGIN else part.name
-    others = vocabulary.releases_elsewhere(kind, name)
-    if others:
+    if others := vocabulary.releases_elsewhere(kind, name):
         where = not_here(vocabulary, others)
         return f"{who} {where}: its own parameters are not renamed", ANOTHER_RELEASE
     near = guesses.hint(name, vocabulary.names(kind), SLIP)

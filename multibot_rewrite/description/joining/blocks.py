@@ -51,6 +51,7 @@ def said_once(joined: Inventory, part: Inventory) -> Once:
     edits: list[Edit] = []
     more: list[Edit] = []
     notes: list[str] = []
+    file = part.document.file
     for block in _blocks(part):
         doubles = [it for it in _inside(block) if plain(it) in said]
         for plugin, names in others.items():
@@ -58,12 +59,18 @@ def said_once(joined: Inventory, part: Inventory) -> Once:
                 continue
             first = next((it for it, its in managers.items() if its == names), None)
             if first is None:
-                notes.append(_another(plugin, part))
+                name, where = plugin.get("filename", ""), f"{file}:{plugin.sourceline}"
+                what = f"{name!r} makes a controller manager"
+                notes.append(f"{where}: {what}, and another plugin before it does, too")
                 continue
             doubles.append(plugin)
             more += _more_files(before, first, plugin, spans)
             notes += _other_settings(first, plugin, part)
-        notes += _of_the_whole(block, doubles, part)
+        notes += (
+            f"{file}:{it.sourceline}: <{it.tag}> is now said of the whole robot"
+            for it in _inside(block)
+            if it.tag not in _THINGS and it not in doubles
+        )
         gone = [block] if doubles and len(doubles) == len(_inside(block)) else doubles
         edits += [left_out(spans, it) for it in gone]
     return Once(tuple(edits), tuple(more), tuple(notes))
@@ -84,12 +91,6 @@ def _managers(inventory: Inventory) -> dict[_Element, tuple[str, ...]]:
     return {element: section.names for element, section in inventory.served if section.process_wide}
 
 
-def _another(plugin: _Element, part: Inventory) -> str:
-    name = plugin.get("filename", "")
-    where = f"{part.document.file}:{plugin.sourceline}"
-    return f"{where}: {name!r} makes a controller manager, and another plugin before it does, too"
-
-
 def _files(plugin: _Element) -> list[_Element]:
     return list(plugin.iterchildren(_FILES))
 
@@ -98,20 +99,15 @@ def _more_files(before: Spans, plugin: _Element, other: _Element, spans: Spans) 
     """The parameter files of a plugin that is left out, put into the one that stays."""
     known = {text_of(it) for it in _files(plugin)}
     texts = [spans.text_of(it) for it in _files(other) if text_of(it) not in known]
-    last = _inside(plugin)[-1:]
-    if last:
+    if last := _inside(plugin)[-1:]:
         at = before.end_of(last[0])
         yield from (was(at, at, b"", b"\n      " + text) for text in texts)
     elif texts:
         start, end = before.start_of(plugin), before.end_of(plugin)
         old = before.text_of(plugin)
-        yield was(start, end, old, _filled(old, b"".join(texts), plugin))
-
-
-def _filled(old: bytes, inside: bytes, plugin: _Element) -> bytes:
-    """A plugin without elements, with one."""
-    head = old[:-2] + b">" if old.endswith(b"/>") else old[: old.rindex(b"</")]
-    return head + inside + b"</%s>" % str(plugin.tag).encode()
+        # A plugin without elements, with one.
+        head = old[:-2] + b">" if old.endswith(b"/>") else old[: old.rindex(b"</")]
+        yield was(start, end, old, head + b"".join(texts) + b"</%s>" % str(plugin.tag).encode())
 
 
 def _other_settings(plugin: _Element, other: _Element, part: Inventory) -> Iterator[str]:
@@ -120,12 +116,6 @@ def _other_settings(plugin: _Element, other: _Element, part: Inventory) -> Itera
         if it.tag != _FILES and plain(it) not in first:
             where = f"{part.document.file}:{it.sourceline}"
             yield f"{where}: <{it.tag}> is left out: the plugin of an earlier part counts"
-
-
-def _of_the_whole(block: _Element, gone: Iterable[_Element], part: Inventory) -> Iterator[str]:
-    for it in _inside(block):
-        if it.tag not in _THINGS and it not in gone:
-            yield f"{part.document.file}:{it.sourceline}: <{it.tag}> is now said of the whole robot"
 
 
 _SYSTEM, _HARDWARE = "ros2_control", "hardware"

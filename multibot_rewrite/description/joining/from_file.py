@@ -11,7 +11,7 @@ Paths are relative to the file.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from multibot_rewrite.base.model import InputError, UsageError
@@ -40,7 +40,6 @@ BESIDE = ("controllers", "moveit")
 SAMPLES = "samples"
 _KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "rviz", "one_system", *BESIDE)
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
-_AT = ("parent", "pose")
 _EXAMPLE = "join: [{description: arm.urdf}, {description: hand.urdf, at: {parent: tool0}}]"
 
 
@@ -88,8 +87,7 @@ def plain_texts(parts: Sequence[Part], trust: bool) -> tuple[list[GivenPart], tu
 
 def plain_text(made: JoinedText, place: str) -> bytes:
     """The joined text without comments of the join; raises InputError where a name has no prefix."""
-    missed = next((it for it in made.findings if it.code in MISSED), None)
-    if missed:
+    if missed := next((it for it in made.findings if it.code in MISSED), None):
         what = f"{place}: a name has no prefix: {missed.file}:{missed.line}: {missed.message}"
         raise InputError(f"{what}; make the description with multibot join, and correct it")
     return without_marks(made.data)
@@ -106,7 +104,7 @@ def _part(item: YamlItem, folder: str) -> Part:
     keys = table(item, "a part", _KEYS)
     at = table_of(keys, "at")
     for key, value in at.items():
-        if key not in _AT:
+        if key not in ("parent", "pose"):
             wrong(value, f"at has {key!r}; it takes parent and pose")
     if not word_of(keys, "description"):
         wrong(item, "a part has no description; name a URDF or xacro")
@@ -119,7 +117,10 @@ def _part(item: YamlItem, folder: str) -> Part:
     given |= {key: [_path(it, folder) for it in words_of(keys, key)] for key in BESIDE}
     given["one_system"] = flag_of(keys, "one_system")
     given["at"] = {"parent": word_of(at, "parent"), "pose": pose}
-    given["arguments"] = dict(_arguments(table_of(keys, "arguments")))
+    given["arguments"] = {
+        name: it.value if isinstance(it.value, bool) else word(it, name)
+        for name, it in table_of(keys, "arguments").items()
+    }
     try:
         return part_of(given)
     except UsageError as error:
@@ -156,8 +157,3 @@ def _listed(value: str | Sequence[str]) -> Sequence[str]:
 
 def _path(path: str, folder: str) -> str:
     return os.path.normpath(os.path.join(folder, path)) if path else ""
-
-
-def _arguments(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | bool]]:
-    for name, it in keys.items():
-        yield name, it.value if isinstance(it.value, bool) else word(it, name)

@@ -13,7 +13,6 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from lxml import etree
-from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.loose_xml import ESCAPES
@@ -61,7 +60,6 @@ from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document, read_document, tag_end, value_slot
 from multibot_rewrite.description.steps.spans import Spans
 
-_FREE = ("floating", "planar")
 _MOUNT = """
   <joint name="{name}" type="fixed">
     {origin}
@@ -89,16 +87,13 @@ def fixed(part: ReadPart, spec: Part, spans: Spans) -> Fixed:
         at, _ = spans.inside(spans.document.root)
         text = _MOUNT.format(name=name, origin=origin, **words)
         return Fixed((was(at, at, b"", text.encode()),), name)
-    return _without_world(part, spec, spans, robot.below.get(WORLD, ()))
-
-
-def _without_world(part: ReadPart, spec: Part, spans: Spans, joints: Sequence[Joint]) -> Fixed:
+    joints = robot.below.get(WORLD, ())
     root = spans.document.root
     link = next(it for it in root.iterchildren("link") if it.get("name") == WORLD)
     if len(link) or not joints:
         what = "has shapes of its own" if len(link) else "is all it has"
         raise InputError(f"{part.file}: its link {WORLD!r} {what}; give that another name")
-    free = next((it for it in joints if it.type in _FREE), None)
+    free = next((it for it in joints if it.type in ("floating", "planar")), None)
     if free is not None:
         raise InputError(f"{part.file}: joint {free.name!r} is {free.type}: nothing fixes the part")
     blocks = [it for it in root.iterchildren("gazebo") if it.get("reference") == WORLD]
@@ -258,24 +253,21 @@ def _check_link(at: str, part: ReadPart, robot: Robot) -> None:
 
 def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list[Edit]:
     """The edits that declare them; elements that the ``others`` leave out need none."""
-    return list(_edits(joined, spans, {it.start for it in others if it.start < it.end}))
-
-
-def _edits(joined: Document, spans: Spans, edited: Collection[int]) -> Iterator[Edit]:
+    edited = {it.start for it in others if it.start < it.end}
+    edits: list[Edit] = []
     lacking = _declared(spans.document) - _declared(joined)
     for it in spans.document.root.iterchildren("*") if lacking else ():
-        used = sorted(_spaces(it) & {uri for _, uri in lacking})
+        names = (name for one in it.iter("*") for name in (one.tag, *one.attrib))
+        found = (etree.QName(str(name)).namespace for name in names)
+        used = sorted({uri.encode() for uri in found if uri} & {uri for _, uri in lacking})
         start = spans.start_of(it)
         if not used or start in edited:
             continue
         old = spans.text_of(it)
         words = (b' xmlns:%s="%s"' % pair for pair in sorted(lacking) if pair[1] in used)
-        at = 1 + len(_name(old))
-        yield was(start, spans.end_of(it), old, old[:at] + b"".join(words) + old[at:])
-
-
-def _name(element: bytes) -> bytes:
-    return element[1:].split(b">", 1)[0].split(None, 1)[0].rstrip(b"/")
+        at = 1 + len(old[1:].split(b">", 1)[0].split(None, 1)[0].rstrip(b"/"))
+        edits.append(was(start, spans.end_of(it), old, old[:at] + b"".join(words) + old[at:]))
+    return edits
 
 
 def _declared(document: Document) -> set[tuple[bytes, bytes]]:
@@ -285,9 +277,3 @@ def _declared(document: Document) -> set[tuple[bytes, bytes]]:
     found = ((prefix, uri) for prefix, uri in document.root.nsmap.items() if prefix)
     pairs = {(prefix.encode(), uri.encode()) for prefix, uri in found}
     return {pair for pair in pairs if b"xmlns:%s" % pair[0] in tag}
-
-
-def _spaces(element: _Element) -> set[bytes]:
-    names = (name for it in element.iter("*") for name in (it.tag, *it.attrib))
-    found = (etree.QName(str(name)).namespace for name in names)
-    return {uri.encode() for uri in found if uri}

@@ -108,7 +108,12 @@ def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
 
 def sections(text: bytes, file: str) -> list[KeptText]:
     """The parts of a joined text, the first one first; raises InputError."""
-    before = _undone(text, file)
+    # The text with what was left out or changed in its old place.
+    spans = Spans(read_document(text, file))
+    edits = [
+        Edit(it.start(), _end(spans, it, file), _shown(it[2]), None) for it in _WAS.finditer(text)
+    ]
+    before = b"".join(cut(text, edits))
     mark = _BASE.search(before)
     if mark is None:
         raise InputError(f"{file}: it was not made by multibot join: its parts are not known")
@@ -134,15 +139,6 @@ def _behind(text: bytes, at: int, file: str) -> Iterator[tuple[KeptText, int]]:
         names = tuple(unquote(it) for it in materials.decode().split(",") if it)
         at = stop + len(b" -->\n")
         yield KeptText(name.decode(), prefix.decode(), names, whole), at
-
-
-def _undone(text: bytes, file: str) -> bytes:
-    """The text with what was left out or changed in its old place."""
-    spans = Spans(read_document(text, file))
-    edits = [
-        Edit(it.start(), _end(spans, it, file), _shown(it[2]), None) for it in _WAS.finditer(text)
-    ]
-    return b"".join(cut(text, edits))
 
 
 def _end(spans: Spans, found: re.Match[bytes], file: str) -> int:

@@ -20,7 +20,6 @@ from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.audit import audit
 from multibot_rewrite.description.checks.links_and_joints import (
     WORLD,
-    Joint,
     Robot,
     loops,
     read_robot,
@@ -47,7 +46,6 @@ MISSED = ("MB901", "MB428")
 # The same, and plugins and hardware classes that are not known.
 TOLD = (*MISSED, "MB902", "MB903")
 _PREFIX = lazy_compile(r"(?:[A-Za-z]\w*)?", re.ASCII)
-_ENDINGS = (".xacro", ".urdf", ".xml")
 
 
 class Part(NamedTuple):
@@ -121,7 +119,7 @@ def name_of(part: Part, file: str, robot: str) -> str:
     """What a part is called; one that is no file has the name of its ``robot``."""
     last = re.split(r"[/\\]", file.removesuffix(" (expanded)"))[-1]
     stem = robot if file.startswith("<") else last
-    for ending in _ENDINGS:
+    for ending in (".xacro", ".urdf", ".xml"):
         stem = stem.removesuffix(ending)
     found = part.name or part.prefix.strip("_") or stem
     return re.sub(r"\W+", "_", found, flags=re.ASCII).strip("_") or "part"
@@ -148,17 +146,13 @@ def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> Re
             text = next(pipeline.render(prepared, [part.prefix], again=True))
             inventory = collect(read_document(text, file), tree)
         else:
-            _check_whole(inventory, tree)
+            # Raise RewriteRefused for what no rewrite takes, such as a xacro that is not expanded.
+            found = tuple(audit(inventory, make_renames(inventory, prefixing(())), tree))
+            if any(it.level == ERROR for it in found):
+                raise RewriteRefused(found)
     robot = read_robot(inventory.document.root)
     name = name_of(part, file, inventory.document.root.get("name", ""))
     return ReadPart(name, file, part.prefix, data, text, inventory, robot, findings)
-
-
-def _check_whole(inventory: Inventory, tree: Tree) -> None:
-    """Raise RewriteRefused for what no rewrite takes, such as a xacro that is not expanded."""
-    found = tuple(audit(inventory, make_renames(inventory, prefixing(())), tree))
-    if any(it.level == ERROR for it in found):
-        raise RewriteRefused(found)
 
 
 def _faults(inventory: Inventory) -> Iterator[str]:
@@ -168,38 +162,26 @@ def _faults(inventory: Inventory) -> Iterator[str]:
     robot = read_robot(inventory.document.root)
     if not robot.links:
         yield f"it has no link; {robot_instead(inventory.document.file)}"
-    yield from _twice(robot)
-    for joint in robot.joints:
-        yield from _loose_ends(joint, robot)
-    for loop in loops(robot):
-        yield f"joints {', '.join(repr(it.name) for it in loop)} make a loop"
-    found = [it.name for it in roots(robot)]
-    if len(found) != 1:
-        names = " and ".join(map(repr, found[:2]))
-        yield f"{len(found)} of its links have no parent ({names}); a URDF has one root link"
-
-
-def _twice(robot: Robot) -> Iterator[str]:
     for kind, every in (("link", robot.links), ("joint", robot.joints)):
         names = [it.name for it in every]
-        for name in _repeated(names):
+        for name in (name for at, name in enumerate(names) if name in names[:at]):
             yield f"two {kind}s are called {name!r}"
     for link, above in robot.above.items():
         if len(above) > 1:
             names = [it.name for it in above]
             yield f"link {link!r} is the child of joints {names[0]!r} and {names[1]!r}"
-
-
-def _repeated(names: Sequence[str]) -> list[str]:
-    return [name for at, name in enumerate(names) if name in names[:at]]
-
-
-def _loose_ends(joint: Joint, robot: Robot) -> Iterator[str]:
-    if joint.parent == joint.child:
-        yield f"joint {joint.name!r} joins link {joint.child!r} to itself"
-    for end, name in (("parent", joint.parent), ("child", joint.child)):
-        if name not in robot.link:
-            yield f"joint {joint.name!r} has the {end} {name!r}, which is no link"
+    for joint in robot.joints:
+        if joint.parent == joint.child:
+            yield f"joint {joint.name!r} joins link {joint.child!r} to itself"
+        for end, name in (("parent", joint.parent), ("child", joint.child)):
+            if name not in robot.link:
+                yield f"joint {joint.name!r} has the {end} {name!r}, which is no link"
+    for loop in loops(robot):
+        yield f"joints {', '.join(repr(it.name) for it in loop)} make a loop"
+    found = [it.name for it in roots(robot)]
+    if len(found) != 1:
+        first = " and ".join(map(repr, found[:2]))
+        yield f"{len(found)} of its links have no parent ({first}); a URDF has one root link"
 
 
 def names_of(inventory: Inventory) -> Iterator[tuple[str, str]]:

@@ -26,7 +26,6 @@ from multibot_rewrite.description.readback.xml import plain, read_xml
 from multibot_rewrite.description.rewriters.text import end_of
 from multibot_rewrite.description.rewriters.tree import Tree
 
-_KINDS = ("link", "joint")
 # Metres, and entries of a matrix.
 _ROUNDED = 1e-9
 
@@ -64,7 +63,11 @@ def check_read(root: _Element, parts: Sequence[Mounted]) -> None:
         wanted -= Counter([("link", WORLD)] if mounted.is_without_world else [])
         if mounted.joint:
             wanted["joint", mounted.joint] += 1
-            _check_joint(mounted, root)
+            joint = next(it for it in root.iterchildren("joint") if it.get("name") == mounted.joint)
+            ends = [end_of(joint, tag) for tag in ("parent", "child")]
+            fixed = joint.get("type") == "fixed" and ends == [mounted.at, mounted.part.root]
+            if not fixed or not _is_at(joint, pose_of_six(mounted.pose)):
+                raise ProofError(f"{mounted.part.file}: it is not fixed to {mounted.at!r} as asked")
     found = Counter(_names(root))
     if found != wanted:
         kind, name = next(iter((found - wanted) + (wanted - found)))
@@ -73,7 +76,7 @@ def check_read(root: _Element, parts: Sequence[Mounted]) -> None:
 
 
 def _names(root: _Element) -> Iterator[tuple[str, str]]:
-    return ((str(it.tag), it.get("name", "")) for it in root.iterchildren(*_KINDS))
+    return ((str(it.tag), it.get("name", "")) for it in root.iterchildren("link", "joint"))
 
 
 def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
@@ -123,14 +126,6 @@ def _moved(old: _Element, mounted: Mounted, root: _Element) -> bool:
     return _is_at(new, placed(pose_of_six(mounted.pose), inner))
 
 
-def _check_joint(mounted: Mounted, root: _Element) -> None:
-    joint = next(it for it in root.iterchildren("joint") if it.get("name") == mounted.joint)
-    ends = [end_of(joint, tag) for tag in ("parent", "child")]
-    fixed = joint.get("type") == "fixed" and ends == [mounted.at, mounted.part.root]
-    if not fixed or not _is_at(joint, pose_of_six(mounted.pose)):
-        raise ProofError(f"{mounted.part.file}: it is not fixed to {mounted.at!r} as asked")
-
-
 def _is_at(joint: _Element, wanted: Pose) -> bool:
     found = pose_of(joint.find("origin"))
     if found is None:
@@ -177,20 +172,16 @@ def split_text(data: bytes, file: str, tree: Tree) -> dict[str, bytes]:
 def prove(data: bytes, parts: Sequence[Mounted], tree: Tree) -> None:
     """Raise ProofError unless ``data`` is these parts and nothing else."""
     try:
-        _same_parts(data, parts, tree)
+        found = split_text(data, "the joined description", tree)
+        first = parts[0].part
+        before = split_text(first.data, first.file, tree) if is_joined_whole(first.data) else {}
+        wanted = before or {first.name: first.data}
+        wanted |= {it.part.name: it.part.data for it in parts[1:]}
+        for name, text in wanted.items():
+            if found.get(name) != text:
+                raise ProofError(f"part {name!r} cannot be taken out again as it was")
+        if list(found) != list(wanted):
+            raise ProofError(f"{len(wanted)} parts went in, {len(found)} come out")
         check_read(read_xml(data, "the joined description"), parts)
     except InputError as error:
         raise ProofError(f"the joined description cannot be read: {error}") from None
-
-
-def _same_parts(data: bytes, parts: Sequence[Mounted], tree: Tree) -> None:
-    found = split_text(data, "the joined description", tree)
-    first = parts[0].part
-    before = split_text(first.data, first.file, tree) if is_joined_whole(first.data) else {}
-    wanted = before or {first.name: first.data}
-    wanted |= {it.part.name: it.part.data for it in parts[1:]}
-    for name, text in wanted.items():
-        if found.get(name) != text:
-            raise ProofError(f"part {name!r} cannot be taken out again as it was")
-    if list(found) != list(wanted):
-        raise ProofError(f"{len(wanted)} parts went in, {len(found)} come out")

@@ -81,13 +81,22 @@ def joined_srdf(
         own = read_xml(it.data, it.file) if it.data else root.makeelement("robot", {})
         if at:
             without_virtual_joints(own)
-        _check_names(own, it, known, hint)
+        named = [(str(one.tag), one.get("name", "")) for tag in _NAMED for one in own.findall(tag)]
+        for key in dict.fromkeys(named):
+            if key in known:
+                what = f"{key[0]} {key[1]!r} is in {known[key]}, too"
+                raise InputError(f"{it.file}: {what}; {hint}")
+            known[key] = it.file
         root.extend(list(own))
     reasons = dict.fromkeys(sorted(set(_adjacent(described, parts))), "Adjacent")
     others = [it for it in _between(described, parts) if it not in reasons]
-    notes = list(_checked(others, "MoveIt's Setup Assistant finds those that never touch"))
+    notes = []
+    if others:
+        what = f"{plural(len(others), 'pair')} of links of two parts are checked for collisions"
+        notes = [f"SRDF: {what}; MoveIt's Setup Assistant finds those that never touch"]
     if samples and others:
-        found = touching(described, others, dict(_files(parts)), samples)
+        files = {link: it.part.file for it in parts for link in it.part.robot.link}
+        found = touching(described, others, files, samples)
         reasons |= found.reasons
         notes = list(_sampled(others, found, samples))
     for (one, other), why in reasons.items():
@@ -111,17 +120,6 @@ def xml_text(root: _Element) -> bytes:
     """A description as it is written, a line an element."""
     etree.indent(root)
     return etree.tostring(root, xml_declaration=True, encoding="utf-8") + b"\n"
-
-
-def _check_names(
-    own: _Element, it: PartSemantics, known: dict[tuple[str, ...], str], hint: str
-) -> None:
-    named = [(str(one.tag), one.get("name", "")) for tag in _NAMED for one in own.findall(tag)]
-    for key in dict.fromkeys(named):
-        if key in known:
-            what = f"{key[0]} {key[1]!r} is in {known[key]}, too"
-            raise InputError(f"{it.file}: {what}; {hint}")
-        known[key] = it.file
 
 
 def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[tuple[str, str]]:
@@ -162,18 +160,6 @@ def _between(described: _Element, parts: Sequence[PartSemantics]) -> Iterator[tu
     own = [sorted(shaped & set(it.part.robot.link)) for it in parts]
     for some, more in combinations(own, 2):
         yield from ((min(it), max(it)) for it in product(some, more))
-
-
-def _files(parts: Sequence[PartSemantics]) -> Iterator[tuple[str, str]]:
-    for it in parts:
-        yield from ((link, it.part.file) for link in it.part.robot.link)
-
-
-def _checked(pairs: Collection[tuple[str, str]], hint: str) -> Iterator[str]:
-    """How many pairs of links of two parts MoveIt checks."""
-    if pairs:
-        what = f"{plural(len(pairs), 'pair')} of links of two parts are checked for collisions"
-        yield f"SRDF: {what}; {hint}"
 
 
 def _sampled(pairs: Sequence[tuple[str, str]], found: Touching, samples: int) -> Iterator[str]:

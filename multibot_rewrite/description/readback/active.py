@@ -37,7 +37,11 @@ def plugin_section(
     with_ros = plugin.find("ros") is not None
     for key in _keys(plugin):
         found = vocabulary.find("plugin", key)
-        if found and _is_another(plugin, key, found[0]):
+        # gz-sim calls a plugin by its class. One that is called so is no library of Gazebo Classic,
+        # which calls a node by that name; those of gazebo_ros are for Classic alone.
+        sites = found[0].sites if found and not key.startswith("gazebo_ros") else ()
+        of_node = any(it.path == "@name" and it.role == "declares" for it in sites)
+        if of_node and "::" in plugin.get("name", ""):
             continue
         # Nothing in ROS 1 reads a <ros>.
         if found and not (with_ros and all(it.ros == ROS_1 for it in found)):
@@ -45,13 +49,6 @@ def plugin_section(
     if not with_ros:
         return None, False
     return vocabulary.find("plugin", WITH_ROS)[0], False
-
-
-def _is_another(plugin: _Element, key: str, section: VocabularySection) -> bool:
-    """gz-sim calls a plugin by its class. One that is called so is no library of Gazebo Classic, which
-    calls a node by that name; those of gazebo_ros are for Classic alone."""
-    of_node = any(it.path == "@name" and it.role == "declares" for it in section.sites)
-    return of_node and "::" in plugin.get("name", "") and not key.startswith("gazebo_ros")
 
 
 def _keys(plugin: _Element) -> Iterator[str]:
@@ -158,8 +155,7 @@ def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]
 def hardware_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
     """The hardware classes of a description."""
     for system in root.iter("ros2_control"):
-        class_ = hardware_class(system)
-        if class_:
+        if class_ := hardware_class(system):
             yield ActivePart(HARDWARE, system, class_, hardware_section(system, vocabulary))
 
 

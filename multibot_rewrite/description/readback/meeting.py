@@ -179,21 +179,19 @@ class LostRule(NamedTuple):
 def lost_rules(before: Reading, after: Reading) -> Iterator[LostRule]:
     """Each rule once for each name."""
     now = {node.number: node for node in after.nodes}
-    for node in before.nodes:
-        if node.rules and node.number in now:
-            yield from dict.fromkeys(_lost(node, now[node.number]))
-
-
-def _lost(node: ReadNode, new: ReadNode) -> Iterator[LostRule]:
-    for old, end in zip(node.endpoints, new.endpoints, strict=False):
-        name, at = _applied(node, old)
-        if at is None:
-            continue
-        now = _applied(new, end)[1]
-        # An inserted rule may do its work: /tf:=x for tf:=x, which is another name in a namespace.
-        if now is None or new.rules[now].rule.target != new.rules[at].rule.target:
-            rule = node.rules[at].rule
-            yield LostRule(node.number, f"{rule.source}:={rule.target}", name)
+    found: dict[LostRule, None] = {}
+    for node in (it for it in before.nodes if it.rules and it.number in now):
+        new = now[node.number]
+        for old, end in zip(node.endpoints, new.endpoints, strict=False):
+            name, at = _applied(node, old)
+            if at is None:
+                continue
+            again = _applied(new, end)[1]
+            # An inserted rule may do its work: /tf:=x for tf:=x, which is another name in a namespace.
+            if again is None or new.rules[again].rule.target != new.rules[at].rule.target:
+                rule = node.rules[at].rule
+                found[LostRule(node.number, f"{rule.source}:={rule.target}", name)] = None
+    yield from found
 
 
 def _applied(node: ReadNode, end: RuntimeName) -> tuple[str, int | None]:

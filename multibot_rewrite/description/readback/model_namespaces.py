@@ -27,7 +27,8 @@ def scoped_namespace(host: _Element) -> str | None:
     parts: list[str] = []
     own_name = given = False
     for model in host.iterancestors("model", "include"):
-        text = _namespace(model)
+        text = child_text(model, "namespace") if model.tag == "include" else model.get("namespace")
+        text = (text or "").strip()
         if not text:
             continue
         given = True
@@ -41,11 +42,6 @@ def scoped_namespace(host: _Element) -> str | None:
     if own_name:
         return None
     return "/" + "/".join(it for it in reversed(parts) if it) if given else ""
-
-
-def _namespace(model: _Element) -> str:
-    text = child_text(model, "namespace") if model.tag == "include" else model.get("namespace")
-    return (text or "").strip()
 
 
 def _name(model: _Element) -> str:

@@ -134,6 +134,9 @@ def node_of(
     name, namespace = bound.node, bound.namespace
     rules = tuple(it for it in rules if not it.rule.source.startswith("__"))
     frames = tuple(frames_of(plugin, section))
+    # The parent and the child of the transform of odometry that it sends are its first two frames.
+    of_odometry = "/tf" in section.publishes and len(frames) >= PAIR
+    sends = of_odometry and sends_odometry(plugin, section)
     return ReadNode(
         section,
         number,
@@ -141,9 +144,14 @@ def node_of(
         namespace,
         rules,
         tuple(_endpoints(plugin, number, section, bound, rules, release)),
-        tuple(_stems(plugin, section, bound)),
+        tuple(
+            (site.path, full_name(value, TOPIC, bound))
+            for site in section.sites
+            if site.form == "whole" and site.kinds[:1] == ("stem",)
+            for value in values_of(plugin, site)
+        ),
         frames,
-        tuple(_sends(plugin, section, frames)),
+        ((frames[0][0], frames[1][0]),) if sends else (),
         helper,
         _manager(plugin, section, name, namespace),
     )
@@ -310,21 +318,3 @@ def frames_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[st
         if site.form == "whole" and site.kinds[:1] == ("frame",):
             for value in values_of(plugin, site):
                 yield site.path, value
-
-
-def _stems(
-    plugin: _Element, section: VocabularySection, bound: BoundNode
-) -> Iterator[tuple[str, str]]:
-    for site in section.sites:
-        if site.form == "whole" and site.kinds[:1] == ("stem",):
-            for value in values_of(plugin, site):
-                yield site.path, full_name(value, TOPIC, bound)
-
-
-def _sends(
-    plugin: _Element, section: VocabularySection, frames: tuple[tuple[str, str], ...]
-) -> Iterator[tuple[str, str]]:
-    """Yield the parameters of parent and child of the transform of odometry that a plugin sends: those
-    of its first two frames."""
-    if "/tf" in section.publishes and len(frames) >= PAIR and sends_odometry(plugin, section):
-        yield frames[0][0], frames[1][0]

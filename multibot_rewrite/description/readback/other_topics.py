@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from lxml.etree import _Element
 
@@ -51,14 +51,27 @@ def resolved(
     words = [(site.path, value) for site in stems for value in values_of(host, site)]
     if above is not None:
         yield from ((BELOW, _joined(above, word), path) for path, word in words)
-    yield from _of_nobody(host, stems)
+    # A word that topics are made of and that is there and empty: it takes the place of the model's
+    # name, so that no robot is in them (gz-sim Thruster.cc: HasElement("namespace")).
+    for site in stems:
+        given = [*values_at(host, site.path)] if site.empty not in ("default", "model") else []
+        if given and not any(given):
+            yield BELOW, "/", site.path
     for site in filter(holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         below = above
         if site.kinds[0] == "subtopic" and stems and above is not None:
             below = _joined(above, words[0][1]) if words else None
         yield from ((kind, it, site.path) for it in _full(host, section, site, below))
-    yield from _coded(host, section, above)
+    # The names in the code of what is no ROS 2 node, as those of ROS 1: roscpp puts the namespace
+    # in front of relative ones (names.cpp), and tf's broadcaster has an absolute one (tf2_ros
+    # transform_broadcaster.cpp).
+    off = switched_off(host, section)
+    for wired, path in wired_of(host, section):
+        if wired.name not in off and (above is not None or wired.name.startswith("/")):
+            kind = SERVICE if wired.role == SERVES else TOPIC
+            name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
+            yield TRANSFORMS if wired.name in TF_TOPICS else kind, name, path or wired.name
 
 
 def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
@@ -90,33 +103,10 @@ def _full(
             yield _joined(above, name)
 
 
-def _of_nobody(host: _Element, stems: Iterable[SiteRow]) -> Iterator[tuple[str, str, str]]:
-    """A word that topics are made of and that is there and empty: it takes the place of the model's
-    name, so that no robot is in them (gz-sim Thruster.cc: HasElement("namespace"))."""
-    for site in stems:
-        given = [*values_at(host, site.path)] if site.empty not in ("default", "model") else []
-        if given and not any(given):
-            yield BELOW, "/", site.path
-
-
 def as_valid_topic(name: str) -> str:
     """The topic that gz-transport makes of a text: it has no ``~``, and takes out what it does not know
     (gz-transport TopicUtils.cc AsValidTopic, which gz-sim's validTopic and gz-sensors call)."""
     return _NOT_VALID.sub("", name.replace(" ", "_"))
-
-
-def _coded(
-    host: _Element, section: VocabularySection, above: str | None
-) -> Iterator[tuple[str, str, str]]:
-    """The names in the code of what is no ROS 2 node, as those of ROS 1: roscpp puts the namespace in
-    front of relative ones (names.cpp), and tf's broadcaster has an absolute one
-    (tf2_ros transform_broadcaster.cpp)."""
-    off = switched_off(host, section)
-    for wired, path in wired_of(host, section):
-        if wired.name not in off and (above is not None or wired.name.startswith("/")):
-            kind = SERVICE if wired.role == SERVES else TOPIC
-            name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
-            yield TRANSFORMS if wired.name in TF_TOPICS else kind, name, path or wired.name
 
 
 def _namespace(host: _Element, section: VocabularySection) -> str | None:

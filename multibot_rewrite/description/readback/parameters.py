@@ -157,13 +157,9 @@ def _filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator
         yield name
         return
     path, _, tail = rest.partition("}")
-    for value in _values(plugin, section, path):
-        yield from _filled(plugin, section, f"{head}{value}{tail}")
-
-
-def _values(plugin: _Element, section: VocabularySection, path: str) -> list[str]:
     site = next((it for it in section.sites if it.path == path), None)
-    return given_at(plugin, path) if site is None else values_of(plugin, site)
+    for value in given_at(plugin, path) if site is None else values_of(plugin, site):
+        yield from _filled(plugin, section, f"{head}{value}{tail}")
 
 
 def _type(plugin: _Element, type_: str) -> str:

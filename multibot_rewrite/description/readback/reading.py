@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.readback.active import (
     hardware_section,
     opened,
@@ -84,7 +83,12 @@ def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
     missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
     heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
     below = (end for it in nodes for end in _endpoints(it, below=True))
-    ends = (*_of_others(hosts), *below)
+    others = (
+        RuntimeName(TOPIC, name, "plugin", it.number, path)
+        for it in hosts
+        for name, path in of_others(it.element, it.section)
+    )
+    ends = (*others, *below)
     return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts), ends)
 
 
@@ -125,8 +129,14 @@ def _of_first_senders(
     """Without those of systems whose transform another one of the model sends, or sends first."""
     numbers = {it.number for it in missed}
     models = {it.number: around(it.element) for it in hosts}
-    sent = {models[it.number] for it in hosts if it.number not in numbers and _sends_frames(it)}
-    partly = {it.number for it in hosts if it.number in numbers and _gives_frames(it)}
+    sent: set[_Element] = set()
+    partly: set[int] = set()
+    for it in hosts:
+        sites = [s for s in it.section.sites if MODEL in s.default and s.kinds[0] == FRAME]
+        if it.number not in numbers:
+            sent |= {models[it.number] for s in sites if default_of(it.element, s.default)}
+        elif any(any(values_at(it.element, s.path)) for s in sites):
+            partly.add(it.number)
     sent |= {models[it] for it in partly}
     first: dict[_Element, int] = {}
     for number in sorted(numbers - partly):
@@ -134,25 +144,6 @@ def _of_first_senders(
             first.setdefault(models[number], number)
     first = {model: it for model, it in first.items() if not is_nested(model)}
     return tuple(it for it in missed if it.number in partly or it.number in first.values())
-
-
-def _sends_frames(host: _Host) -> bool:
-    return any(default_of(host.element, it.default) for it in _frame_sites(host))
-
-
-def _frame_sites(host: _Host) -> list[SiteRow]:
-    sites = host.section.sites
-    return [it for it in sites if MODEL in it.default and it.kinds[0] == FRAME]
-
-
-def _gives_frames(host: _Host) -> bool:
-    return any(any(values_at(host.element, it.path)) for it in _frame_sites(host))
-
-
-def _of_others(hosts: list[_Host]) -> Iterator[RuntimeName]:
-    for it in hosts:
-        for name, path in of_others(it.element, it.section):
-            yield RuntimeName(TOPIC, name, "plugin", it.number, path)
 
 
 def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:

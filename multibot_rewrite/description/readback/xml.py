@@ -25,14 +25,10 @@ def read_xml(data: bytes, file: str) -> _Element:
     try:
         return etree.fromstring(well_formed(data).text if is_loose(data) else data, _PARSER)
     except etree.XMLSyntaxError:
-        return _read_loosely(data, file)
-
-
-def _read_loosely(data: bytes, file: str) -> _Element:
-    try:
-        return etree.fromstring(well_formed(data).text, _PARSER)
-    except etree.XMLSyntaxError as error:
-        raise InputError(f"{file}: cannot be read again: {error}") from None
+        try:
+            return etree.fromstring(well_formed(data).text, _PARSER)
+        except etree.XMLSyntaxError as error:
+            raise InputError(f"{file}: cannot be read again: {error}") from None
 
 
 def text_of(element: _Element) -> str:

@@ -15,7 +15,7 @@ from multibot_rewrite.base.model import Claim, InputError, SiteRow
 from multibot_rewrite.base.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
 from multibot_rewrite.description.checks.mentions import MENTIONED, kept, mentioned
 from multibot_rewrite.description.rewriters.forms import IN_FRONT
-from multibot_rewrite.description.rewriters.insert import Insertion, without
+from multibot_rewrite.description.rewriters.insert import without
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, ResolvedName, respelled
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 
 
 _PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
-_NAMED = ("param", "parameter")
 
 
 def tag_path(element: _Element, attribute: str) -> str:
@@ -47,7 +46,7 @@ def _step(element: _Element) -> str:
     tag = short_name(str(element.tag), element.prefix)
     if tag == "plugin":
         return f"{tag}[{plugin_name(element)}]"
-    name = element.get("name") if tag in _NAMED else None
+    name = element.get("name") if tag in ("param", "parameter") else None
     return f"{tag}[{name}]" if name else tag
 
 
@@ -134,15 +133,13 @@ def _reasons(
     for name in names:
         kind = name.kind
         where = declared.get(kind, {}).get(name.text)
-        known = f", declared at {_line_of(inventory, where)}" if where not in (None, claim) else ""
+        known = ""
+        if where is not None and where != claim:
+            here = where.element.getroottree().getroot() is inventory.document.root
+            of_urdf = "" if here else " of the URDF"
+            known = f", declared at line {where.element.sourceline}{of_urdf}"
         stays = _stays(naming, kind, name.text, claim.site.namespaced)
         yield f"{kind or ' or '.join(name.kinds)} {name.text!r}{known}{stays and ': '}{stays}"
-
-
-def _line_of(inventory: Inventory, claim: Claim | None) -> str:
-    assert claim is not None
-    here = claim.element.getroottree().getroot() is inventory.document.root
-    return f"line {claim.element.sourceline}{'' if here else ' of the URDF'}"
 
 
 def _stays(naming: Naming, kind: str, name: str, namespaced: bool) -> str:
@@ -165,6 +162,7 @@ def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation
     """Values on the line that no site claims."""
     document = inventory.document
     claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
+    names = frozenset(name for kind in MENTIONED for name in inventory.declared[kind])
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         slots = [(str(key), str(value)) for key, value in element.items()]
         slots.append(("", text_of(element)))
@@ -172,15 +170,11 @@ def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation
             place = _place(inventory, start, attribute, value)
             if value and place[0] == line and (start, attribute) not in claimed:
                 site = kept(element, attribute, tree, {})
-                reason = site.note if site else _unclaimed(inventory, value)
+                name = mentioned(value, names)
+                held = f"it holds the name {name!r}" if name else "it holds no declared name"
+                reason = site.note if site else held
                 path = tag_path(element, attribute)
                 yield Explanation(*place, path, value, site, reason, value)
-
-
-def _unclaimed(inventory: Inventory, value: str) -> str:
-    names = frozenset(name for kind in MENTIONED for name in inventory.declared[kind])
-    name = mentioned(value, names)
-    return f"it holds the name {name!r}" if name else "it holds no declared name"
 
 
 def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterator[Explanation]:
@@ -201,13 +195,10 @@ def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterat
             place = (0, 0) if there is None else locate(source, starts[there])
             if there is not None and place[0] == line:
                 text = item.xml.replace(ROBOT_SLOT, robot)
-                reason = f"filled: empty it is read as {item.old!r}, which {_who(item)}"
+                who = "all robots would share" if item.shared else "nothing else has"
+                reason = f"filled: empty it is read as {item.old!r}, which {who}"
                 path = tag_path(there, "")
                 yield Explanation(*place, path, name, None, reason, name, (text,))
-
-
-def _who(item: Insertion) -> str:
-    return "all robots would share" if item.shared else "nothing else has"
 
 
 def _place(inventory: Inventory, start: int, attribute: str, value: str) -> tuple[int, int]:
@@ -236,7 +227,9 @@ def explain_source(
     for it in wholes:
         try:
             read = expand_traced(it, read_file(it), arguments, None, reach, True)
-            found = dict.fromkeys(_made_on(_Line(read, _named(read, path), line), *explaining(it)))
+            same = (one for one in read.sources if os.path.realpath(one) == os.path.realpath(path))
+            made = _made_on(_Line(read, next(same, ""), line), *explaining(it))
+            found = dict.fromkeys(made)
         except InputError as error:
             failed.append(error)
             continue
@@ -245,11 +238,6 @@ def explain_source(
     if len(failed) == len(wholes):
         raise failed[0]
     return []
-
-
-def _named(read: Expansion, path: str) -> str:
-    """The name that a file has among those that were read; empty where it was not."""
-    return next((it for it in read.sources if os.path.realpath(it) == os.path.realpath(path)), "")
 
 
 class _Line(NamedTuple):
@@ -283,24 +271,14 @@ def _made_on(it: _Line, document: Document, explain: OnLine) -> Iterator[Explana
         if written is None and all(it.begins(one) is None for one in every):
             continue
         for found in explain(locate(document.source, document.starts[number])[0]):
-            pieces = _pieces(it.read, number, found)
+            attribute = found.path.rpartition("@")[2] if "@" in found.path else ""
+            pieces = it.read.pieces.of(number, attribute, found.value)
             at = it.begins(pieces) if written is None else written
             if at is not None:
                 line, column = locate(it.read.sources[it.file], at)
-                made_of = _made_of(it.read, pieces)
+                plain = len(pieces) < 2 and all(one.kind == LITERAL for one in pieces)
+                made_of = () if plain else tuple(_words(it.read, pieces))
                 yield found._replace(line=line, column=column, made_of=made_of)
-
-
-def _pieces(read: Expansion, number: int, it: Explanation) -> tuple[Piece, ...]:
-    """The pieces of a value of an element."""
-    _, at, attribute = it.path.rpartition("@")
-    return read.pieces.of(number, attribute if at else "", it.value)
-
-
-def _made_of(read: Expansion, pieces: tuple[Piece, ...]) -> tuple[str, ...]:
-    """The pieces in words; () for a value that stands in the element as it is."""
-    plain = len(pieces) < 2 and all(one.kind == LITERAL for one in pieces)
-    return () if plain else tuple(_words(read, pieces))
 
 
 def _words(read: Expansion, pieces: tuple[Piece, ...]) -> Iterator[str]:

@@ -101,7 +101,16 @@ def suggest(inventory: Inventory) -> list[SuggestedSection]:
         if thing is not None and not thing.known:
             name = _section_name(thing.type, host.element)
             hosts.setdefault((thing.type, name, "" if name else thing.name), []).append(host)
-    sections = [_section(key, group, inventory.declared) for key, group in hosts.items()]
+    sections = []
+    for (type_, name, label), group in hosts.items():
+        seen: dict[str, list[str]] = {}
+        for host in group:
+            for path, value in _values(host.element, host.node, ""):
+                seen.setdefault(path, []).append(value)
+        known = [it.node.section for it in group if it.node.section is not None]
+        blocks = [b for it in known if it.type == "plugin" for b in it.blocks]
+        rows = tuple(_row(path, values, inventory.declared) for path, values in seen.items())
+        sections.append(SuggestedSection(type_, name, label, tuple(dict.fromkeys(blocks)), rows))
     return [it for it in sections if it.type == "plugin" or _has_params(it)]
 
 
@@ -127,20 +136,6 @@ def _can_head(type_: str, name: str) -> bool:
         return read_header("", f"{type_} {name}]") == (type_, name)
     except VocabularyError:
         return False
-
-
-def _section(
-    key: tuple[str, str, str], hosts: Sequence[Host], declared: Declared
-) -> SuggestedSection:
-    type_, name, label = key
-    seen: dict[str, list[str]] = {}
-    for host in hosts:
-        for path, value in _values(host.element, host.node, ""):
-            seen.setdefault(path, []).append(value)
-    known = [host.node.section for host in hosts if host.node.section is not None]
-    blocks = [b for it in known if it.type == "plugin" for b in it.blocks]
-    rows = tuple(_row(path, values, declared) for path, values in seen.items())
-    return SuggestedSection(type_, name, label, tuple(dict.fromkeys(blocks)), rows)
 
 
 def _has_params(section: SuggestedSection) -> bool:
@@ -188,7 +183,7 @@ def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
     word = tag_kind(path)
     guesses = [_guess(value, word, declared) for value in values]
     made = [it for it in guesses if it is not None]
-    best = max(made, key=_weight, default=None)
+    best = max(made, key=lambda it: (not it.by_tag, it.form != "whole"), default=None)
     if best is None or not _is_path(path):
         return SuggestedRow(path, values[0], None)
     value = values[guesses.index(best)]
@@ -198,10 +193,6 @@ def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
     return SuggestedRow(
         path, value, best._replace(kinds=tuple(dict.fromkeys((*best.kinds, *others))))
     )
-
-
-def _weight(guess: Guess) -> tuple[bool, bool]:
-    return not guess.by_tag, guess.form != "whole"
 
 
 def tag_kind(path: str) -> str:
@@ -235,8 +226,7 @@ def _by_value(value: str, declared: Declared) -> Guess | None:
         return Guess(("topic",), "remap", f"{shown(value)} is a remap rule")
     for form, names in _readings(value):
         found = {kind: next((n for n in names if n in declared[kind]), "") for kind in MENTIONED}
-        named = [(kind, name) for kind, name in found.items() if name]
-        if named:
+        if named := [(kind, name) for kind, name in found.items() if name]:
             return Guess(tuple(kind for kind, _ in named), form, _why(value, named))
     if value.startswith("/") and value[1:] in declared["link"]:
         return Guess(("frame",), "whole", f"{shown(value)} is a link here, but for the slash")

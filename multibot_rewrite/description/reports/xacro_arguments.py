@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from itertools import chain
 from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
@@ -32,7 +33,6 @@ _SPACE = lazy_compile(r"(robot_?)?(namespace|ns)", re.IGNORECASE)
 _MARK = MARKS[0]
 PARTS = ("link", "joint")
 _SEPARATORS = "/_-."
-_ARGUMENT = "{*}arg"
 
 
 class Use(NamedTuple):
@@ -152,7 +152,21 @@ def find_arguments(
     for name, default in [it for it in declared.items() if wanted(it[0])][:MOST]:
         if clock() > end:
             break
-        found[name] = _argument(path, given, name, default, tree, reach, plain)
+        try:
+            data = expand(path, {**given, name: _MARK}, reach=reach)
+            inventory = collect(read_document(data, path), tree)
+        except InputError as error:
+            # What xacro said, without place and advice.
+            said = str(error).rpartition("xacro failed")[2].partition(": ")[2].partition("; ")[0]
+            found[name] = Argument(name, default, (), 0, said or str(error))
+            continue
+        values = [it for it in slot_values(inventory.document.root) if _MARK in it]
+        claimed = sum(_MARK in claim.value for claim in inventory.claims)
+        renamed = plain - _parts(inventory)
+        names = chain.from_iterable(inventory.names)
+        missed = next((it.text for it in names if it.text in renamed), "")
+        others, uses = max(len(values) - claimed, 0), tuple(_uses(inventory))
+        found[name] = Argument(name, default, uses, others, "", missed)
     untried = tuple(it for it in declared if it not in found)
     return XacroArguments(path, tuple(found.values()), untried, read.read)
 
@@ -168,43 +182,15 @@ def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
     """The ``<xacro:arg>`` of all files with their defaults: the first one counts, as for xacro."""
     found: dict[str, str] = {}
     for file, data in sources.items():
-        for element in read_document(data, file).root.iter(_ARGUMENT):
+        for element in read_document(data, file).root.iter("{*}arg"):
             if "xacro}" in str(element.tag):
                 found.setdefault(element.get("name", ""), element.get("default", ""))
     return found
 
 
-def _argument(
-    path: str,
-    given: Mapping[str, str],
-    name: str,
-    default: str,
-    tree: Tree,
-    reach: Reach,
-    plain: frozenset[str],
-) -> Argument:
-    try:
-        data = expand(path, {**given, name: _MARK}, reach=reach)
-        inventory = collect(read_document(data, path), tree)
-    except InputError as error:
-        return Argument(name, default, (), 0, _reason(error))
-    values = [it for it in slot_values(inventory.document.root) if _MARK in it]
-    claimed = sum(_MARK in claim.value for claim in inventory.claims)
-    renamed = plain - _parts(inventory)
-    missed = (it.text for found in inventory.names for it in found if it.text in renamed)
-    others = max(len(values) - claimed, 0)
-    return Argument(name, default, tuple(_uses(inventory)), others, "", next(missed, ""))
-
-
 def _parts(inventory: Inventory) -> frozenset[str]:
     """The links and joints that are declared."""
     return frozenset(it for kind in PARTS for it in inventory.declared.get(kind, ()))
-
-
-def _reason(error: InputError) -> str:
-    """What xacro said, without place and advice."""
-    text = str(error)
-    return text.rpartition("xacro failed")[2].partition(": ")[2].partition("; ")[0] or text
 
 
 def _uses(inventory: Inventory) -> Iterator[Use]:

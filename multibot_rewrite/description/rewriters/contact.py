@@ -69,16 +69,13 @@ def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
 
 def _names(left: str, links: Links, lumped: Lumped, spell: Respell) -> dict[tuple[str, int], str]:
     """Name of each collision that ends in link ``left``, by link and index."""
-    return dict(_named(spell("link", left), _merged(left, links, lumped, spell), spell))
-
-
-def _named(
-    left: str, collisions: list[tuple[str, int, str]], spell: Respell
-) -> Iterator[tuple[tuple[str, int], str]]:
-    for number, (link, place, own) in enumerate(collisions):
+    found = {}
+    there = spell("link", left)
+    for number, (link, place, own) in enumerate(_merged(left, links, lumped, spell)):
         start = spell("shape", own) if own else spell("link", link)
         name = f"{start}_collision" + (f"_{number}" if number else "")
-        yield (link, place), name if name.startswith(left) else f"{left}{LUMP}{name}"
+        found[link, place] = name if name.startswith(there) else f"{there}{LUMP}{name}"
+    return found
 
 
 def _lumped(root: etree._Element) -> Lumped:

@@ -11,7 +11,7 @@ from lxml import etree
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
-from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, RemapRule, expand
+from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, expand
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.model_namespaces import has_own_names
 from multibot_rewrite.description.rewriters.own_defaults import (
@@ -30,7 +30,6 @@ from multibot_rewrite.description.rewriters.vocabulary import (
     split_path,
     split_step,
 )
-from multibot_rewrite.description.rewriters.vocabulary.values import WiredTopic
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 
@@ -63,26 +62,20 @@ def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Inserti
     """Everything that ``hosts`` need beyond what they say themselves."""
     served = [(host, section) for host, section in hosts if section.inserts]
     silent = second_senders(served, naming)
-    return [
-        item
-        for host, section in served
-        for item in _insertions(host, section, declared, naming)
-        if item.shared or host not in silent
-    ]
-
-
-def _insertions(
-    host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
-) -> list[Insertion]:
-    home = ros_home(host, section)
-    found = list(_defaults(host, section, declared, naming, _hidden(host, home)))
-    if any(site.path == "ros/remapping" for site in section.sites):
-        found += _remaps(host, section, naming, home)
-    if naming.separators:
-        found += _of_ros_1(host, section, naming)
-    if section.helper and naming.separators and naming.topics != NAMESPACE:
-        found += _apart(host, section, declared, naming, home)
-    return found
+    every: list[Insertion] = []
+    for host, section in served:
+        home = ros_home(host, section)
+        # What stands in the host itself has no step for it in its path.
+        hidden = "ros/" if home is host else ""
+        found = list(_defaults(host, section, declared, naming, hidden))
+        if any(site.path == "ros/remapping" for site in section.sites):
+            found += _remaps(host, section, naming, home)
+        if naming.separators:
+            found += _of_ros_1(host, section, naming)
+        if section.helper and naming.separators and naming.topics != NAMESPACE:
+            found += _apart(host, section, declared, naming, home)
+        every += (item for item in found if item.shared or host not in silent)
+    return every
 
 
 def _of_ros_1(
@@ -133,13 +126,9 @@ def lacks_namespace(
     sites = tuple([it for it in section.sites if "namespace" in it.kinds])
     if not sites or not section.inserts:
         return False
-    hidden, asked = _hidden(host, ros_home(host, section)), section._replace(sites=sites)
+    hidden = "ros/" if ros_home(host, section) is host else ""
+    asked = section._replace(sites=sites)
     return any(it.kind == "namespace" for it in _defaults(host, asked, declared, naming, hidden))
-
-
-def _hidden(host: etree._Element, home: etree._Element | None) -> str:
-    """What the paths of a host leave out whose ROS settings stand in itself."""
-    return "ros/" if home is host else ""
 
 
 def without(item: Insertion, release: str) -> str:
@@ -166,7 +155,10 @@ def _defaults(
             continue
         of_model = default.startswith(MODEL)
         path = site.path.removeprefix(hidden)
-        there = _there(host, path)
+        # The first element at ``path`` that has its attribute.
+        steps, attribute = split_path(path)
+        found = host.find("/".join(query(step) for step in steps))
+        there = found if found is None or not attribute or attribute in found.attrib else None
         if there is not None and (site.empty != "default" or "@" in path or text_of(there)):
             continue
         wanted = filled(host, site.fill) or default.removeprefix(MODEL)
@@ -188,13 +180,6 @@ def _without(site: SiteRow, default: str, naming: Naming) -> str:
     if site.default != SENSOR:
         return default
     return spelled(naming, ROBOT_SLOT, "sensor", default)
-
-
-def _there(host: etree._Element, path: str) -> etree._Element | None:
-    """The first element at ``path`` that has its attribute."""
-    steps, attribute = split_path(path)
-    found = host.find("/".join(query(step) for step in steps))
-    return found if found is None or not attribute or attribute in found.attrib else None
 
 
 def query(step: str) -> str:
@@ -235,15 +220,17 @@ def _remaps(
     """A rule for each topic that only a remap can move, unless the file has one."""
     rules = rules_in(home)
     node, namespace = named(host, section)
+    of_node = ("", "" if section.process_wide else node)
     for wired in (it for it in section.wired if not it.is_moved):
         topic, target = wired.name, _remap_target(wired.name, naming)
         full = expand(topic, namespace, node)
-        there = [
-            it
-            for it in rules
-            if expand(it.source, namespace, node) == full and _is_for(it, wired, section, node)
-        ]
-        if not target or any(_stays(it, naming) for it in there):
+        # The rules that rcl asks for it.
+        other = TOPIC_SCHEME if wired.role == "serves" else SERVICE_SCHEME
+        asked = (it for it in rules if it.scheme != other and it.node in of_node)
+        there = [it for it in asked if expand(it.source, namespace, node) == full]
+        if not target or any(
+            naming.topics != NAMESPACE or it.source.startswith("/") for it in there
+        ):
             continue
         if there:
             target = spelled(naming, ROBOT_SLOT, "topic", there[0].target, True)
@@ -252,18 +239,6 @@ def _remaps(
         of_controllers = section.process_wide and topic in section.publishes
         made = Insertion(parent, wrap, xml, "topic", topic, target)
         yield made._replace(of_controllers=of_controllers)
-
-
-def _is_for(rule: RemapRule, wired: WiredTopic, section: VocabularySection, node: str) -> bool:
-    """Does rcl ask this rule for the topic or service? One for another node it does not."""
-    other = TOPIC_SCHEME if wired.role == "serves" else SERVICE_SCHEME
-    of_node = "" if section.process_wide else node
-    return rule.scheme != other and rule.node in ("", of_node)
-
-
-def _stays(rule: RemapRule, naming: Naming) -> bool:
-    """Does it match the same name after the rewrite? A relative left side moves with the namespace."""
-    return naming.topics != NAMESPACE or rule.source.startswith("/")
 
 
 def _remap_target(topic: str, naming: Naming) -> str:

@@ -84,25 +84,20 @@ def parts_of(value: str, stems: Stems, declared: Declared) -> Iterator[NamePart]
     at = head.end() if head else bare
     model = _longest(value, at, declared.get("model", ())) if head else ""
     word = _longest(value, at, stems)
-    if word and word == model and not _is_of(value, at, word, stems):
-        word = ""
+    if word and word == model:
+        # Of a system with this word, or of one that takes the model's name?
+        behind = value[at + len(word) :]
+        ours = (re.match(rf"/joint/{re.escape(it)}(?:/|$)", behind) for it in stems[word])
+        word = word if any(ours) else ""
     if head and not word and not model:
         # A word with its own ``model/`` in front.
         at, word = bare, _longest(value, bare, stems)
     kinds, name = (STEM, word) if word else (("model",), model)
-    if name:
-        yield NamePart(at, name, kinds, False, kinds)
-        yield from _below(value, at + len(name), declared)
-
-
-def _is_of(value: str, at: int, word: str, stems: Stems) -> bool:
-    """Is the topic that of a system with this word, not of one that takes the model's name?"""
-    behind = value[at + len(word) :]
-    return any(re.match(rf"/joint/{re.escape(it)}(?:/|$)", behind) for it in stems[word])
-
-
-def _below(value: str, at: int, declared: Declared) -> Iterator[NamePart]:
-    """The links, joints and sensors below a model, each declared in this file."""
+    if not name:
+        return
+    yield NamePart(at, name, kinds, False, kinds)
+    at += len(name)
+    # The links, joints and sensors below a model, each declared in this file.
     while part := _PART.match(value, at):
         kind, start = part[1], part.end()
         name = _longest(value, start, declared.get(kind, ()))

@@ -64,16 +64,12 @@ def filled(host: etree._Element, default: str) -> str:
 
 
 def _own(host: etree._Element, word: str) -> str:
-    if word == "link":
-        return _canonical_link(host)
     if word == "sensor":
         sensor = next(host.iterancestors("sensor"), None)
         return "" if sensor is None else sensor.get("name", "")
-    return text_at(host, word)
-
-
-def _canonical_link(host: etree._Element) -> str:
-    """The link that the model's first one is made of; of a URDF its root, or what the world holds."""
+    if word != "link":
+        return text_at(host, word)
+    # The link that the model's first one is made of; of a URDF its root, or what the world holds.
     model = model_of(host)
     if model.tag == "model":
         first = next(model.iter("link"), None)

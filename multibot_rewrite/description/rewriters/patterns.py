@@ -87,16 +87,13 @@ class Pattern:
         for character in _bytes(name):
             step = here, character
             if step not in self._steps:
-                self._steps[step] = self._next(*step)
+                states = (self._states[at] for at in here)
+                led = (behind for over, behind in states if over is not None and character in over)
+                self._steps[step] = self._reached({at for behind in led for at in behind}, set())
             here = self._steps[step]
             if not here:
                 return False
         return 0 in self._reached(here, {_END})
-
-    def _next(self, here: frozenset[int], character: str) -> frozenset[int]:
-        states = (self._states[at] for at in here)
-        led = (behind for over, behind in states if over is not None and character in over)
-        return self._reached({at for behind in led for at in behind}, set())
 
     def _reached(self, states: Iterable[int], places: Container[str]) -> frozenset[int]:
         """These and all that follow without a character."""
@@ -129,7 +126,14 @@ def _either(pieces: deque[str], depth: int) -> _Piece:
 def _row(pieces: deque[str], depth: int) -> _Piece:
     row: list[_Piece] = []
     while pieces and pieces[0] not in "|)":
-        row.append(_repeated(_atom(pieces.popleft(), pieces, depth), pieces))
+        piece = _atom(pieces.popleft(), pieces, depth)
+        while pieces and _is_count(pieces[0]):
+            count = pieces.popleft()
+            piece = _times(piece, *_counts(count))
+            # As few as possible: the same names.
+            if pieces and pieces[0] == "?":
+                pieces.popleft()
+        row.append(piece)
 
     def add(states: list[_State], after: int) -> int:
         for piece in reversed(row):
@@ -152,10 +156,7 @@ def _atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
         return lambda states, after: _add(states, piece, after)
     if _is_count(piece) or (piece[0] == "[" and not _WHOLE_CLASS.fullmatch(piece)):
         raise PatternError(f"{piece} repeats nothing, or is not closed")
-    return _one(_characters(piece))
-
-
-def _one(characters: frozenset[str]) -> _Piece:
+    characters = _characters(piece)
     return lambda states, after: _add(states, characters, after)
 
 
@@ -164,16 +165,6 @@ def _add(states: list[_State], over: frozenset[str] | str | None, *behind: int) 
         raise PatternError("too much is repeated")
     states.append((over, behind))
     return len(states) - 1
-
-
-def _repeated(piece: _Piece, pieces: deque[str]) -> _Piece:
-    while pieces and _is_count(pieces[0]):
-        count = pieces.popleft()
-        piece = _times(piece, *_counts(count))
-        # As few as possible: the same names.
-        if pieces and pieces[0] == "?":
-            pieces.popleft()
-    return piece
 
 
 def _is_count(piece: str) -> bool:

@@ -76,9 +76,15 @@ def names_in_rules(
         if host is None:
             continue
         if host not in nodes:
-            nodes[host] = _node(host, sections[host])
-        names = _names(claim, nodes[host], sections[host].process_wide)
-        found[at] = tuple(sorted(names, key=lambda it: it.at))
+            section = sections[host]
+            bare = _Node(*named(host, section), {}, (), False)
+            names = [*_asked(host, section)]
+            stems = tuple(it.name for it in names if it.kind == "stem")
+            asked = {bare.full(it.name): it for it in names if it.kind != "stem"}
+            known = bool(names or section.wired) and not section.process_wide
+            nodes[host] = bare._replace(asked=asked, stems=stems, known=known)
+        parts = _names(claim, nodes[host], sections[host].process_wide)
+        found[at] = tuple(sorted(parts, key=lambda it: it.at))
     return found
 
 
@@ -124,15 +130,6 @@ def _flag(argument: etree._Element) -> str:
     before = next(argument.itersiblings("argument", preceding=True), None)
     text = "" if before is None else text_of(before)
     return text if text.startswith("-") and text not in _ALONE else ""
-
-
-def _node(host: etree._Element, section: VocabularySection) -> _Node:
-    bare = _Node(*named(host, section), {}, (), False)
-    names = [*_asked(host, section)]
-    stems = tuple(it.name for it in names if it.kind == "stem")
-    asked = {bare.full(it.name): it for it in names if it.kind != "stem"}
-    known = bool(names or section.wired) and not section.process_wide
-    return bare._replace(asked=asked, stems=stems, known=known)
 
 
 def _asked(host: etree._Element, section: VocabularySection) -> Iterator[_Asked]:

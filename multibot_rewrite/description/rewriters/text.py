@@ -19,8 +19,7 @@ def text_of(element: etree._Element) -> str:
     for child in element:
         if not isinstance(child, etree._Comment):
             break
-        text = (child.tail or "").strip()
-        if text:
+        if text := (child.tail or "").strip():
             return text
     return ""
 

@@ -148,7 +148,14 @@ class Tree:
         self._below: dict[str, list[str]] = {name: [] for name in places}
         for name, parents in places.items():
             for parent in parents:
-                self._place(name, parent)
+                if parent == "/":
+                    self.formats[name] = self._nodes[name]
+                    self.tags.add(_tag(name))
+                elif parent in self._below:
+                    self._below[parent].append(name)
+                elif not self.vocabulary.has("element", parent):
+                    (section, *_) = self.vocabulary.find("element", name)
+                    raise _wrong(section, f"at: {parent}: there is no [element {parent}]")
 
     def check(self) -> None:
         """Read every section now; raises VocabularyError for the first mistake."""
@@ -167,16 +174,6 @@ class Tree:
             return found[0] if found else ""
         tags = {child.tag for child in root}
         return max(found, key=lambda name: len(self.formats[name].children.keys() & tags))
-
-    def _place(self, name: str, parent: str) -> None:
-        if parent == "/":
-            self.formats[name] = self._nodes[name]
-            self.tags.add(_tag(name))
-        elif parent in self._below:
-            self._below[parent].append(name)
-        elif not self.vocabulary.has("element", parent):
-            (section, *_) = self.vocabulary.find("element", name)
-            raise _wrong(section, f"at: {parent}: there is no [element {parent}]")
 
     def _make(self, element_name: str) -> TreeNode:
         (section,) = self.vocabulary.find("element", element_name)
@@ -303,10 +300,6 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 }
 
 
-def _is_of_ros_2(root: _Element) -> bool:
-    return root.find("ros2_control") is not None
-
-
 def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection | None:
     """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
 
@@ -315,7 +308,7 @@ def _flavour(found: Sequence[VocabularySection], element: _Element) -> Vocabular
     Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case).
     """
     own = element.find("ros") is not None
-    if own or (len(found) > 1 and _is_of_ros_2(element.getroottree().getroot())):
+    if own or (len(found) > 1 and element.getroottree().getroot().find("ros2_control") is not None):
         found = [section for section in found if section.ros != "1"]
     if len(found) < 2:
         return found[0] if found else None

@@ -196,8 +196,7 @@ def _marked(folder: str, mark: str) -> str:
 def _repository(folder: str) -> str:
     """The repository that a folder is in; in a copy without ``.git`` the nearest folder above the
     package that has what only a repository has, else one that is called src. Empty if there is none."""
-    known = _marked(folder, ".git")
-    if known:
+    if known := _marked(folder, ".git"):
         return known
     package = _marked(folder, "package.xml")
     above = list(_above(os.path.dirname(package))) if package else []

@@ -138,12 +138,25 @@ def expand_traced(
 
 
 def _text(path: str, result: Result, trace: Trace) -> bytes:
-    _print(result.notes)
+    # What xacro warns about, without what a terminal would obey.
+    for line in result.notes.splitlines():
+        sys.stderr.write("".join(it if it.isprintable() else "?" for it in line) + "\n")
     if result.failure:
-        reason = " ".join(_reason(result.failure.reason).split())
+        said = result.failure.reason
+        text = re.sub(r"^\[Errno \d+\] |<class '[\w.]+'>: ", "", said.partition(" [Errno")[0])
+        # xacro may say it twice: in its own words and in those of the cause.
+        if len(text) < LONG:
+            text = re.sub(r"(.{9,}) \1(?= |$)", r"\1", text, flags=re.DOTALL)
+        reason = " ".join((text or said).split())
         message = _message(path, result.failure, reason, trace)
         raise InputError(message, *_cause(reason))
-    _check_root(path, *result.root)
+    # xacro expands what is inside the root, and drops the declaration of its own prefix.
+    prefix, tag = result.root
+    if prefix == "xacro":
+        raise InputError(
+            f"{path}: the root element is <{tag}>, which xacro does not expand; "
+            "put everything inside a <robot> element"
+        )
     return result.text
 
 
@@ -157,21 +170,6 @@ def _tell_missing(reach: Reach, held: tuple[str, ...]) -> None:
 def _tell_once() -> None:
     said = "xacro files are held by limits and Python's audit hook alone: this system has neither"
     sys.stderr.write(f"{said} Landlock nor seccomp (SECURITY.md)\n")
-
-
-def _print(notes: str) -> None:
-    """What xacro warns about, without what a terminal would obey."""
-    lines = ("".join(it if it.isprintable() else "?" for it in line) for line in notes.splitlines())
-    sys.stderr.writelines(f"{line}\n" for line in lines)
-
-
-def _check_root(path: str, prefix: str, tag: str) -> None:
-    """xacro expands what is inside the root, and drops the declaration of its own prefix."""
-    if prefix == "xacro":
-        raise InputError(
-            f"{path}: the root element is <{tag}>, which xacro does not expand; "
-            "put everything inside a <robot> element"
-        )
 
 
 def _cause(reason: str) -> tuple[str, str]:
@@ -219,20 +217,9 @@ def _place(failure: Failure, trace: Trace) -> str:
         return ""
     file, start = place
     source = trace.sources[file]
-    line, column = locate(source, _attribute(source, start, failure.place[2].encode()))
-    return f"{file}:{line}:{column}"
-
-
-def _attribute(source: bytes, start: int, name: bytes) -> int:
-    """The offset of an attribute of the tag at ``start``; that of the tag where it has none."""
+    # The offset of an attribute of the tag at ``start``; that of the tag where it has none.
+    name = failure.place[2].encode()
     pattern = re.compile(rb"\s(" + re.escape(name) + rb"\s*=)")
     found = pattern.search(source, start, tag_end(source, start)) if name else None
-    return found.start(1) if found else start
-
-
-def _reason(said: str) -> str:
-    text = re.sub(r"^\[Errno \d+\] |<class '[\w.]+'>: ", "", said.partition(" [Errno")[0])
-    # xacro may say it twice: in its own words and in those of the cause.
-    if len(text) < LONG:
-        text = re.sub(r"(.{9,}) \1(?= |$)", r"\1", text, flags=re.DOTALL)
-    return text or said
+    line, column = locate(source, found.start(1) if found else start)
+    return f"{file}:{line}:{column}"

@@ -62,16 +62,12 @@ def includers(texts: Iterable[tuple[str, bytes]], *, composed: bool = False) -> 
     found: dict[str, set[str]] = {}
     for path in paths:
         own = os.path.basename(path)
-        for name in (own, *(it for it in filled if _like(it).fullmatch(own))):
+        alike = (it for it in filled if re.fullmatch(with_gaps(_FILLED.split(it), "."), own))
+        for name in (own, *alike):
             for file, other in named.get(name, ()):
                 if _means(file, path, other):
                     found.setdefault(path, set()).add(other)
     return found
-
-
-def _like(name: str) -> re.Pattern[str]:
-    """What a name may be that has expressions of xacro in it."""
-    return re.compile(with_gaps(_FILLED.split(name), "."))
 
 
 def parts_among(paths: Iterable[str], above: Mapping[str, Collection[str]]) -> set[str]:

@@ -45,10 +45,7 @@ def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:
     document = _document(data, file) if b"<include" in data and len(above) <= _DEEPEST else None
     if document is None or document.root.tag != "sdf" or document.root.find("world") is not None:
         return data
-    return _filled(document, (*above, real_path(file)))
-
-
-def _filled(document: Document, above: tuple[str, ...]) -> bytes:
+    above = (*above, real_path(file))
     source, last = document.source, 0
     done: list[bytes] = []
     for element, start in zip(document.elements, document.starts, strict=True):
@@ -77,13 +74,19 @@ def _made(include: _Element, file: str, above: tuple[str, ...]) -> bytes:
     data = with_includes(_text(path), path, above)
     root = _root(data, path)
     model = root.find("model") if root is not None else None
-    if root is None or model is None or (_is_old(root) and _OLD.search(data)):
+    if root is None or model is None or (_version(root) < (1, 7) and _OLD.search(data)):
         return b""
     if next(model.iter("include"), None) is not None:  # it would be lost
         return b""
     model = deepcopy(model)
-    _with_paths(model, os.path.dirname(path))
-    parts = _merged(include, model) if _is_merged(include) else [_nested(include, model)]
+    # A path of a mesh or picture is looked up beside the file that names it.
+    folder = os.path.dirname(path)
+    for element in model.iter("uri", "filename", "albedo_map", "normal_map"):
+        text = (element.text or "").strip()
+        if text and "://" not in text and is_file(os.path.join(folder, text)):
+            element.text = "file://" + os.path.join(folder, text)
+    is_merged = include.get("merge", "").strip().lower() in ("true", "1")
+    parts = _merged(include, model) if is_merged else [_nested(include, model)]
     return b"".join(_SPACES.sub(b" ", etree.tostring(it, with_tail=False)) for it in parts)
 
 
@@ -99,14 +102,6 @@ def _root(data: bytes, path: str) -> _Element | None:
         return None
     etree.strip_tags(document.root, etree.Comment)
     return document.root
-
-
-def _is_old(root: _Element) -> bool:
-    return _version(root) < (1, 7)
-
-
-def _is_merged(include: _Element) -> bool:
-    return include.get("merge", "").strip().lower() in ("true", "1")
 
 
 def _nested(include: _Element, model: _Element) -> _Element:
@@ -126,7 +121,9 @@ def _nested(include: _Element, model: _Element) -> _Element:
 def _merged(include: _Element, model: _Element) -> Iterator[_Element]:
     """The parts of the model, placed from a frame that stands for it."""
     proxy = f"_merged__{_name(include, model)}__model__"
-    frame = etree.Element("frame", name=proxy, attached_to=_canonical(model))
+    first = model.find("link")
+    usual = first.get("name", "") if first is not None else ""
+    frame = etree.Element("frame", name=proxy, attached_to=model.get("canonical_link") or usual)
     given = include.find("pose") if include.find("pose") is not None else model.find("pose")
     pose = deepcopy(given) if given is not None else etree.Element("pose")
     pose.set("relative_to", pose.get("relative_to") or _OWN)
@@ -156,22 +153,8 @@ def _placed(part: _Element, proxy: str) -> None:
             axis.set("expressed_in", proxy)
 
 
-def _canonical(model: _Element) -> str:
-    first = model.find("link")
-    usual = first.get("name", "") if first is not None else ""
-    return model.get("canonical_link") or usual
-
-
 def _name(include: _Element, model: _Element) -> str:
     return text_at(include, "name") or model.get("name", "")
-
-
-def _with_paths(model: _Element, folder: str) -> None:
-    """A path of a mesh or picture is looked up beside the file that names it."""
-    for element in model.iter("uri", "filename", "albedo_map", "normal_map"):
-        text = (element.text or "").strip()
-        if text and "://" not in text and is_file(os.path.join(folder, text)):
-            element.text = "file://" + os.path.join(folder, text)
 
 
 def model_file(uri: str, folder: str) -> str:
@@ -181,16 +164,11 @@ def model_file(uri: str, folder: str) -> str:
         return ""
     above = os.path.dirname(folder)
     beside = (folder, above, os.path.join(above, "models"))
-    for home in (*_told(), *beside):
-        found = _in_folder(os.path.join(home, name))
-        if found:
+    paths = os.pathsep.join(variable(name) or "" for name in VARIABLES)
+    for home in (*[it for it in paths.split(os.pathsep) if it], *beside):
+        if found := _in_folder(os.path.join(home, name)):
             return found
     return ""
-
-
-def _told() -> list[str]:
-    paths = os.pathsep.join(variable(name) or "" for name in VARIABLES)
-    return [it for it in paths.split(os.pathsep) if it]
 
 
 def _in_folder(path: str) -> str:

@@ -15,7 +15,6 @@ from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.sources.own_names import (
     OF_ALL,
     Arguments,
-    NameTexts,
     OwnSource,
     as_twin,
     filled,
@@ -217,18 +216,23 @@ def job_for(
     plain = _plain(read, given, words, common)
     if plain is None:
         return job
-    if twin and job.urdf and _misses(job, plain):
+    if twin and job.urdf and _lacks(job) and not _lacks(plain):
         # The arguments make an SRDF of it that is not the URDF's: the one without them follows that.
         job, twin = job._replace(data=plain.data), b""
         texts = marked_texts(plain.inventories[1], other.inventories[1])
     else:
-        texts = _marked_texts(plain, other)
+        pairs = zip(plain.inventories, other.inventories, strict=True)
+        texts = {key: text for pair in pairs for key, text in marked_texts(*pair).items()}
     job = job._replace(own=OwnSource(words[0], own_texts(texts, words), twin))
     affixes = own_affixes(texts) if job.urdf and not twin else None
     if not affixes:
         return job
     if len(set(words)) > 1:
-        return _followed(job, plain, affixes)
+        # A robot with several words: its SRDF as the arguments would have made it.
+        inventory = collect(read_document(job.data, job.file), job.tree, plain.urdf_declarations)
+        naming = job.naming._replace(separators={}, own=affixes)
+        edits = make_plan(inventory, naming).edits
+        return job._replace(data=fill(cut(job.data, edits), job.own.robot))
     # It knows nothing of the arguments: its names are those of the URDF without them, and become what
     # the arguments make of these.
     return job._replace(urdf=plain.urdf, naming=job.naming._replace(own=affixes))
@@ -272,25 +276,7 @@ def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collec
     return read(args)
 
 
-def _marked_texts(plain: Job, other: Job) -> NameTexts:
-    pairs = zip(plain.inventories, other.inventories, strict=True)
-    return {key: text for pair in pairs for key, text in marked_texts(*pair).items()}
-
-
-def _misses(job: Job, plain: Job) -> bool:
-    """Does an SRDF name links or joints that the URDF lacks, and lacks none without the arguments?"""
-    return _lacks(job) and not _lacks(plain)
-
-
 def _lacks(job: Job) -> bool:
     said = job.inventories[0]
     found = (name for names in said.names for name in names if not name.kind)
     return any(not PARTS.isdisjoint(name.kinds) for name in found)
-
-
-def _followed(job: Job, plain: Job, affixes: OwnNames) -> Job:
-    """A robot with several words: its SRDF as the arguments would have made it."""
-    inventory = collect(read_document(job.data, job.file), job.tree, plain.urdf_declarations)
-    own = job.naming._replace(separators={}, own=affixes)
-    edits = make_plan(inventory, own).edits
-    return job._replace(data=fill(cut(job.data, edits), job.own.robot))

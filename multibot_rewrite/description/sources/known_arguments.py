@@ -20,7 +20,6 @@ _EVALUATED = lazy_compile(rb"\$\(eval\s([^<]*)")
 _WORD = lazy_compile(rb"\w+")
 # A name that an expression makes: any argument may be meant.
 _COMPUTED = lazy_compile(rb"\bxacro\.arg\(\s*[^\"'\s]")
-_COMMENT_END = b"-->"
 
 
 class KnownArguments(NamedTuple):
@@ -60,4 +59,4 @@ def _read(text: bytes) -> Iterator[bytes]:
 def _without_comments(text: bytes) -> bytes:
     """The text without comments; one that does not end goes on to the end."""
     first, *others = re.split(b"<!--", text)
-    return first + b"".join(it.partition(_COMMENT_END)[2] for it in others)
+    return first + b"".join(it.partition(b"-->")[2] for it in others)

@@ -8,7 +8,7 @@ reaches is found by expanding the file once more, with a word that nobody uses f
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
@@ -51,8 +51,7 @@ def filled(arguments: Arguments, robot: str = "") -> dict[str, str]:
     """
     for name, text in arguments.items():
         found = _PLACEHOLDER.findall(text)
-        unknown = [it for it in found if it != ROBOT or not robot]
-        if unknown:
+        if unknown := [it for it in found if it != ROBOT or not robot]:
             hint = f"only {ROBOT} is filled in" if robot else "no robot is named to fill it in for"
             raise UsageError(f"{name}:={text}: unknown placeholder {unknown[0]}, {hint}")
     return {name: _PLACEHOLDER.sub(robot, text) for name, text in arguments.items()}
@@ -108,20 +107,16 @@ def own_names(inventory: Inventory, words: Sequence[str]) -> OwnNames:
     Raises UsageError for a name that has the robot's name twice in a row.
     """
     found: dict[tuple[str, str], None] = {}
-    for kind, text in _marked_names(inventory):
+    every = ((it.kind, it.text) for names in inventory.names for it in names if it.kind)
+    for kind, text in every:
+        if not _is_marked(text):
+            continue
         name = _unmarked(text, words)
         if _TWICE.search(text):
             hint = "give one argument only, or none: the rewrite names what is left"
             raise UsageError(f"the xacro's arguments would make {name!r} of a {kind}; {hint}")
         found[kind, name] = None
     return found
-
-
-def _marked_names(inventory: Inventory) -> Iterator[tuple[str, str]]:
-    for names in inventory.names:
-        for name in names:
-            if name.kind and _is_marked(name.text):
-                yield name.kind, name.text
 
 
 def _is_marked(text: str) -> bool:

@@ -131,9 +131,9 @@ def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
         is_package = any(it.name == MANIFEST for it in inside)
         yield folder, is_package
         if depth < DEEPEST and not is_package:
-            waiting += (
-                (it, depth + 1) for it in sorted(it.path for it in inside if _worth_a_look(it))
-            )
+            named = (it for it in inside if it.name[0] != "." and it.name not in _SKIPPED)
+            below = sorted(it.path for it in named if it.is_dir(follow_symlinks=False))
+            waiting += ((it, depth + 1) for it in below)
 
 
 def _inside(folder: str) -> list[os.DirEntry[str]]:
@@ -142,11 +142,6 @@ def _inside(folder: str) -> list[os.DirEntry[str]]:
             return list(found)
     except OSError:
         return []
-
-
-def _worth_a_look(entry: os.DirEntry[str]) -> bool:
-    name = entry.name
-    return name[0] != "." and name not in _SKIPPED and entry.is_dir(follow_symlinks=False)
 
 
 @outside

@@ -19,7 +19,6 @@ Source = str | bytes | os.PathLike[str]
 XACRO = ".xacro"
 # A list of parts, as YAML.
 JOIN = ".join"
-_MAYBE_XACRO = (".urdf", ".srdf", ".sdf", ".xml")
 _SPACE = lazy_compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
 
 
@@ -47,7 +46,7 @@ def _is_xacro(source: Source) -> bool:
 
 def is_xacro(path: str) -> bool:
     """Is it a xacro, by its name or, as turtlebot3's .urdf files are, by what is in it?"""
-    if not path.endswith(_MAYBE_XACRO):
+    if not path.endswith((".urdf", ".srdf", ".sdf", ".xml")):
         return path.endswith(XACRO)
     with suppress(InputError):
         return has_xacro(read_file(path))

@@ -21,7 +21,6 @@ from multibot_rewrite.base.releases import ENDED, NEWEST_LTS, OF_OLD, RELEASES, 
 HIGHEST = 6
 # What a build writes into its folder says for which release it did; a robot's files are one below.
 MANIFEST, BUILD = "manifest.json", "multibot build 1"
-_CI = (".github/workflows", ".gitlab-ci.yml")
 _LINE = lazy_compile(rb"(?im)^[^\n]*?(?:ros|distro)[^\n]*")
 _RELEASE = lazy_compile(rb"(?i)\b(?:" + "|".join((*RELEASES, *ENDED)).encode() + rb")\b")
 _OLD_PACKAGE = r"(gazebo_(?:ros|plugins|ros_pkgs|ros2_control)|ign_ros2_control|ros_ign\w*)"
@@ -117,7 +116,7 @@ def release_in_repository(file: str) -> str:
 @outside
 def _ci_files(top: str) -> tuple[str, ...]:
     found: list[str] = []
-    for place in _CI:
+    for place in (".github/workflows", ".gitlab-ci.yml"):
         path = os.path.join(top, place)
         names = sorted(os.listdir(path)) if os.path.isdir(path) else []
         found += [os.path.join(path, it) for it in names if it.endswith((".yml", ".yaml"))]

@@ -160,31 +160,20 @@ class Pieces:
         source = self.trace.sources.get(name, b"")
         length = whole or len(text)
         if not self.trace.result.files[file][1]:
-            return _in_yaml(source, name, text, offset)
-        start = self._start(file, element)
-        slot = None if start is None else _slot(source, start, attribute)
-        if start is None or slot is None:
+            start = len(source.decode("utf-8", "replace")[:offset].encode())
+            end = start + len(text.encode())
+            kind = YAML if source[start:end] == text.encode() else EXPRESSION
+            return Piece(text, kind, name, start, end)
+        place = self.trace.place(file, element)
+        slot = _slot(source, place[1], attribute) if place else None
+        if place is None or slot is None:
             return Piece(text, EXPRESSION, name)
+        start = place[1]
         begin, end = (_byte(source, slot, it) for it in (offset, offset + length))
         as_is = not whole and source[begin:end] == text.encode()
-        kind = _kind(source, start) if as_is else EXPRESSION
-        return Piece(text, kind, name, begin, end)
-
-    def _start(self, file: int, element: int) -> int | None:
-        place = self.trace.place(file, element)
-        return place[1] if place else None
-
-
-def _kind(source: bytes, start: int) -> str:
-    name = source[start + 1 : tag_end(source, start)].split(None, 1)[0].rstrip(b"/>").decode()
-    return _KINDS.get(name, "parameter" if name.startswith("xacro:") else LITERAL)
-
-
-def _in_yaml(source: bytes, name: str, text: str, at: int) -> Piece:
-    start = len(source.decode("utf-8", "replace")[:at].encode())
-    end = start + len(text.encode())
-    kind = YAML if source[start:end] == text.encode() else EXPRESSION
-    return Piece(text, kind, name, start, end)
+        tag = source[start + 1 : tag_end(source, start)].split(None, 1)[0].rstrip(b"/>").decode()
+        kind = _KINDS.get(tag, "parameter" if tag.startswith("xacro:") else LITERAL)
+        return Piece(text, kind if as_is else EXPRESSION, name, begin, end)
 
 
 def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:

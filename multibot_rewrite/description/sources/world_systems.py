@@ -9,7 +9,7 @@ with the Sensors system crashes it (gz-sensors issue 497).
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.model import Edit, InputError
@@ -40,7 +40,10 @@ def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
     own = [it.element for it in world_systems(collect(document, tree))]
     found = {spans.of(it): (system_key(it), spans.text_of(it)) for it in own}
     left = {at: it for at, it in found.items() if _WRITTEN not in it[1]}
-    edits = sorted(_edits({at: text for at, (_, text) in left.items()}))
+    edits = sorted(
+        Edit(*at, _OPEN + text.replace(_DASHES, _WRITTEN) + _CLOSE, None)
+        for at, (_, text) in left.items()
+    )
     names = tuple((key, " ".join(text.decode().split())) for key, text in left.values())
     return b"".join(cut(source, edits)), names
 
@@ -54,11 +57,6 @@ def _may_load(tag: bytes, tree: Tree) -> bool:
     keys = library_and_class(said.get("filename", ""), said.get("name", ""))
     known = (it for key in keys for it in tree.vocabulary.find("plugin", key))
     return b"&" in tag or any(WORLD in it.opens for it in known)
-
-
-def _edits(texts: Mapping[tuple[int, int], bytes]) -> Iterator[Edit]:
-    for (start, end), text in texts.items():
-        yield Edit(start, end, _OPEN + text.replace(_DASHES, _WRITTEN) + _CLOSE, None)
 
 
 def left_to_world(document: Document, left: Systems) -> Iterator[Finding]:

@@ -130,7 +130,9 @@ def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], li
             if value is not None:
                 claims.append(Claim(site, element, start, attribute, value))
         if text is not None:
-            claims += _text_claim(text, element, start)
+            value = text_of(element)
+            if (value or takes_empty(text)) and _applies(text, element):
+                claims.append(Claim(text, element, start, "", value))
     return claims, hosts
 
 
@@ -149,12 +151,6 @@ def _format(document: Document, tree: Tree, likely: str) -> str:
             FOR_OLD_GAZEBO if tag.localname == "gazebo" else "",
         )
     return found
-
-
-def _text_claim(site: SiteRow, element: etree._Element, start: int) -> list[Claim]:
-    text = text_of(element)
-    is_name = (text or takes_empty(site)) and _applies(site, element)
-    return [Claim(site, element, start, "", text)] if is_name else []
 
 
 def _of_the_robot(claims: list[Claim]) -> list[Claim]:
@@ -181,8 +177,7 @@ def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dic
         site = claim.site
         if site.role != "declares" or site.kinds[0] not in declared:
             continue
-        name = claim.value.strip()
-        if name:
+        if name := claim.value.strip():
             declared[site.kinds[0]].setdefault(name, claim)
     return declared
 

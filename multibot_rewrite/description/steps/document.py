@@ -20,7 +20,7 @@ from lxml import etree
 from multibot_rewrite.base.bounded import MAX_BYTES
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.lazy import ATTRIBUTES, SILENT, lazy_compile
-from multibot_rewrite.base.loose_xml import Mended, is_loose, well_formed
+from multibot_rewrite.base.loose_xml import is_loose, well_formed
 from multibot_rewrite.base.model import NOT_UTF8, REFUSED, Edit, InputError
 
 # No element of a robot has fifty.
@@ -97,8 +97,18 @@ def _parsed(source: bytes, file: str) -> tuple[etree._Element, bool]:
     try:
         return etree.fromstring(mended.text, _PARSER), True
     except etree.XMLSyntaxError as error:
-        _refuse_other_kinds(source, file)
-        message = _syntax_message(error, file, mended)
+        # What is no XML at all is told by what it is.
+        text = source[:1000].removeprefix(b"\xef\xbb\xbf").lstrip()
+        if text and not text.startswith(b"<"):
+            from multibot_rewrite.base.file_kinds import DESCRIPTIONS, SRDF, refuse_others
+
+            refuse_others(source, file, *DESCRIPTIONS, SRDF)
+        message = " ".join(str(error.msg).split()).partition(", line ")[0]
+        message = message.partition(", use XML_PARSE_HUGE")[0].partition(", see xml")[0]
+        hint = next((hint for start, hint in _HINTS if start in message), CORRECT)
+        line, column = error.position
+        column = mended.column(line, column)
+        message = f"{file}:{line or 1}:{column or 1}: not well-formed XML: {message}; {hint}"
         cause = next((_CAUSES[said] for said in _CAUSES if said in str(error.msg)), "")
         raise InputError(message, cause) from None
 
@@ -120,31 +130,12 @@ def _refuse_bytes(source: bytes, file: str) -> None:
         raise InputError(f"{file}:{line}:{column}: not well-formed XML: a NUL byte; {CORRECT}")
 
 
-def _refuse_other_kinds(source: bytes, file: str) -> None:
-    """What is no XML at all is told by what it is."""
-    text = source[:1000].removeprefix(b"\xef\xbb\xbf").lstrip()
-    if text and not text.startswith(b"<"):
-        from multibot_rewrite.base.file_kinds import DESCRIPTIONS, SRDF, refuse_others
-
-        refuse_others(source, file, *DESCRIPTIONS, SRDF)
-
-
-def _syntax_message(error: etree.XMLSyntaxError, file: str, mended: Mended) -> str:
-    message = " ".join(str(error.msg).split()).partition(", line ")[0]
-    message = message.partition(", use XML_PARSE_HUGE")[0].partition(", see xml")[0]
-    hint = next((hint for start, hint in _HINTS if start in message), CORRECT)
-    line, column = error.position
-    column = mended.column(line, column)
-    return f"{file}:{line or 1}:{column or 1}: not well-formed XML: {message}; {hint}"
-
-
 def _refuse_tree(document: Document) -> None:
     source, file, root, *_ = document
     info = root.getroottree().docinfo
     if info.internalDTD is not None:
-        raise InputError(
-            f"{file}: DOCTYPE and entities are not accepted; expand them first", REFUSED
-        )
+        what = f"{file}: DOCTYPE and entities are not accepted; expand them first"
+        raise InputError(what, REFUSED)
     encoding = (info.encoding or "UTF-8").upper()
     if encoding not in ("UTF-8", "UTF8", "ASCII", "US-ASCII") and not source.isascii():
         raise InputError(

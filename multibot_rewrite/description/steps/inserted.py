@@ -179,23 +179,15 @@ def _removal(
     else:
         yield Edit(begin, end, b"", None)
     for step in marker.filled:
-        yield _emptying(document, marker, parent.find(query(step)), starts)
-
-
-def _emptying(
-    document: Document,
-    marker: Marker,
-    filled: etree._Element | None,
-    starts: dict[etree._Element, int],
-) -> Edit:
-    """The whole element, up to the end of the text that was put into it, as it was before."""
-    start = starts[filled] if filled is not None else 0
-    text = text_of(filled) if filled is not None else ""
-    slot = text_slot(document.source, start, text) if text else None
-    if slot is None:
-        raise _edited(document, marker)
-    begin, end, before, _ = emptied(document.source, slot)
-    return Edit(start, end, document.source[start:begin] + before, None)
+        # The whole element, up to the end of the text that was put into it, as it was before.
+        filled = parent.find(query(step))
+        start = starts[filled] if filled is not None else 0
+        text = text_of(filled) if filled is not None else ""
+        slot = text_slot(document.source, start, text) if text else None
+        if slot is None:
+            raise _edited(document, marker)
+        begin, end, before, _ = emptied(document.source, slot)
+        yield Edit(start, end, document.source[start:begin] + before, None)
 
 
 def _edited(document: Document, marker: Marker) -> InputError:

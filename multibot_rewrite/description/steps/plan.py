@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
 from multibot_rewrite.base.model import Claim, Edit
-from multibot_rewrite.base.naming import Affix, Naming
+from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.insert import Insertion, insertions
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
@@ -90,7 +90,11 @@ def _edits(inventory: Inventory, renames: RenameMap) -> tuple[list[Edit], list[F
             continue
         _, _, start, attribute, value = claim
         if not value and not claim.element.text:
-            edits.append(_filled(inventory, claim, spelling[0].affix))
+            # ``<param/>`` made to hold the robot's prefix.
+            there = spelling[0].affix
+            begin, end, opening, close = fillable(source, start)
+            head, tail = opening + there.before.encode(), there.after.encode() + close
+            edits.append(Edit(begin, end, head, tail))
             continue
         # White space alone would be a part of the prefix: nothing takes it off (component_parser.cpp).
         slot = value_slot(source, start, attribute, value) if value else None
@@ -101,12 +105,6 @@ def _edits(inventory: Inventory, renames: RenameMap) -> tuple[list[Edit], list[F
                 break
             edits.append(Edit(place, place, before.encode(), after.encode()))
     return edits, findings
-
-
-def _filled(inventory: Inventory, claim: Claim, there: Affix) -> Edit:
-    """``<param/>`` made to hold the robot's prefix."""
-    start, end, opening, close = fillable(inventory.document.source, claim.start)
-    return Edit(start, end, opening + there.before.encode(), there.after.encode() + close)
 
 
 def _not_editable(inventory: Inventory, claim: Claim) -> Finding:

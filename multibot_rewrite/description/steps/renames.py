@@ -3,18 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.naming import Affix, Naming, affix
 from multibot_rewrite.description.rewriters.contact import Respell
-from multibot_rewrite.description.rewriters.spelling import (
-    Renamed,
-    ResolvedName,
-    Spelling,
-    is_reached,
-    renamed_at,
-)
+from multibot_rewrite.description.rewriters.spelling import Spelling, is_reached, renamed_at
 from multibot_rewrite.description.steps.collect import Inventory
 
 # Kind and text of a name, and whether a ROS namespace reaches it.
@@ -55,27 +49,14 @@ def make_renames(inventory: Inventory, naming: Naming) -> RenameMap:
         namespaced = claim.site.namespaced
         spelling = known.get((id(names), namespaced))
         if spelling is None:
-            spelling = tuple(_renamed(names, namespaced, naming, asked))
+            keys = [(it.at, (it.kind, it.text, namespaced)) for it in names]
+            asked |= {key: affix(naming, *key) for _, key in keys if key not in asked}
+            found = ((at, key, asked[key]) for at, key in keys)
+            spelling = tuple(renamed_at(at, *key, it) for at, key, it in found if it is not None)
             known[id(names), namespaced] = spelling
         values.append(spelling if is_reached(claim, naming) else ())
     affixes = {key: there for key, there in asked.items() if there is not None}
     return RenameMap(naming, affixes, values)
-
-
-def _renamed(
-    names: tuple[ResolvedName, ...],
-    namespaced: bool,
-    naming: Naming,
-    asked: dict[NameKey, Affix | None],
-) -> Iterator[Renamed]:
-    """The names that change; ``asked`` is what the naming said before, and takes what it says now."""
-    for at, text, kind, _ in names:
-        key = kind, text, namespaced
-        if key not in asked:
-            asked[key] = affix(naming, *key)
-        there = asked[key]
-        if there is not None:
-            yield renamed_at(at, *key, there)
 
 
 def respeller(renames: RenameMap, robot: str) -> Respell:

@@ -49,7 +49,9 @@ def strip_edits(
         key = id(names), claim.site.namespaced
         spans = known.get(key)
         if spans is None:
-            spans = known[key] = _spans(names, claim.site.namespaced, naming, robot)
+            found = ((it.at, removal(naming, robot, it.kind, it.text, key[1])) for it in names)
+            # What an affix put into a value with these names.
+            spans = known[key] = [(at + span[0], at + span[1]) for at, span in found if span]
         if spans and is_reached(claim, naming) and not is_inserted(claim):
             edits += _claim_edits(document.source, claim, spans)
 
@@ -101,18 +103,6 @@ def inside_of(removed: Iterable[Edit]) -> Callable[[Claim], bool]:
     # How far those up to each one reach.
     ends = [0, *accumulate((end for _, end in spans), max)]
     return lambda claim: claim.start < ends[bisect_right(starts, claim.start)]
-
-
-def _spans(
-    names: tuple[ResolvedName, ...], namespaced: bool, naming: Naming, robot: str
-) -> list[tuple[int, int]]:
-    """The parts of a value with these names that an affix put there."""
-    spans = []
-    for name in names:
-        span = removal(naming, robot, name.kind, name.text, namespaced)
-        if span is not None:
-            spans.append((name.at + span[0], name.at + span[1]))
-    return spans
 
 
 def _claim_edits(source: bytes, claim: Claim, spans: list[tuple[int, int]]) -> list[Edit]:

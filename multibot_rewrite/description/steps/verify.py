@@ -277,33 +277,24 @@ def as_decided(it: Evidence) -> None:
         if not item.step and item.xml.replace(ROBOT_SLOT, robot).encode() not in inserted:
             raise ProofError(f"{it.file}: {item.old!r} was to be replaced by {item.xml}")
     wanted = sorted(item.new.replace(ROBOT_SLOT, robot) for item in every if item.step)
-    if sorted(_filled(it)) != wanted:
+    # What the markers say was empty.
+    above = ((marker.comment.getparent(), marker.filled) for marker in it.markers)
+    asked = ((parent, step) for parent, steps in above for step in steps if parent is not None)
+    filled = (parent.find(query(step)) for parent, step in asked)
+    if sorted(text_of(element) for element in filled if element is not None) != wanted:
         raise ProofError(f"{it.file}: empty elements were to be filled with {', '.join(wanted)}")
-
-
-def _filled(it: Evidence) -> Iterator[str]:
-    """The texts of the elements that the markers say were empty."""
-    for marker in it.markers:
-        parent = marker.comment.getparent()
-        found = () if parent is None else (parent.find(query(step)) for step in marker.filled)
-        yield from (text_of(element) for element in found if element is not None)
 
 
 def as_planned(it: Evidence) -> None:
     """The text is the source with the planned edits."""
     source, file, *_ = it.inventory.document
-    if b"".join(_planned(source, it.plan.edits, it.robot.encode())) != it.result.document.source:
-        raise ProofError(f"{file}: the text is not the source with the planned edits")
-
-
-def _planned(source: bytes, edits: list[Edit], robot: bytes) -> Iterator[bytes]:
-    last = 0
-    for start, end, before, after in edits:
-        yield source[last:start] + before
-        if after is not None:
-            yield robot + after
+    robot, last = it.robot.encode(), 0
+    pieces = []
+    for start, end, before, after in it.plan.edits:
+        pieces += [source[last:start], before, b"" if after is None else robot + after]
         last = end
-    yield source[last:]
+    if b"".join((*pieces, source[last:])) != it.result.document.source:
+        raise ProofError(f"{file}: the text is not the source with the planned edits")
 
 
 def a_slot_each(it: Evidence) -> None:

@@ -9,7 +9,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, decl
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.fleet.file.domains import Apart
 from multibot_rewrite.fleet.fleet import Fleet, planned
-from multibot_rewrite.fleet.launch.starts import FleetStarts, RobotStarts
+from multibot_rewrite.fleet.launch.starts import FleetStarts
 from multibot_rewrite.spelling.domain_bridge import crossings, services_apart
 from multibot_rewrite.system.domains import domain_of
 from multibot_rewrite.system.records import MAY, System
@@ -29,15 +29,11 @@ def not_across(fleet: Fleet) -> Iterator[Finding]:
         message = f"{node} of domain {own} calls {shorten(names)}, which domain {other} has"
         hint = "run both in one domain: services and actions do not cross"
         yield _told(apart, message, hint, WARNING)
-    if untyped := _untyped(plan):
+    # Topics without a known type that a node of one domain reads and another domain sends.
+    crossing = crossings(plan, ()) if plan.domains else ()
+    if untyped := sorted({it.name for it in crossing if not it.type}):
         message = f"domain_bridge cannot bring {shorten(untyped)}: the type is not known"
         yield _told(apart, message, "give the type in the file of nodes (docs/stacks.md)", WARNING)
-
-
-def _untyped(plan: System) -> list[str]:
-    """Topics without a known type that a node of one domain reads and another domain sends."""
-    found = crossings(plan, ()) if plan.domains else ()
-    return sorted({it.name for it in found if not it.type})
 
 
 def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
@@ -62,17 +58,17 @@ def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
 
 def one_launch_each(apart: Apart, starts: FleetStarts) -> Iterator[Finding]:
     """Robots whose nodes the launch file has to reach: its own node is in one domain."""
-    reached = [it for it in starts.robots if _is_reached(it)]
+    reached = [
+        robot
+        for robot in starts.robots
+        if any(it.components or it.brought_up for it in robot.starts)
+    ]
     several = {starts.domains.get(it.name, 0) for it in starts.robots}
     if reached and len(several) > 1:
         names = shorten(it.name for it in reached)
         message = f"the launch file loads or activates nodes of {names}, from one domain"
         first = f"ros2 launch fleet.launch.py robots:={reached[0].name}"
         yield _told(apart, message, f"start each robot by itself: {first}", WARNING)
-
-
-def _is_reached(robot: RobotStarts) -> bool:
-    return any(it.components or it.brought_up for it in robot.starts)
 
 
 def _told(apart: Apart, message: str, hint: str, level: str) -> Finding:

@@ -37,7 +37,6 @@ from multibot_rewrite.system.records import (
     RUNS,
     SERVES,
     Environment,
-    Node,
     Place,
     System,
     doubts,
@@ -92,7 +91,9 @@ def not_as_planned(
     for it in told:
         known[_key(by_plan, it)].append(it)
     for it in found:
-        level, place = _level(it, planned, seen, started), _place(it, running)
+        level, place = _level(it, planned, seen, started), Place(it.file, it.line, it.column)
+        if not it.file and it.node in running:
+            place = running[it.node].place
         if level and it.robot in real and is_for_driver(it, planned, started):
             level = NOTE
         if not level or any((it.code, name) in open_ for name in it.names):
@@ -131,7 +132,13 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
     if it.level != ERROR or it.code == _OF_OTHERS:
         return ""
     if it.code == tf_pieces.tf_tree_in_pieces.code:
-        return NOTE if _sender_left(it, planned, started) else "" if doubts(seen) else WARNING
+        senders = {
+            one for edge in planned.edges if edge.child in it.names for one in edge.publishers
+        }
+        # Is the transform that of a node that may be missing and is not started? A simulator may send
+        # any other.
+        left = any(one.name in senders - started and one.sure != RUNS for one in planned.nodes)
+        return NOTE if left else "" if doubts(seen) else WARNING
     if it.code == planned_nodes.bridged_topic_missing.code:
         return ERROR if _is_read(seen) else ""
     sure = it.code not in ABSENCE or not doubts(seen)
@@ -158,13 +165,6 @@ def is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:
     return it.code == tf_pieces.tf_tree_in_pieces.code and not (it.node or named >= {*it.names})
 
 
-def _sender_left(it: Finding, planned: System, started: Set[str]) -> bool:
-    """Is the transform between the pieces that of a node that may be missing and is not started? A
-    simulator may send any other."""
-    senders = {name for one in planned.edges if one.child in it.names for name in one.publishers}
-    return any(one.name in senders - started and one.sure != RUNS for one in planned.nodes)
-
-
 def _is_read(seen: System) -> bool:
     """Is all that the launch file starts known, with its parameters?"""
     return all(it.code != NOT_WHOLE for it in doubts(seen))
@@ -180,26 +180,15 @@ def _is_of_launch(it: Finding, planned: System, seen: System, started: Set[str])
         return False
     if it.code == planned_nodes.missing_node.code:
         loaded = own.way == SPAWNER or (own.way == HOST and not own.taker)
-        return not loaded or _has_manager(own, seen)
+        home = own.name.rpartition("/")[0]
+        managers = (one.name for one in seen.nodes if one.known == MANAGER)
+        return not loaded or any(one.rpartition("/")[0] == home for one in managers)
     known = any(one.known for one in seen.nodes if one.name == it.node)
-    return _is_read(seen) and (known or _is_under_own_manager(own, planned))
-
-
-def _is_under_own_manager(it: Node, planned: System) -> bool:
-    """Return whether it is a controller of a manager of the plan, which is told its type."""
+    # The manager of the plan is told the type of its controllers.
     robots = {one.name: one.robot for one in planned.nodes}
     serving = {
-        one.node for one in planned.ends if (one.role, one.type) == (SERVES, LIST_CONTROLLERS)
+        robots.get(one.node)
+        for one in planned.ends
+        if (one.role, one.type) == (SERVES, LIST_CONTROLLERS)
     }
-    return it.way == SPAWNER and it.robot in {robots.get(one) for one in serving}
-
-
-def _has_manager(controller: Node, seen: System) -> bool:
-    home = controller.name.rpartition("/")[0]
-    return any(it.known == MANAGER and it.name.rpartition("/")[0] == home for it in seen.nodes)
-
-
-def _place(it: Finding, running: dict[str, Node]) -> Place:
-    if it.file or it.node not in running:
-        return Place(it.file, it.line, it.column)
-    return running[it.node].place
+    return _is_read(seen) and (known or (own.way == SPAWNER and own.robot in serving))

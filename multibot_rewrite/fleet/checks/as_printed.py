@@ -16,6 +16,7 @@ import re
 import shlex
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from itertools import count, zip_longest
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -295,23 +296,18 @@ def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
     above, *sections = ([*_commands(section)] for section in _SECTION.split(text))
     both = zip(starts.robots, sections, strict=False)
     opened = [it for section in (above, *sections) for it in section if it[:2] == _RVIZ]
-    found = (it for robot, section in both for it in _of_robot(robot, section))
+    found: list[str] = []
+    for robot, section in both:
+        planned = [it for it in robot.starts if it.full_name not in robot.nodes]
+        left = {name for name, _ in robot.left}
+        for program in _TOLD:
+            wanted = [it for it in planned if it[:2] == program]
+            given = [it for it in section if it[:2] == program and not left & {*it.arguments}]
+            # Lines stand in the order of nodes, processes in that of the launch.
+            for several in (wanted, given):
+                several.sort(key=lambda it: [*map(path_of, it.arguments)])
+            found += (f"{robot.name}: {it}" for it in _apart(wanted, given))
     return [*found, *_apart(starts.shown, opened)]
-
-
-def _of_robot(robot: RobotStarts, printed: Sequence[Start]) -> Iterator[str]:
-    planned = [it for it in robot.starts if it.full_name not in robot.nodes]
-    left = {name for name, _ in robot.left}
-    for program in _TOLD:
-        wanted = [it for it in planned if it[:2] == program]
-        given = [it for it in printed if it[:2] == program and not left & {*it.arguments}]
-        # Lines stand in the order of nodes, processes in that of the launch.
-        wanted, given = (sorted(several, key=_words) for several in (wanted, given))
-        yield from (f"{robot.name}: {it}" for it in _apart(wanted, given))
-
-
-def _words(it: Start) -> list[str]:
-    return [*map(path_of, it.arguments)]
 
 
 def _apart(planned: Iterable[Start], printed: Iterable[Start]) -> Iterator[str]:
@@ -339,7 +335,9 @@ def _as_commanded(it: Start) -> Start:
 def _commands(text: str) -> Iterator[Start]:
     """Yield the processes of the lines; one under a condition is for a person to judge."""
     for line in text.splitlines():
-        words = [] if line.startswith("#") or "  # " in line else _split(line)
+        words: list[str] = []
+        with suppress(ValueError):
+            words = [] if line.startswith("#") or "  # " in line else shlex.split(line)
         while words and "=" in words[0]:
             del words[0]
         run = (*_RVIZ, tuple(words[1:])) if words[:1] == ["rviz2"] else ros2_run(words)
@@ -350,18 +348,16 @@ def _commands(text: str) -> Iterator[Start]:
             yield Start(package, executable, *names, (*files, values), given.rules, given.own)
 
 
-def _split(line: str) -> list[str]:
-    try:
-        return shlex.split(line)
-    except ValueError:
-        return []
-
-
 def _differences(planned: list[Action], printed: Iterable[Action]) -> Iterator[Difference]:
     """Yield the first difference of each action, or the actions that are there too often or not."""
     found = list(printed)
     if len(planned) != len(found):
-        yield from _not_paired(planned, found)
+        wanted, given = (Counter(map(_who, it)) for it in (planned, found))
+        for it in wanted - given:
+            yield Difference(f"{it} is planned and is not started", Place("", 1))
+        for it in given - wanted:
+            place = next(one.place for one in found if _who(one) == it)
+            yield Difference(f"{it} is started and is not planned", place)
         return
     for one, other in zip(planned, found, strict=True):
         if one.kind != other.kind:
@@ -371,15 +367,6 @@ def _differences(planned: list[Action], printed: Iterable[Action]) -> Iterator[D
             where, wanted, given = at
             message = f"{_who(one)}: {where} is {_shown(given)}, planned is {_shown(wanted)}"
             yield Difference(message, other.place)
-
-
-def _not_paired(planned: list[Action], printed: list[Action]) -> Iterator[Difference]:
-    wanted, given = (Counter(map(_who, it)) for it in (planned, printed))
-    for it in wanted - given:
-        yield Difference(f"{it} is planned and is not started", Place("", 1))
-    for it in given - wanted:
-        place = next(one.place for one in printed if _who(one) == it)
-        yield Difference(f"{it} is started and is not planned", place)
 
 
 def _who(it: Action) -> str:

@@ -67,10 +67,17 @@ def left_open(
 ) -> Iterator[Finding]:
     """What is open in a robot by its sources, and as it is written: an error where only its rewrite has
     opened it. ``texts`` are the files that were made."""
-    old, new = index(before, ALONE), index(_asked(before, after), whose)
+    # As it is written, with the needs that its sources have.
+    needed = _by_key(before, (it for it in before.ends if it.role in NEEDS))
+    keys = {id(it): key for key, it in _by_key(after, after.ends).items()}
+    ends = (it for it in after.ends if it.role not in NEEDS or keys.get(id(it)) in needed)
+    old, new = index(before, ALONE), index(after._replace(ends=tuple(ends)), whose)
     in_sources, found = absences(old), absences(new)
     yield from _controlled(robot, before, after, texts)
-    yield from _not_sent(robot, before)
+    # The frames that its files name and nothing of it sends; in a simulator no driver might.
+    known = before if robot.spec.simulator == REAL else before._replace(environment=Environment())
+    for it in _ask((frame_not_sent,), known):
+        yield _in_file(it, robot, by_sources=True)
     yield from _apart(robot, after, in_sources, found)
     was_open = _by_key(before, open_ends(old))
     lost = {
@@ -86,7 +93,10 @@ def left_open(
             continue
         # Names as the sources have them, where these have both.
         source = by_end.get(_about(it, after)) if it.node else None
-        said = source if source and _is_placed(before, source.names[-1]) else it
+        is_placed = source and any(
+            end.name == source.names[-1] and end.place != NOWHERE for end in before.ends
+        )
+        said = source if source and is_placed else it
         level = WARNING if said.level == ERROR else said.level
         # Its drivers, which no file names, send what a localizer waits for.
         real = robot.spec.simulator == REAL and it.code == map_not_joined.code
@@ -108,14 +118,6 @@ def _apart(
             yield _in_file(it._replace(level=ERROR), robot)
 
 
-def _not_sent(robot: RewrittenRobot, before: System) -> Iterator[Finding]:
-    """The frames that the robot's files name and nothing of it sends. One in a simulator has no driver
-    that might."""
-    known = before._replace(environment=Environment())
-    for it in _ask((frame_not_sent,), before if robot.spec.simulator == REAL else known):
-        yield _in_file(it, robot, by_sources=True)
-
-
 def _controlled(
     robot: RewrittenRobot, before: System, after: System, texts: Sequence[OutputFile]
 ) -> Iterator[Finding]:
@@ -124,7 +126,9 @@ def _controlled(
     for it in _ask(
         (interface_not_exported, interface_claimed_twice, interface_commanded_twice), before
     ):
-        yield _in_file(_of_sources(it), robot, by_sources=True)
+        # What a rewrite has not made is no error.
+        level = NOTE if it.level == NOTE else WARNING
+        yield _in_file(it._replace(level=level), robot, by_sources=True)
     was_open = open_claims(before.interfaces)
     old = {key for key, it in _claims(before) if it in was_open}
     left = [it for key, it in _claims(after) if key not in old]
@@ -151,19 +155,6 @@ def _claims(system: System) -> Iterator[tuple[tuple[bool, int], Interface]]:
         yield (it.kind == JOINT, next(numbers[it.kind == JOINT])), it
 
 
-def _of_sources(finding: Finding) -> Finding:
-    """What a rewrite has not made is no error."""
-    return finding._replace(level=NOTE if finding.level == NOTE else WARNING)
-
-
-def _asked(before: System, after: System) -> System:
-    """The system as it is written, with the needs that its sources have."""
-    needed = _by_key(before, (it for it in before.ends if it.role in NEEDS))
-    keys = {id(it): key for key, it in _by_key(after, after.ends).items()}
-    ends = (it for it in after.ends if it.role not in NEEDS or keys.get(id(it)) in needed)
-    return after._replace(ends=tuple(ends))
-
-
 def _by_key(system: System, ends: Iterable[End]) -> Mapping[Key, End]:
     """Ends by what is the same before and after a rewrite: the node, and the name in its code."""
     known = {it.name: it.known for it in system.nodes}
@@ -174,10 +165,6 @@ def _about(finding: Finding, system: System) -> Key | None:
     """The key of the end that a finding is about."""
     ends = (it for it in system.ends if (it.node, it.name) == (finding.node, finding.names[0]))
     return next(iter(_by_key(system, ends)), None)
-
-
-def _is_placed(system: System, name: str) -> bool:
-    return any(it.name == name and it.place != NOWHERE for it in system.ends)
 
 
 def _in_file(finding: Finding, robot: RewrittenRobot, by_sources: bool = False) -> Finding:

@@ -26,7 +26,7 @@ from multibot_rewrite.fleet.robots.fitting.sensors import (
     wanted,
 )
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
-from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, NodeFacts
 from multibot_rewrite.rules.system.instead import is_needed
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SUBSCRIBES, End, System
 from multibot_rewrite.system.words import moves
@@ -84,7 +84,9 @@ def without_camera(plan: FleetPlan) -> Iterator[Finding]:
     for robot in (it for it in plan.robots if it.spec.simulator != REAL and not it.spec.launch):
         nodes = plan.evidence_of(robot).nodes
         waiting = [it for it in nodes if it.origin.stack and not (it.when or it.shared)]
-        hears = [(it, end, kind) for it in waiting for end, kind in _of_cameras(it)]
+        ends = ((it, end) for it in waiting for end in it.endpoints if "<" not in end.name)
+        kinds_of = ((it, end, wanted(it, end)) for it, end in ends)
+        hears = [row for row in kinds_of if row[2] in OF_CAMERAS]
         offered = offered_topics(robot.member, robot.spec) if hears else {}
         lost = [
             (it.name, topic_of(it, end), kind)
@@ -105,12 +107,6 @@ _TAKE = "take a description with a camera that does, or leave the stack out"
 _HEAR = "say which one in `remaps` of a stack of your own (docs/stacks.md), or leave the stack out"
 
 
-def _of_cameras(node: NodeFacts) -> Iterator[tuple[Endpoint, str]]:
-    """Yield what a node hears of a camera, with its kind."""
-    kinds = ((it, wanted(node, it)) for it in node.endpoints if "<" not in it.name)
-    yield from (it for it in kinds if it[1] in OF_CAMERAS)
-
-
 NOTHING_MOVES = declare("MF865", "commands-without-reader", WARNING, formats=("fleet",))
 _SENSED = ("sensor_msgs/msg/", "nav_msgs/msg/Odometry")
 # A robot without moving joints has nobody who sends them.
@@ -125,8 +121,12 @@ def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -
         return
     read = {it.name for it in system.ends if it.role == SUBSCRIBES}
     sent = {it.name for it in system.ends if it.role == PUBLISHES}
-    orders = [it for it in system.ends if _is_order(it) and it.name not in read]
-    asked = [it for it in system.ends if _is_asked(it) and it.name not in sent]
+    published = (it for it in system.ends if it.role == PUBLISHES and it.sure == RUNS)
+    moving = (it for it in published if moves(it.code_name or it.name, it.type))
+    orders = [it for it in moving if it.name not in read]
+    needed = (it for it in system.ends if it.role == SUBSCRIBES and is_needed(it))
+    sensed = (it for it in needed if it.type.startswith(_SENSED) and it.type != _JOINTS)
+    asked = [it for it in sensed if it.name not in sent]
     said = [f"nothing reads {_words(orders)}"] if orders else []
     said += [f"nothing sends {_words(asked)}"] if asked else []
     if said:
@@ -140,15 +140,6 @@ def _is_told(robot: RewrittenRobot, facts: Sequence[NodeFacts]) -> bool:
     by_source = any(" " in it.kind for it in facts)
     parts = active_parts(robot.member.source.root, robot.member.vocabulary)
     return known and by_source and all(it.is_known for it in parts)
-
-
-def _is_order(it: End) -> bool:
-    return it.role == PUBLISHES and it.sure == RUNS and moves(it.code_name or it.name, it.type)
-
-
-def _is_asked(it: End) -> bool:
-    is_sensed = it.type.startswith(_SENSED) and it.type != _JOINTS
-    return it.role == SUBSCRIBES and is_needed(it) and is_sensed
 
 
 def _words(ends: Iterable[End]) -> str:

@@ -5,7 +5,7 @@ remap table, for what no description starts."""
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -69,7 +69,14 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
     ruled: dict[str, set[str]] = defaultdict(set)
     for run in (it for it in table.runs if it.fact.of_hardware):
         ruled[run.robot] |= {end.name for end, _ in run.names}
-    found = {it.robot: [*_of_description(it, ruled[it.robot])] for it in members}
+    found: dict[str, list[RuntimeName]] = {}
+    for member in members:
+        # The table has rules for the names of the nodes that its hardware makes.
+        own = (it for it in member.reading.names if not it.of_controllers)
+        found[member.robot] = [
+            *(it for it in own if it.tag != "ros2_control" or it.name not in ruled[member.robot]),
+            *member.published,
+        ]
     for it in table.runs:
         if it.robot and not it.written:
             its = RuntimeName(NODE, it.full_name, "", 0, it.node)
@@ -82,33 +89,21 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
     return found
 
 
-def _of_description(it: Member, ruled: Set[str]) -> Iterator[RuntimeName]:
-    """Yield what a robot has by its description alone: the table has rules for the names of the nodes
-    that its hardware makes, which are ``ruled``."""
-    for name in it.reading.names:
-        is_ruled = name.tag == "ros2_control" and name.name in ruled
-        if not (is_ruled or name.of_controllers):
-            yield name
-
-
 def _finding(met: Meeting, member: Member | None, written: Written | None) -> Finding:
     """At the element of the description that has the name first, else at the node."""
     name, code = met.name, code_of(met.name)
     message = said(f"{met.robot} and {met.other} would both", name, met.twin)
     found = Finding(code, _level(code), message, advice(name, together=True), names=(name.name,))
     if name.tag and member:
-        found = found._replace(hint=_own_value(name, member, written) or found.hint)
-        line = line_of(member.source, name.tag, name.number)
-        return found._replace(file=member.source.file, line=line, column=1)
+        if code == OPENED and written is not None:
+            # How each robot gets its own of what only one can open.
+            there = elements_at(name.element_in(member.source.root), split_path(name.path)[0])
+            hint = own_value(sources_of(written, member, there))
+            found = found._replace(hint=hint or found.hint)
+        source = member.sent if name in member.published else member.source
+        line = line_of(source, name.tag, name.number)
+        return found._replace(file=source.file, line=line, column=1)
     return found._replace(robot=met.robot, node=name.path)
-
-
-def _own_value(name: RuntimeName, member: Member, written: Written | None) -> str:
-    """How each robot gets its own of what only one can open."""
-    if code_of(name) != OPENED or written is None:
-        return ""
-    there = elements_at(name.element_in(member.source.root), split_path(name.path)[0])
-    return own_value(sources_of(written, member, there))
 
 
 def _level(code: str) -> str:

@@ -48,7 +48,12 @@ def named_twice(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
     """Once for each description, with the first of its names."""
     told = set()
     for it in robots:
-        name = next(_twice(it), "")
+        spec = it.spec
+        starts = tuple(f"/{spec.namespace}/{spec.name}{end}" for end in "/_")
+        is_named = name_robot(spec.arguments, [spec.name])
+        read = (one for one in it.member.reading.names if one.kind in _KINDS)
+        twice = (one.name for one in read if one.name.startswith(starts))
+        name = next(twice, "") if is_named else ""
         if name and it.spec.description not in told:
             told.add(it.spec.description)
             given = it.spec.arguments
@@ -56,16 +61,6 @@ def named_twice(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
             message = f"{name} has the name of robot {it.spec.name!r} twice"
             hint = f"write {' or '.join(which)}: '' under arguments"
             yield at_robot(robots_name_twice, it, message, hint)
-
-
-def _twice(robot: RewrittenRobot) -> Iterator[str]:
-    spec = robot.spec
-    if not name_robot(spec.arguments, [spec.name]):
-        return
-    starts = tuple(f"/{spec.namespace}/{spec.name}{it}" for it in "/_")
-    for it in robot.member.reading.names:
-        if it.kind in _KINDS and it.name.startswith(starts):
-            yield it.name
 
 
 OTHER_MANAGER = declare("MF850", "other-manager", ERROR, formats=("fleet",))

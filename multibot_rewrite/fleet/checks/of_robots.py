@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import combinations, pairwise
 from math import ceil, dist
 
@@ -55,8 +55,6 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
     yield from moved_services(plan)
     yield from named_twice(plan.robots)
     yield from _one_device_each(plan)
-    for found in plan.evidence.values():
-        yield from found.findings
     yield from lacking(plan)
     yield from without_camera(plan)
     yield from _too_near(plan)
@@ -64,8 +62,16 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
     yield from moveit_frames(plan)
     yield from differences(plan)
     yield from of_sdf_alone(plan)
-    yield from _for_another_robot(plan)
     yield from _on_another_time(plan)
+    # Each description that names another robot of the fleet in values of unknown use, at its first such
+    # value; what is for the one robot of it is right.
+    words = {word for it in plan.robots for word in it.spec.words}
+    for group in group_robots(plan):
+        first, *more = group.robots
+        source = first.member.source
+        others = words if more else words.difference(first.spec.words)
+        problems = in_description(source.root, others, first.names.declared)
+        yield from to_findings(source, problems, ERROR)
 
 
 def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:
@@ -96,7 +102,12 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
     for it in _met(robots, [one for its in hardware.values() for one in its]):
         sources = by_name[it.robot].spec.sources
         if sources not in hints:
-            hints[sources] = _own_values(by_name[it.robot], count)
+            # How a robot gets its own of what others have, too.
+            robot = by_name[it.robot]
+            params = robot.member.source.root.iterfind("ros2_control/hardware/param")
+            keys = ((one, (one.get("name", ""), (one.text or "").strip())) for one in params)
+            met = [one for one, key in keys if count.get(key, 0) > 1]
+            hints[sources] = own_value(sources_of(robot.written, robot.member, met))
         yield _said(it, "; ".join(filter(None, (it.hint, hints[sources]))))
     of_all = Counter(path for it in robots for path in it.spec.companions.get("params", ()))
     # What a file for several robots has is told there, or numbered.
@@ -127,13 +138,6 @@ def _of_hardware(robot: RewrittenRobot, told: Collection[str]) -> Iterator[Addre
         yield from (it for it in found if it.value not in told)
 
 
-def _own_values(robot: RewrittenRobot, count: Mapping[tuple[str, str], int]) -> str:
-    """How a robot gets its own of what others have, too."""
-    params = robot.member.source.root.iterfind("ros2_control/hardware/param")
-    met = [it for it in params if count.get((it.get("name", ""), (it.text or "").strip()), 0) > 1]
-    return own_value(sources_of(robot.written, robot.member, met))
-
-
 def _of_nodes(
     robot: RewrittenRobot, evidence: RobotEvidence, known: KnownNodes, shared: Collection[str]
 ) -> Iterator[Address]:
@@ -156,18 +160,6 @@ def _of_words(robot: RewrittenRobot, evidence: RobotEvidence) -> Iterator[Addres
         yield from of_words(f"/{spec.namespace}/{name}", for_robot(words, spec.name), place)
 
 
-def _for_another_robot(plan: FleetPlan) -> Iterator[Finding]:
-    """Each description that names another robot of the fleet in values of unknown use, at its first
-    such value; what is for the one robot of it is right."""
-    words = {word for it in plan.robots for word in it.spec.words}
-    for group in group_robots(plan):
-        first, *more = group.robots
-        source = first.member.source
-        others = words if more else words.difference(first.spec.words)
-        problems = in_description(source.root, others, first.names.declared)
-        yield from to_findings(source, problems, ERROR)
-
-
 def _too_near(plan: FleetPlan) -> Iterator[Finding]:
     """The robots in a simulator that start in another one.
 
@@ -177,43 +169,32 @@ def _too_near(plan: FleetPlan) -> Iterator[Finding]:
     """
     robots = [it for it in plan.robots if is_simulated(it)]
     if not any(any(_place(it.spec)) for it in robots):
-        yield from _without_poses(robots)
+        if len(robots) > 1:
+            room = max(1, ceil(4 * max(map(_within, robots))))
+            message = f"the {len(robots)} robots are spawned at the origin, in each other"
+            hint = f"write pose: {{x: {room}}} for {robots[1].spec.name}, and so on"
+            yield at_robot(in_each_other, robots[1], message, hint, level=WARNING)
         return
     sources = [it.spec.sources for it in robots]
     reach = {key: _within(it) for key, it in dict(zip(sources, robots, strict=True)).items()}
     placed = [(it, _place(it.spec), reach[key]) for key, it in zip(sources, robots, strict=True)]
-    for (one, here, own), (other, there, more) in _pairs(placed):
+    pairs = combinations(placed, 2) if len(placed) <= MOST else pairwise(placed)
+    for (one, here, own), (other, there, more) in pairs:
         if (gap := dist(here, there)) < own + more:
-            yield _finding(other, one.spec.name, gap, own + more)
-
-
-def _without_poses(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
-    if len(robots) > 1:
-        room = max(1, ceil(4 * max(map(_within, robots))))
-        message = f"the {len(robots)} robots are spawned at the origin, in each other"
-        hint = f"write pose: {{x: {room}}} for {robots[1].spec.name}, and so on"
-        yield at_robot(in_each_other, robots[1], message, hint, level=WARNING)
+            message = (
+                f"robot {other.spec.name!r} starts {gap:.2f} m from robot {one.spec.name!r}; their"
+                f" shapes need {own + more:.2f} m"
+            )
+            yield at_robot(in_each_other, other, message, "give them pose: further apart")
 
 
 def _within(it: RewrittenRobot) -> float:
     return filled_by(it.member.inventory.document.root)
 
 
-def _pairs(robots: Sequence[_Placed]) -> Iterator[tuple[_Placed, _Placed]]:
-    return combinations(robots, 2) if len(robots) <= MOST else pairwise(robots)
-
-
 def _place(spec: RobotSpec) -> tuple[float, float, float]:
     pose = spec.pose or Pose()
     return pose.x, pose.y, pose.z
-
-
-def _finding(robot: RewrittenRobot, other: str, gap: float, needed: float) -> Finding:
-    message = (
-        f"robot {robot.spec.name!r} starts {gap:.2f} m from robot {other!r}; their shapes need"
-        f" {needed:.2f} m"
-    )
-    return at_robot(in_each_other, robot, message, "give them pose: further apart")
 
 
 MOVED = declare("MF851", "service-of-hardware-moved", NOTE, formats=("fleet",))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Iterator, Set
 from contextlib import contextmanager
 from tempfile import TemporaryDirectory
 
@@ -32,13 +32,12 @@ from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.outputs.commands_file import COMMANDS
-from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.knowledge.nodl.lookup import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.launch.findings import NOT_WHOLE
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.read import UnreadableError, read_own
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
+from multibot_rewrite.producers.launch.records import LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
 from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
@@ -87,7 +86,13 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
     with _temporary_folder() as above, gc_paused():
         home, own = os.path.join(above, "built"), os.path.join(above, "launch")
         os.makedirs(own)
-        _write(made.files, plan.file.installed or folder, home)
+        planned = plan.file.installed or folder
+        # A description names files of its own by their whole path.
+        for it in made.files:
+            path = os.path.join(home, it.path)
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path, "wb") as out:
+                out.write(it.data.replace(f"{planned}/".encode(), f"{home}/".encode()))
         try:
             graph = read_own(os.path.join(home, LAUNCH), own)
         except UnreadableError as error:
@@ -97,27 +102,37 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         notes = (it for it in graph.notes if it.missing not in packages)
         graph = graph._replace(notes=tuple(notes))
         known = _known(plan)
-        found = launched(graph, known)
-        seen = found.system
+        start = launched(graph, known)
+        seen = start.system
         real = frozenset(it.spec.namespace for it in plan.robots if it.spec.simulator == REAL)
-        whole, started = found.with_bridged, made.starts.nodes
+        whole, started = start.with_bridged, made.starts.nodes
         wrong = [*not_as_planned(made.planned, whole, started, made.findings, real)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         codes = {it.code for it in told if it.level == ERROR}
         by_plan = whose_by_plan(made.planned)
-        of_launch = _of_launch(found, by_plan, codes, _given_elsewhere(made.planned, started))
+        # What planned nodes give that another launch file starts.
+        elsewhere = {it.child for it in made.planned.edges if not {*it.publishers} <= started}
+        gives = (it for it in made.planned.ends if it.node not in started and it.role in _GIVES)
+        elsewhere |= {it.name for it in gives}
+        shared = {*made.planned.shared_topics}
         alone = [
             it
-            for it in of_launch
-            if not _is_shared(it, made.planned)
-            and (it.robot not in real or not is_for_driver(it, made.planned, started))
+            for it in _of_launch(start, by_plan, codes, elsewhere)
+            # Robots may share a topic which the fleet file shares.
+            if it.code not in (COMMAND, DATA) or not {*it.names} <= shared
+            if it.robot not in real or not is_for_driver(it, made.planned, started)
         ]
         wrong += _not_open(alone, made)
         if any(it.code == NO_MANAGER.code for it in wrong):
             remedy = _remedy(plan)
             wrong = [it._replace(hint=remedy) if it.code == NO_MANAGER.code else it for it in wrong]
         wrong = [*as_the_vendor_has_it(plan, index(seen, by_plan), wrong, known)]
-        return [*_lost(graph, seen, home), *(_in_folder(it, home) for it in wrong)], graph
+        lost = [*_lost(graph, seen, home)]
+        for found in wrong:
+            texts = (found.file, found.message, found.hint)
+            file, message, hint = (text.replace(f"{home}/", "") for text in texts)
+            lost.append(found._replace(file=file, message=message, hint=hint))
+        return lost, graph
 
 
 def _of_launch(
@@ -134,11 +149,6 @@ def _of_launch(
     every = (*judge_launch(found), *bridge_findings(found), *between)
     asked = (it for it in every if not elsewhere & {*it.names})
     yield from (it for it in asked if it.level == ERROR and it.code not in told)
-
-
-def _is_shared(it: Finding, planned: System) -> bool:
-    """Does a finding say that robots share a topic which the fleet file shares?"""
-    return it.code in (COMMAND, DATA) and {*it.names} <= {*planned.shared_topics}
 
 
 def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
@@ -166,13 +176,6 @@ def _remedy(plan: FleetPlan) -> str:
     )
 
 
-def _given_elsewhere(planned: System, started: Set[str]) -> set[str]:
-    """The topics, services and frames of planned nodes that another launch file starts."""
-    frames = {it.child for it in planned.edges if not {*it.publishers} <= started}
-    gives = (it for it in planned.ends if it.node not in started and it.role in _GIVES)
-    return frames | {it.name for it in gives}
-
-
 def _known(plan: FleetPlan) -> Knowledge:
     """What is known of nodes in the release of the fleet, as its file and NoDL documents have them."""
     file = plan.file
@@ -195,15 +198,6 @@ def _temporary_folder() -> Iterator[str]:
         raise MultibotError(f"a temporary file{file} cannot be written: {reason}") from None
 
 
-def _write(files: Iterable[OutputFile], planned: str, home: str) -> None:
-    """The files in another folder; a description names files of its own by their whole path."""
-    for it in files:
-        path = os.path.join(home, it.path)
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        with open(path, "wb") as out:
-            out.write(it.data.replace(f"{planned}/".encode(), f"{home}/".encode()))
-
-
 def _lost(graph: LaunchGraph, seen: System, home: str) -> Iterator[Finding]:
     """What the launch file names and is not there, a node without its description, and what rcl refuses
     to start."""
@@ -212,7 +206,11 @@ def _lost(graph: LaunchGraph, seen: System, home: str) -> Iterator[Finding]:
         if not note.parameters or note.file.startswith(f"{home}/"):
             yield _fault(note.message, note.place, home)
     for it in graph.nodes:
-        for path in _named(it, home):
+        # The files of the folder that it is given: as a word, or as the value of a parameter.
+        paths = [word for word in it.arguments if word.startswith(f"{home}/")]
+        for text in (one.text for one in it.parameters if not one.file):
+            paths += re.findall(rf"(?m)^ +[\w.]+: '?({re.escape(home)}/[^\n']+)'?$", text)
+        for path in paths:
             if not os.path.exists(path):
                 yield _fault(f"{path} is not there", it.place, home)
     for caveat in seen.environment.caveats:
@@ -220,20 +218,6 @@ def _lost(graph: LaunchGraph, seen: System, home: str) -> Iterator[Finding]:
             yield _fault(caveat.message, Place(LAUNCH, 1), home)
 
 
-def _named(it: LaunchedNode, home: str) -> Iterator[str]:
-    """The files of the folder that a node is given: as a word, or as the value of a parameter."""
-    values = (one.text for one in it.parameters if not one.file)
-    yield from (word for word in it.arguments if word.startswith(f"{home}/"))
-    for text in values:
-        yield from re.findall(rf"(?m)^ +[\w.]+: '?({re.escape(home)}/[^\n']+)'?$", text)
-
-
 def _fault(message: str, place: Place, home: str) -> Finding:
     file, text = (it.replace(f"{home}/", "") for it in (place.file, message))
     return NOT_WHOLE.finding(text, _HINT, level=ERROR, file=file, line=place.line)
-
-
-def _in_folder(it: Finding, home: str) -> Finding:
-    """The finding with the file of the folder that it is about."""
-    file, message, hint = (one.replace(f"{home}/", "") for one in (it.file, it.message, it.hint))
-    return it._replace(file=file, message=message, hint=hint)

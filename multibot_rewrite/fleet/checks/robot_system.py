@@ -30,7 +30,6 @@ from multibot_rewrite.fleet.robots.member import without_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 from multibot_rewrite.knowledge.parameters import KnownNodes
-from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.ends import (
     BRIDGE_FILE,
     BRIDGE_NODE,
@@ -62,7 +61,6 @@ from multibot_rewrite.spelling.table import plugin_nodes
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, sent_by, tree_joints
 from multibot_rewrite.spelling.way_checks import is_stand_in
 from multibot_rewrite.spelling.ways import merged
-from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import (
     MAY,
     NOWHERE,
@@ -91,17 +89,32 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
     usual launch files remap."""
     source, given = robot.member.source, evidence.given
     moves = any(it.get("type", FIXED) != FIXED for it in source.root.iter("joint"))
-    nodes = [_runs(it, moves) for it in evidence.nodes]
+    nodes = []
+    for node in evidence.nodes:
+        # A robot without movable joints has no joint states to read.
+        reads = moves or node.package != STATE_PUBLISHER
+        ends = tuple(it for it in node.endpoints if reads or it.role != SUBSCRIBES)
+        nodes.append(node._replace(endpoints=ends))
     real = robot.spec.simulator == REAL
     text = without_simulator(source.source, source.file) if real else source.source
     reading = read(text, source.file, robot.member.vocabulary)
     plain = [_plainly(robot, it) for it in given]
     sections = {it.node: it for it in plain}
-    alone = [_meant(run_alone(it, sections.get(it.name))) for it in nodes]
+    alone = []
+    for run in (run_alone(it, sections.get(it.name)) for it in nodes):
+        # One for which a file has parameters is meant to run.
+        when = run.fact.when if run.place == NOWHERE else ""
+        alone.append(run._replace(fact=run.fact._replace(when=when)))
     runs = [it for it in alone if not it.fact.shared]
-    plugins = [*_without_controllers(plugin_nodes(reading, ""))]
+    plugins = []
+    for it in plugin_nodes(reading, ""):
+        # What one with a controller manager would publish, its controllers do.
+        kept = tuple(end for end in it.fact.endpoints if not is_stand_in(it, end))
+        plugins.append(with_names(it._replace(fact=it.fact._replace(endpoints=kept))))
     tree = [it for _, it in tree_joints(robot.member.sent.root)]
-    root = _root(robot, tree)
+    children = {it.child for it in tree}
+    links = (it.get("name", "") for it in robot.member.sent.root.iterfind("link"))
+    root = next((it for it in links if it not in children), "")
     sent = {it.node: [*sent_by(it.fact, "")] for it in plugins}
     sent |= {it.name: [*sent_by(it, root)] for it in nodes}
     # A frame below itself tf2 refuses.
@@ -197,22 +210,16 @@ def _system(runs: Iterable[Run], rows: Iterable[End] = (), edges: Iterable[Edge]
     """The system of nodes as they run, of the rows of bridges, which may be for one way each, and of
     the transforms that they send."""
     running, bridged = [*runs], [*rows]
-    nodes = {it.full_name: _node(it) for it in merged(running)}
+    nodes = {}
+    for run in merged(running):
+        # A person starts a tool, or nobody does.
+        sure = MAY if run.fact.when or is_tool_word(run.code_name) else RUNS
+        name = run.full_name
+        nodes[name] = Node(name, robot=run.robot, known=run.node, sure=sure, place=run.place)
     ends = [*_ends(running, nodes), *(one for it in bridged for one in either_way(it))]
     for it in bridged:
         nodes.setdefault(it.node, Node(it.node, known=BRIDGE_NODE))
     return System(tuple(nodes.values()), tuple(ends), tuple(edges), DRIVERS)
-
-
-def _meant(run: Run) -> Run:
-    """Return the node without its condition where a file has parameters for it: it is meant to run."""
-    return run if run.place == NOWHERE else run._replace(fact=run.fact._replace(when=""))
-
-
-def _node(run: Run) -> Node:
-    # A person starts a tool, or nobody does.
-    sure = MAY if run.fact.when or is_tool_word(run.code_name) else RUNS
-    return Node(run.full_name, robot=run.robot, known=run.node, sure=sure, place=run.place)
 
 
 def _ends(runs: Iterable[Run], nodes: Mapping[str, Node]) -> Iterator[End]:
@@ -260,13 +267,6 @@ def _edges(
         yield from (edge(it, sender, place, topic) for it in own if it not in in_tree)
 
 
-def _root(robot: RewrittenRobot, tree: Iterable[Edge]) -> str:
-    """The first link that no joint has as its child."""
-    children = {it.child for it in tree}
-    links = (it.get("name", "") for it in robot.member.sent.root.iterfind("link"))
-    return next((it for it in links if it not in children), "")
-
-
 def _simulated(robot: RewrittenRobot) -> Iterator[Edge]:
     """The transforms of gz-sim's drive and odometry systems, which the bridge brings to tf."""
     for host, section in robot.member.inventory.served:
@@ -294,14 +294,6 @@ def _heard(fleet: Fleet, robot: RewrittenRobot, bridges: Iterable[OutputFile]) -
 def _said(data: bytes, file: str, root: _Element) -> Semantics:
     """What an SRDF, which may be empty, says of the description."""
     return semantics(read_document(data, file).root, root, file) if data else Semantics((), ())
-
-
-def _without_controllers(plugins: Iterable[Run]) -> Iterator[Run]:
-    """The plugins; what one with a controller manager would publish its controllers do, which are known
-    by the files that name them."""
-    for it in plugins:
-        ends = (end for end in it.fact.endpoints if not is_stand_in(it, end))
-        yield with_names(it._replace(fact=it.fact._replace(endpoints=tuple(ends))))
 
 
 def _controlled(
@@ -341,24 +333,16 @@ def _plainly(robot: RewrittenRobot, given: Run) -> Run:
     left of a name without it."""
     own = _own(robot)
     own = {**{name: own[text] for (_, name), text in robot.names.own.items()}, **own}
-    values = {
-        key: it._replace(value=_said_plainly(it.value, own)) for key, it in given.values.items()
-    }
+    values = {}
+    for key, it in given.values.items():
+        value = it.value
+        if isinstance(value, list):
+            value = [own.get(one, one) if isinstance(one, str) else one for one in value]
+        elif isinstance(value, str):
+            value = own.get(value, value)
+        values[key] = it._replace(value=value)
     return given._replace(values=values)
-
-
-def _said_plainly(value: Value, own: Mapping[str, str]) -> Value:
-    if isinstance(value, list):
-        return [own.get(it, it) if isinstance(it, str) else it for it in value]
-    return own.get(value, value) if isinstance(value, str) else value
 
 
 def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:
     return [own_yaml(robot.spec, path) for path in robot.spec.companions.get(kind, ())]
-
-
-def _runs(node: NodeFacts, moves: bool) -> NodeFacts:
-    """A robot without movable joints has no joint states to read."""
-    if moves or node.package != STATE_PUBLISHER:
-        return node
-    return node._replace(endpoints=tuple(it for it in node.endpoints if it.role != SUBSCRIBES))

@@ -65,7 +65,15 @@ def shared_by_nothing(
     for name, own, others, slash in asked:
         if name not in own and name.encode() not in further:
             file, line = places.get(TOPICS if slash else FRAMES, ("", 0))
-            found = _finding(name, own, others, slash)
+            what, other, key = ("topic", "frame", FRAMES) if slash else ("frame", "topic", TOPICS)
+            message = f"{slash}{name} is to be shared, and no robot has a {what} of that name"
+            near = nearest(name, sorted(own), MISTYPED)
+            hint = f"did you mean {slash + near!r}?" if near else ""
+            if name in others:
+                option = f"--shared {'' if slash else '/'}{name}"
+                hint = f"it is a {other}: write it below {key}, or {option}"
+            level, names = WARNING if hint else NOTE, (f"{slash}{name}",)
+            found = NOBODYS.finding(message, hint or _UNKNOWN, level=level, names=names)
             yield found._replace(file=file, line=line, column=min(line, 1))
 
 
@@ -78,24 +86,10 @@ def _described(fleet: NamesOfFleet, kinds: Collection[str]) -> set[str]:
     for robot, inventory in fleet.inventories.items():
         named = (it for names in inventory.names for it in names)
         texts = {
-            it.text.strip("/") for it in named if it.kind in kinds or not _apart(it.kinds, kinds)
+            it.text.strip("/")
+            for it in named
+            if it.kind in kinds or any(kind in kinds for kind in it.kinds)
         }
         found |= texts
         found |= {text.replace(word, "").strip(_BETWEEN) for text in texts for word in words[robot]}
     return found
-
-
-def _apart(some: Iterable[str], others: Collection[str]) -> bool:
-    return not any(it in others for it in some)
-
-
-def _finding(name: str, own: Collection[str], others: Collection[str], slash: str) -> Finding:
-    what, other, key = ("topic", "frame", FRAMES) if slash else ("frame", "topic", TOPICS)
-    message = f"{slash}{name} is to be shared, and no robot has a {what} of that name"
-    near = nearest(name, sorted(own), MISTYPED)
-    if name in others:
-        hint = f"it is a {other}: write it below {key}, or --shared {'' if slash else '/'}{name}"
-    else:
-        hint = f"did you mean {slash + near!r}?" if near else ""
-    level, names = WARNING if hint else NOTE, (f"{slash}{name}",)
-    return NOBODYS.finding(message, hint or _UNKNOWN, level=level, names=names)

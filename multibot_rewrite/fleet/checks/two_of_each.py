@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite.fleet.build import Outputs
@@ -55,7 +55,11 @@ class Sample(NamedTuple):
 
 def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
     """The sample; all robots where the launch file and the plan have not one part for each."""
-    if len(robots) <= _OF_EACH or _within_each_other({word for it in robots for word in it.words}):
+    words = {word for it in robots for word in it.words}
+    cut = ((word, it.start()) for word in words for it in re.finditer("[_/]", word))
+    # Names of two robots could be one, such as those of ``arm`` and ``arm_left``.
+    is_within = any(word[:at] in words or word[at + 1 :] in words for word, at in cut)
+    if len(robots) <= _OF_EACH or is_within:
         return Sample(made)
     files = {it.path: it for it in made.files}
     launch, plan = (files[it].text if it in files else "" for it in (LAUNCH, PLAN))
@@ -72,36 +76,23 @@ def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
         at = next((at for at, one in enumerate(sorts) if _alike(one, own)), len(sorts))
         sorts += [own] if at == len(sorts) else []
         of_sort[at].append(it)
-    return _sample(made, of_sort.values())
-
-
-def _sample(made: Outputs, sorts: Collection[Sequence[RobotSpec]]) -> Sample:
-    left = [it for alike in sorts for it in alike[_OF_EACH:]]
+    left = [it for several in of_sort.values() for it in several[_OF_EACH:]]
     alike: dict[str, tuple[str, ...]] = {}
-    for names in ([it.namespace for it in one] for one in sorts):
+    for names in ([it.namespace for it in one] for one in of_sort.values()):
         alike |= {it: tuple(dict.fromkeys((it, *names))) for it in names[:_OF_EACH]}
     return Sample(_without(made, left), frozenset(word for it in left for word in it.words), alike)
-
-
-def _within_each_other(words: Collection[str]) -> bool:
-    """Could names of two robots be one, such as those of ``arm`` and ``arm_left``?"""
-    cut = ((word, it.start()) for word in words for it in re.finditer("[_/]", word))
-    return any(word[:at] in words or word[at + 1 :] in words for word, at in cut)
 
 
 def names_one_of(graph: LaunchGraph, words: Collection[str]) -> bool:
     """Is one of the words in what the launch gives to a node?"""
     every = "|".join(map(re.escape, sorted(words, reverse=True)))
     found = re.compile(rf"(?<![A-Za-z0-9])(?:{every})(?![A-Za-z0-9])")
-    return any(found.search(text) for text in {*_texts(graph)})
-
-
-def _texts(graph: LaunchGraph) -> Iterator[str]:
-    for it in graph.nodes:
-        yield from (it.name, it.namespace, it.container, *it.arguments)
-        yield from (text for pair in it.remappings for text in pair)
-        yield from (one.text for one in it.parameters)
-    yield from (it.text for _, it in graph.files)
+    texts = {it.text for _, it in graph.files}
+    for node in graph.nodes:
+        texts.update((node.name, node.namespace, node.container, *node.arguments))
+        texts.update(text for pair in node.remappings for text in pair)
+        texts.update(it.text for it in node.parameters)
+    return any(map(found.search, texts))
 
 
 def _by_name(pattern: re.Pattern[str], text: str) -> dict[str, str]:

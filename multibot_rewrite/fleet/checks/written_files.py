@@ -4,7 +4,7 @@ bridge of each robot."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
 from multibot_rewrite.companions.context import Context
@@ -65,7 +65,10 @@ def written_findings(
         yield from _asked(no_gz_topic, BRIDGE, text, context, memo)
     opened = {it.file for it in known if it.code == undeclared_controller.code}
     moveit = [it for it in own if SIMPLE in it.text and opened.isdisjoint(it.sources)]
-    memo = {Beside: _beside(plan, robot, own) if moveit else None}
+    # What the parameter files of the robot set as they are written.
+    parameters = (it.yaml for it in own if moveit and PARAMETERS in it.text)
+    given = given_nodes(parameters, load_known_nodes(plan.file.nodes, plan.file.distro))
+    memo = {Beside: Beside(tuple(given), plan.evidence_of(robot).known)}
     for text in moveit:
         kind = PARAMS if PARAMETERS in text.text else MOVEIT
         for it in _asked(undeclared_controller, kind, text, context, memo):
@@ -83,36 +86,21 @@ def _asked(
         yield it._replace(file=file, line=line, column=1)
 
 
-def _beside(plan: FleetPlan, robot: RewrittenRobot, own: Sequence[OutputFile]) -> Beside:
-    """What the parameter files of the robot set as they are written."""
-    read = (it.yaml for it in own if PARAMETERS in it.text)
-    given = given_nodes(read, load_known_nodes(plan.file.nodes, plan.file.distro))
-    return Beside(tuple(given), plan.evidence_of(robot).known)
-
-
 def _gz_topics(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, GzTopic]:
     own = {robot.spec.namespace: robot.member.inventory}
     topics, _ = bridged_topics(own, plan.fleet.naming, plan.fleet.models)
-    lines = _sensor_lines(robot)
-    world = world_topics(plan.file.simulator_world).items()
-    of_world = {it: GzTopic(type_, DIRECTIONS["in"] if type_ else "") for it, type_ in world}
-    return of_world | {
-        (name := f"/{it.gz.lstrip('/')}"): GzTopic(it.gz_type, it.direction, _place(name, lines))
-        for it in topics
-    }
-
-
-def _sensor_lines(robot: RewrittenRobot) -> dict[str, Place]:
-    """The topic of each sensor -> its line in the source: inserted text moves those of the result."""
+    # The topic of each sensor -> its line in the source: inserted text moves those of the result.
     sensors = robot.member.inventory.document.root.iter("sensor")
-    source = robot.member.source
-    return {
-        f"/{topic.lstrip('/')}": Place(source.file, line_of(source, "sensor", number))
-        for number, it in enumerate(sensors)
-        if (topic := text_at(it, "topic"))
-    }
-
-
-def _place(topic: str, lines: Mapping[str, Place]) -> Place:
-    bases = [it for it in lines if topic == it or topic.startswith(f"{it}/")]
-    return lines[max(bases, key=len)] if bases else NOWHERE
+    source, lines = robot.member.source, {}
+    for number, sensor in enumerate(sensors):
+        if topic := text_at(sensor, "topic"):
+            place = Place(source.file, line_of(source, "sensor", number))
+            lines[f"/{topic.lstrip('/')}"] = place
+    world = world_topics(plan.file.simulator_world).items()
+    found = {it: GzTopic(type_, DIRECTIONS["in"] if type_ else "") for it, type_ in world}
+    for it in topics:
+        name = f"/{it.gz.lstrip('/')}"
+        bases = [one for one in lines if name == one or name.startswith(f"{one}/")]
+        place = lines[max(bases, key=len)] if bases else NOWHERE
+        found[name] = GzTopic(it.gz_type, it.direction, place)
+    return found

@@ -7,8 +7,8 @@ messages with some of the joints (moveit2 2.12.4 current_state_monitor.cpp, ``jo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.model import InputError
@@ -50,21 +50,18 @@ def cell_of(read: FleetData, naming: Naming) -> Cell | None:
     file, line = read.places[CELL,]
     groups = {name: tuple(it) for name, it in given.get("groups", {}).items()}
     found = Cell(given.get("name", CELL), groups, f"{file}:{line}")
-    for what in _faults(found, read.data, naming):
-        raise InputError(f"{found.place}: cell: {what}")
-    return found
-
-
-def _faults(cell: Cell, data: Mapping[str, Any], naming: Naming) -> Iterator[str]:
-    layout = naming.layout
+    place, layout = f"{found.place}: cell:", naming.layout
     if layout.at_run_time or not layout.frames:
         what = f"in layout {layout.name} the joints of all arms have the same names in their URDFs"
-        yield f"{what}; take layout frames-per-robot"
-    elif layout.tf_per_robot:
-        yield f"layout {layout.name} has a tf for each arm; take layout frames-per-robot"
-    for robot in data["robots"]:
+        raise InputError(f"{place} {what}; take layout frames-per-robot")
+    if layout.tf_per_robot:
+        what = f"layout {layout.name} has a tf for each arm"
+        raise InputError(f"{place} {what}; take layout frames-per-robot")
+    for robot in read.data["robots"]:
         name = robot["name"]
-        if name == cell.name:
-            yield f"a robot is called {name!r}, too; write another name:"
-        if not robot.get("srdf", data.get("srdf")):
-            yield f"robot {name!r} has no srdf, so MoveIt knows no group of it; name its SRDF"
+        if name == found.name:
+            raise InputError(f"{place} a robot is called {name!r}, too; write another name:")
+        if not robot.get("srdf", read.data.get("srdf")):
+            what = f"robot {name!r} has no srdf, so MoveIt knows no group of it"
+            raise InputError(f"{place} {what}; name its SRDF")
+    return found

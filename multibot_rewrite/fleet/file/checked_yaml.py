@@ -49,7 +49,11 @@ def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -
         raise InputError(f"{path}:1: the file must hold keys with values; {hint}")
     lines = dict(_lines(document.root, path, ()))
     data = load_yaml(document.text, path, "write plain keys and values")
-    _validate(data, schema, path, lines)
+    found = [it for error in _errors(data, schema) for it in _faults(error, lines, schema)]
+    if found:
+        (line, words), *others = dict.fromkeys(sorted(found, key=lambda it: it[0]))
+        also = "".join(f"; line {at}: {text}" for at, text in others)
+        raise InputError(f"{path}:{line}: {words}{also}")
     return CheckedYaml(data, lines)
 
 
@@ -85,22 +89,14 @@ def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
     return [best_match([it]) for it in newest(schema).iter_errors(data)]
 
 
-def _validate(data: Any, schema: Mapping[str, Any], file: str, lines: Mapping[Path, int]) -> None:
-    found = [it for error in _errors(data, schema) for it in _faults(error, lines, schema)]
-    if not found:
-        return
-    (line, words), *others = dict.fromkeys(sorted(found, key=lambda it: it[0]))
-    also = "".join(f"; line {at}: {text}" for at, text in others)
-    raise InputError(f"{file}:{line}: {words}{also}")
-
-
 def _faults(
     error: Any, lines: Mapping[Path, int], schema: Mapping[str, Any]
 ) -> Iterator[tuple[int, str]]:
     """The lines of an error, and it in words."""
     path = tuple(error.absolute_path)
     line = next(lines[path[:end]] for end in range(len(path), -1, -1) if path[:end] in lines)
-    where = _where(path)
+    where = "".join(f"[{it}]" if isinstance(it, int) else f".{it}" for it in path).lstrip(".")
+    where = f"{where}: " if where else ""
     if error.validator != "additionalProperties":
         yield line, f"{where}{_in_words(error)}"
         return
@@ -152,11 +148,6 @@ def _wanted(error: Any) -> str:
 def _shown(value: object) -> str:
     text = repr(value)
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
-
-
-def _where(path: Path) -> str:
-    text = "".join(f"[{it}]" if isinstance(it, int) else f".{it}" for it in path).lstrip(".")
-    return f"{text}: " if text else ""
 
 
 def _known(word: object, known: Iterable[object], below: Collection[str] = ()) -> str:

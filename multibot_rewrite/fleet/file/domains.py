@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean
@@ -45,40 +45,30 @@ def apart_of(read: FleetData, robots: Mapping[str, str]) -> Apart:
     line where that does not fit together."""
     data = read.data
     for key in (it for it in _NEED_DOMAINS if it in data and DOMAINS not in data):
-        raise _wrong(read, key, f"write {DOMAINS} as well, with the domain of each robot")
+        file, line = read.places.get((key,), (read.file, 1))
+        hint = f"write {DOMAINS} as well, with the domain of each robot"
+        raise InputError(f"{file}:{line}: {key}: {hint}")
     if DOMAINS not in data:
         return TOGETHER
-    given = data[DOMAINS]
-    for what in _faults(data, given, robots):
-        raise _wrong(read, DOMAINS, what)
+    given, adapter = data[DOMAINS], data.get(FREE_FLEET)
+    file, line = read.places.get((DOMAINS,), (read.file, 1))
+    lacking = [it for it in robots if it not in given]
+    unknown = [it for it in given if it != SHARED and it not in robots]
+    if lacking:
+        near = next(filter(None, (did_you_mean(lacking[0], [it]) for it in unknown)), "")
+        what = f"{lacking[0]} has none; give it one{f' ({near})' if near else ''}"
+        raise InputError(f"{file}:{line}: {DOMAINS}: {what}")
+    if "domain" in data.get("zenoh", {}):
+        what = "zenoh has a domain as well; leave out that of zenoh"
+        raise InputError(f"{file}:{line}: {DOMAINS}: {what}")
+    if adapter is not None:
+        charger = adapter.get("charger", "{robot}_charger")
+        adapter = FreeFleet(adapter["router"], adapter["map"], charger)
     numbers = {space: given[name] for name, space in robots.items()}
     numbers[""] = given.get(SHARED, USUAL_DOMAIN)
     return Apart(
         tuple(Domain(*it) for it in numbers.items()),
         tuple(listed(data.get(CROSSING, []))),
-        _free_fleet(data.get(FREE_FLEET)),
+        adapter,
         read.places[DOMAINS,],
     )
-
-
-def _free_fleet(given: Mapping[str, str] | None) -> FreeFleet | None:
-    if given is None:
-        return None
-    return FreeFleet(given["router"], given["map"], given.get("charger", "{robot}_charger"))
-
-
-def _wrong(read: FleetData, key: str, what: str) -> InputError:
-    file, line = read.places.get((key,), (read.file, 1))
-    return InputError(f"{file}:{line}: {key}: {what}")
-
-
-def _faults(
-    data: Mapping[str, Any], given: Mapping[str, int], robots: Mapping[str, str]
-) -> Iterator[str]:
-    lacking = [it for it in robots if it not in given]
-    unknown = [it for it in given if it != SHARED and it not in robots]
-    if lacking:
-        near = next(filter(None, (did_you_mean(lacking[0], [it]) for it in unknown)), "")
-        yield f"{lacking[0]} has none; give it one{f' ({near})' if near else ''}"
-    if "domain" in data.get("zenoh", {}):
-        yield "zenoh has a domain as well; leave out that of zenoh"

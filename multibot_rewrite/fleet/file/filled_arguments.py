@@ -65,7 +65,7 @@ def with_own_arguments(file: FleetFile, naming: Naming, trust: bool) -> WithArgu
         return ()
 
     robots: list[RobotSpec] = []
-    notes: dict[str, Sequence[Finding]] = {}
+    notes: dict[str, list[Finding]] = {}
     # What the first robot with these values finds holds for all: a name is as good as another.
     first: dict[tuple[tuple[str, str], ...], frozenset[tuple[str, str]]] = {}
     for it in file.robots:
@@ -74,20 +74,24 @@ def with_own_arguments(file: FleetFile, naming: Naming, trust: bool) -> WithArgu
         paths = [path for path in (it.description, it.simulated) if it.fills and path]
         every = (one for path in paths if is_xacro(path) for one in found(path, own))
         free = [one for one in every if one.name not in it.arguments]
-        choices = [_beside(it, _choice(one, naming, it)) for one in free]
+        choices = [_choice(one, naming, it) for one in free]
+        told = ((name, text) for name, text in it.arguments.items() if ROBOT not in text)
+        if named := next((name for name, text in told if name_robot({name: text}, it.words)), ""):
+            # A given value is the robot's name: a name would have it twice.
+            reason = f"{named} names the robot already"
+            choices = [_Choice(one.name, reason=reason) if one.value else one for one in choices]
         values = {one.name: one.value for one in choices if one.value}
         robots.append(it._replace(arguments={**it.arguments, **values}))
-        notes[it.name] = [_note(it, one) for one in choices if one.value or one.reason]
+        notes[it.name] = said = []
+        for one in (one for one in choices if one.value or one.reason):
+            what = f"is filled, it is {one.value.replace(ROBOT, it.name)}"
+            hint = "give another value under arguments, or '' for none"
+            if one.reason:
+                what = f"is not filled: {one.reason}"
+                hint = "give its value under arguments, or set separators"
+            message = f"robot {it.name!r}: the argument {one.name} of its xacro {what}"
+            said.append(OWN_ARGUMENT.finding(message, hint, file=it.file, line=it.line))
     return WithArguments(file._replace(robots=tuple(robots)), notes)
-
-
-def _beside(robot: RobotSpec, choice: _Choice) -> _Choice:
-    """Return the choice; none where a given value is the robot's name: a name would have it twice."""
-    given = ((name, text) for name, text in robot.arguments.items() if ROBOT not in text)
-    named = next((name for name, text in given if name_robot({name: text}, robot.words)), "")
-    if not (named and choice.value):
-        return choice
-    return _Choice(choice.name, reason=f"{named} names the robot already")
 
 
 def _choice(it: Argument, naming: Naming, robot: RobotSpec) -> _Choice:
@@ -125,14 +129,3 @@ def _makes_other_names(use: Use, naming: Naming) -> bool:
         return False
     separator = naming.separators.get(use.kind)
     return use.how != naming.affix or use.separator not in ("", separator) or separator is None
-
-
-def _note(robot: RobotSpec, it: _Choice) -> Finding:
-    argument = f"the argument {it.name} of its xacro"
-    value = it.value.replace(ROBOT, robot.name)
-    message = f"robot {robot.name!r}: {argument} is filled, it is {value}"
-    hint = "give another value under arguments, or '' for none"
-    if it.reason:
-        message = f"robot {robot.name!r}: {argument} is not filled: {it.reason}"
-        hint = "give its value under arguments, or set separators"
-    return OWN_ARGUMENT.finding(message, hint, file=robot.file, line=robot.line)

@@ -87,21 +87,19 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
     if "launch_roots" in result:
         result["launch_roots"] = resolve(result["launch_roots"])
     if "launch" in result:
-        result["launch"] = [_launch_path(folder, it) for it in listed(result["launch"])]
+        # What follows ``ros2 launch``: a path of its file, or a package.
+        launch = []
+        for text in listed(result["launch"]):
+            file, rest = _file_and_rest(text)
+            path = f"{shlex.quote(_joined(folder, file))} {rest}".rstrip()
+            launch.append(text if _of_package(text) else path)
+        result["launch"] = launch
     if "companions" in result:
         result["companions"] = {kind: resolve(it) for kind, it in result["companions"].items()}
     for key in ("robots", JOIN):
         if key in result:
             result[key] = [with_paths(folder, inner) for inner in result[key]]
     return result
-
-
-def _launch_path(folder: str, text: str) -> str:
-    """What follows ``ros2 launch``, with the path of its file relative to the working directory."""
-    if _of_package(text):
-        return text
-    file, rest = _file_and_rest(text)
-    return f"{shlex.quote(_joined(folder, file))} {rest}".rstrip()
 
 
 def _file_and_rest(text: str) -> tuple[str, str]:
@@ -192,20 +190,16 @@ def read_data(source: FleetSource) -> FleetData:
     """The data of a fleet; paths in a dict are relative to the working directory. Raises InputError."""
     if isinstance(source, str):
         return _with_includes(_of_file(source), ())
-    path, text = source if isinstance(source, FleetText) else (DICT, _text_of(source))
-    checked = text_checked(text.encode(), path, _wanted(), f"write {EXAMPLE}")
-    folder = "" if path == DICT else os.path.dirname(path)
-    return _with_includes(_placed(path, folder, checked)._replace(files=()), ())
-
-
-def _text_of(source: Mapping[str, Any]) -> str:
     hint = "write texts, numbers, lists and dicts"
     try:
-        return fleet_yaml(dict(source))
+        path, text = source if isinstance(source, FleetText) else (DICT, fleet_yaml(dict(source)))
     except yaml.YAMLError as error:
         raise InputError(f"{DICT}: {str(error).splitlines()[0]}; {hint}") from None
     except RecursionError:
         raise InputError(f"{DICT}: a value holds itself; {hint}") from None
+    checked = text_checked(text.encode(), path, _wanted(), f"write {EXAMPLE}")
+    folder = "" if path == DICT else os.path.dirname(path)
+    return _with_includes(_placed(path, folder, checked)._replace(files=()), ())
 
 
 def _with_includes(read: FleetData, above: tuple[str, ...]) -> FleetData:

@@ -7,13 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.naming import Naming, Policy, make_naming
+from multibot_rewrite.base.naming import Policy, make_naming
 from multibot_rewrite.base.releases import chosen_release, why_told
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_of_all
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart, apart_of
 from multibot_rewrite.fleet.file.fleet_data import (
-    FleetData,
     FleetSource,
     listed,
     nodl_files,
@@ -91,23 +90,40 @@ def read_fleet(
     read = with_cell(with_robots(read_data(source), choice))
     data = read.data
     release, why = _release(data, distro, environment)
-    policy = _policy(data)
-    naming = _naming(read, policy)
-    files = tuple(_files(read))
+    given = {key: data[key] for key in POLICY if key in data}
+    lists = {key: tuple(listed(given[key])) for key in LISTS if key in given}
+    if "shared_frames" in lists and any(is_simulated(data, own) for own in data["robots"]):
+        # sdformat fixes a robot to the link of this name and to no other (parser_urdf.cc).
+        lists["shared_frames"] = tuple(dict.fromkeys((*lists["shared_frames"], WORLD_LINK)))
+    policy = cast(Policy, given | lists)
+    try:
+        naming = make_naming(**policy)
+    except UsageError as error:
+        # The schema covers everything except separators.
+        file, line = read.places.get(("separators",), (read.file, 1))
+        raise InputError(f"{file}:{line}: {error}") from None
+    vocabulary = tuple(listed(data.get("vocabulary", [])))
+    documents = nodl_files(tuple(listed(data.get("nodl", []))), read.places)
+    named = (data.get("nodes", ""), data.get("simulator_world", ""), *documents)
     robots = tuple(robot_spec(read, naming, at, release) for at in range(len(data["robots"])))
     _check_robots_differ(robots)
-    _check_world(read, naming)
+    world = data.get("world", "")
+    if world and world not in naming.shared_frames:
+        file, line = read.places["world",]
+        shared = ", ".join(sorted(naming.shared_frames)) or "none"
+        hint = "add it to shared_frames"
+        raise InputError(f"{file}:{line}: world {world!r} is not a shared frame ({shared}); {hint}")
     return FleetFile(
         read.file,
         policy,
-        data.get("world", ""),
+        world,
         release,
         data.get("installed", ""),
         data.get("nodes", ""),
         tuple(listed(data.get("nodl", []))),
-        tuple(listed(data.get("vocabulary", []))),
+        vocabulary,
         robots,
-        files,
+        tuple(filter(None, (*read.files, *named, *vocabulary))),
         _nodes(data, "shared_nodes"),
         data.get("sros2", False),
         data.get("params_style", ""),
@@ -139,46 +155,11 @@ def _release(data: Mapping[str, Any], given: str, environment: Mapping[str, str]
     return said if said.why else said._replace(why="the newest LTS")
 
 
-def _policy(data: Mapping[str, Any]) -> Policy:
-    given = {key: data[key] for key in POLICY if key in data}
-    lists = {key: tuple(listed(given[key])) for key in LISTS if key in given}
-    if "shared_frames" in lists and any(is_simulated(data, own) for own in data["robots"]):
-        # sdformat fixes a robot to the link of this name and to no other (parser_urdf.cc).
-        lists["shared_frames"] = tuple(dict.fromkeys((*lists["shared_frames"], WORLD_LINK)))
-    return cast(Policy, given | lists)
-
-
-def _files(read: FleetData) -> Iterator[str]:
-    """The files of a fleet that are no robot's own."""
-    data = read.data
-    described = nodl_files(tuple(listed(data.get("nodl", []))), read.places)
-    given = (data.get("nodes", ""), data.get("simulator_world", ""), *described)
-    yield from filter(None, (*read.files, *given, *listed(data.get("vocabulary", []))))
-
-
 def input_files(fleet: FleetFile) -> Iterator[str]:
     """Every file that it names, itself among them."""
     yield from fleet.files
     for robot in fleet.robots:
         yield from robot.files
-
-
-def _naming(read: FleetData, policy: Policy) -> Naming:
-    try:
-        return make_naming(**policy)
-    except UsageError as error:
-        # The schema covers everything except separators.
-        file, line = read.places.get(("separators",), (read.file, 1))
-        raise InputError(f"{file}:{line}: {error}") from None
-
-
-def _check_world(read: FleetData, naming: Naming) -> None:
-    world = read.data.get("world", "")
-    if world and world not in naming.shared_frames:
-        file, line = read.places["world",]
-        shared = ", ".join(sorted(naming.shared_frames)) or "none"
-        hint = "add it to shared_frames"
-        raise InputError(f"{file}:{line}: world {world!r} is not a shared frame ({shared}); {hint}")
 
 
 def _check_robots_differ(robots: Sequence[RobotSpec]) -> None:

@@ -99,7 +99,10 @@ def _continued(read: FleetData, count: int) -> Iterator[_Row]:
     before, pose = (robot.get(POSE, {}) for robot in (given[last - 1], given[last]))
     kept = {key: it for key, it in _without(given[last]).items() if key not in OWN}
     for more in range(1, count - last):
-        place = {it: _further(before, pose, it, more) for it in {**before, **pose}}
+        place = {}
+        for axis in {**before, **pose}:
+            step = pose.get(axis, 0) - before.get(axis, 0)
+            place[axis] = round(pose.get(axis, 0) + more * step, 6)
         row = {**kept, NAME: f"{stem}{number + more}"}
         yield last, {**row, POSE: place} if place else row
 
@@ -113,11 +116,6 @@ def _numbered(read: FleetData, count: int) -> tuple[str, int]:
         return names[-1]
     hint = f"write count: {count} into one of its robots, or call them robot1 and robot2"
     raise UsageError(f"count {count}: {read.file} does not say what more robots are called; {hint}")
-
-
-def _further(before: Mapping[str, float], pose: Mapping[str, float], axis: str, more: int) -> float:
-    step = pose.get(axis, 0) - before.get(axis, 0)
-    return round(pose.get(axis, 0) + more * step, 6)
 
 
 def _without(robot: Mapping[str, Any]) -> dict[str, Any]:
@@ -146,21 +144,17 @@ def parse_robots(text: str) -> Iterator[tuple[str, dict[str, float]]]:
         if name in seen:
             raise UsageError(f"robots: {name} is there twice; {_EXAMPLE}")
         seen.add(name)
-        yield name, _pose(name, pose)
-
-
-def _pose(name: str, text: str) -> dict[str, float]:
-    try:
-        # As Nav2 reads it: {x:1.0} without a space is no number.
-        value = load_yaml(text, "") if text else {}
-    except InputError:
-        value = None
-    wrong = f"robots: {name}: {text!r} is no pose"
-    if not isinstance(value, dict):
-        raise UsageError(f"{wrong}; {_EXAMPLE}")
-    for key, number in value.items():
-        if key not in AXES:
-            raise UsageError(f"{wrong}: {key!r} is none of {', '.join(AXES)}; {_EXAMPLE}")
-        if isinstance(number, bool) or not isinstance(number, int | float):
-            raise UsageError(f"{wrong}: {key} is {number!r}; write a number")
-    return value
+        try:
+            # As Nav2 reads it: {x:1.0} without a space is no number.
+            value = load_yaml(pose, "") if pose else {}
+        except InputError:
+            value = None
+        wrong = f"robots: {name}: {pose!r} is no pose"
+        if not isinstance(value, dict):
+            raise UsageError(f"{wrong}; {_EXAMPLE}")
+        for key, number in value.items():
+            if key not in AXES:
+                raise UsageError(f"{wrong}: {key!r} is none of {', '.join(AXES)}; {_EXAMPLE}")
+            if isinstance(number, bool) or not isinstance(number, int | float):
+                raise UsageError(f"{wrong}: {key} is {number!r}; write a number")
+        yield name, value

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError, UsageError
@@ -134,19 +134,40 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         companions.pop("bridge", None)
     texts = texts_of(listed(companions.get(PARAMS, [])), file)
     stacks = tuple(listed(own.get("stack", data.get("stack", []))))
-    _check_stacks(read, at, stacks, release)
+    try:
+        facts_of(stacks, data.get("nodes") or None, release, listed(data.get("nodl", [])))
+    except UsageError as error:
+        keys: tuple[Path, ...] = (("robots", at, "stack"), ("stack",), ("nodes",), ("nodl",))
+        file, line = next(read.places[it] for it in keys if it in read.places)
+        raise InputError(f"{file}:{line}: {error}") from None
+    namespace = str(own.get("namespace", name)).strip("/")
+    if "/" in namespace and naming.topics != NAMESPACE:
+        what = f"{name!r} has the namespace {namespace!r}, but here names get no namespace"
+        hint = "write one word, or take a layout with namespaces"
+        raise InputError(f"{place}: {what}; {hint}")
+    side, other = ("prefix", "postfix") if naming.affix == "prefix" else (naming.affix, "prefix")
+    if other in own:
+        what = f"{name!r} has a {other}, but the fleet's affix is {side}"
+        raise InputError(f"{place}: {what}; write {side}: instead")
+    # Parameters in the fleet file itself have the path of their text.
+    made = iter(texts)
+    files = {
+        kind: tuple(path if isinstance(path, str) else next(made) for path in listed(it))
+        for kind, it in companions.items()
+        if it
+    }
     return RobotSpec(
         name,
         description,
         own.get("srdf", data.get("srdf", "")),
         given_arguments(data, own, [description, *(str(it.description) for it in parts)], place),
-        _namespace(own, naming, place),
-        _tag(own, naming.affix, place),
+        namespace,
+        str(own.get(side, name)),
         own.get("model", name),
         _pose(own, place),
         _colour(own, place),
         stacks,
-        {kind: tuple(_files(listed(it), texts)) for kind, it in companions.items() if it},
+        files,
         file,
         line,
         tuple(_launch(data, own, place)),
@@ -158,12 +179,6 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         fills=own.get("fill_arguments", data.get("fill_arguments", True)),
         parts=parts,
     )
-
-
-def _files(values: Sequence[Any], texts: Iterable[str]) -> Iterator[str]:
-    """The paths of companions: of parameters in the fleet file itself that of their text."""
-    made = iter(texts)
-    yield from (it if isinstance(it, str) else next(made) for it in values)
 
 
 def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iterator[LaunchOrder]:
@@ -180,17 +195,6 @@ def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iter
             yield order._replace(arguments=tuple({**dict(order.arguments), **own_files}.items()))
     except UsageError as error:
         raise InputError(f"{place}: {own['name']!r}: {error}") from None
-
-
-def _check_stacks(read: FleetData, at: int, stacks: tuple[str, ...], release: str) -> None:
-    try:
-        nodl = listed(read.data.get("nodl", []))
-        facts_of(stacks, read.data.get("nodes") or None, release, nodl)
-    except UsageError as error:
-        own: Path = ("robots", at, "stack")
-        found = (it for it in (own, ("stack",), ("nodes",), ("nodl",)) if it in read.places)
-        file, line = read.places[next(found)]
-        raise InputError(f"{file}:{line}: {error}") from None
 
 
 def _pose(own: Mapping[str, Any], place: str) -> Pose | None:
@@ -211,23 +215,6 @@ def _colour(own: Mapping[str, Any], place: str) -> str | tuple[int, ...]:
     except InputError as error:
         raise InputError(f"{place}: {own['name']!r}: {error}") from None
     return colour
-
-
-def _namespace(own: Mapping[str, Any], naming: Naming, place: str) -> str:
-    namespace = str(own.get("namespace", own["name"])).strip("/")
-    if "/" in namespace and naming.topics != NAMESPACE:
-        what = f"{own['name']!r} has the namespace {namespace!r}, but here names get no namespace"
-        hint = "write one word, or take a layout with namespaces"
-        raise InputError(f"{place}: {what}; {hint}")
-    return namespace
-
-
-def _tag(own: Mapping[str, Any], side: str, place: str) -> str:
-    other = "postfix" if side == "prefix" else "prefix"
-    if other in own:
-        what = f"{own['name']!r} has a {other}, but the fleet's affix is {side}"
-        raise InputError(f"{place}: {what}; write {side}: instead")
-    return str(own.get(side, own["name"]))
 
 
 DESCRIPTION = "description"

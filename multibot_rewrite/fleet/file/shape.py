@@ -55,13 +55,14 @@ class Shape(NamedTuple):
 def shapes() -> Mapping[str, Shape]:
     """All shapes by name."""
     rows = load_own_yaml(fleet.__file__, "shapes.yaml")
-    return {name: _shape(row) for name, row in rows.items()}
-
-
-def _shape(it: dict[str, Any]) -> Shape:
-    launch = ({**row, "robots": row.get("for", "")} for row in it.pop("launch"))
-    rows = ({key: value for key, value in row.items() if key != "for"} for row in launch)
-    return Shape(**it, launch=tuple(TakingCommand(**row) for row in rows))
+    found = {}
+    for name, it in rows.items():
+        launch = [
+            {("robots" if key == "for" else key): value for key, value in row.items()}
+            for row in it.pop("launch")
+        ]
+        found[name] = Shape(**it, launch=tuple(TakingCommand(**row) for row in launch))
+    return found
 
 
 def with_shape(file: FleetFile) -> FleetFile:
@@ -90,22 +91,18 @@ def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
     """The robot with the places of its outputs, by the names that they have without a shape."""
     if not shape:
         return robot
-    made = dict(_kept(robot, shapes()[shape]))
+    made, companions = {}, robot.spec.companions
+    # The files that lie in a vendor's folder already.
+    for source in (*companions.get("params", ()), *companions.get(BRIDGE, ())):
+        folder = os.path.dirname(os.path.abspath(source))
+        for it in shapes()[shape].keeps:
+            if f"{folder}/".endswith(f"/{it}/"):
+                made[_plain_name(robot, source)] = f"{it}/{os.path.basename(source)}"
     for place, what in shapes()[shape].places.items():
         if place not in made.values():
             free = (name for name in _names_of(robot, what) if name not in made)
             made |= dict.fromkeys(itertools.islice(free, 1), place)
     return robot._replace(spec=robot.spec._replace(places=tuple(made.items())))
-
-
-def _kept(robot: RewrittenRobot, shape: Shape) -> Iterator[tuple[str, str]]:
-    """The files that lie in a vendor's folder already."""
-    companions = robot.spec.companions
-    for source in (*companions.get("params", ()), *companions.get(BRIDGE, ())):
-        folder = os.path.dirname(os.path.abspath(source))
-        for it in shape.keeps:
-            if f"{folder}/".endswith(f"/{it}/"):
-                yield _plain_name(robot, source), f"{it}/{os.path.basename(source)}"
 
 
 def name_of(robot: RewrittenRobot, what: str) -> str:

@@ -116,19 +116,16 @@ def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterato
     named = [it for it in every if is_called_as_switch(it) and every[it] in _OTHERS]
     yield from ((it, _OTHERS[every[it]]) for it in named[:MOST])
     text = b"\n".join(sources.values()).decode("utf-8", "replace")
+    # Those of a package whose plugin is there come first.
+    classes = sorted(_CLASSES, key=lambda it: it.partition("/")[0] not in text)
     words = (
         (name, word)
         for name, value in every.items()
         if value and value not in _OTHERS
-        for word in (*_compared(name, text), *(_classes(text) if _CLASS.fullmatch(value) else ()))
+        for word in (*_compared(name, text), *(classes if _CLASS.fullmatch(value) else ()))
         if word != value
     )
     yield from islice(words, MOST)
-
-
-def _classes(text: str) -> list[str]:
-    """The hardware classes of simulators, those of a package whose plugin is there first."""
-    return sorted(_CLASSES, key=lambda it: it.partition("/")[0] not in text)
 
 
 def _compared(name: str, text: str) -> list[str]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple, cast
 
 import yaml
@@ -16,7 +16,6 @@ from multibot_rewrite.companions.bridge_entry import BOTH, GZ, MODEL_SLOT, ROS
 from multibot_rewrite.companions.context import FileTemplate, fill_template
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.yaml_text import (
-    YamlText,
     blocks,
     cut_out,
     found_at,
@@ -62,7 +61,15 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
     topics, unbridged = bridged_topics(
         fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, fleet.placed
     )
-    groups = [_read(group) for group in group_robots(plan)]
+    groups = []
+    for group in group_robots(plan):
+        spec = group.robots[0].spec
+        above = spec.bridge_namespace_of
+        bridges = {
+            it: rewrite_bridge(own_yaml(spec, it), group.context, above=above(it))
+            for it in group.companions.get("bridge", ())
+        }
+        groups.append(GroupBridges(group, bridges))
     for group, files in groups:
         for file in files.values():
             yield from (
@@ -75,17 +82,18 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
             own = [it for it in unbridged if it.robot == robot.spec.namespace]
             texts = [it for it in made if isinstance(it, OutputFile)]
             given = plan.evidence_of(robot).arguments
-            open_ = (it for it in own if not _is_launched(it, given))
-            yield from (_unbridged(robot, it) for it in open_ if not _is_carried(it, texts, topics))
+            for it in own:
+                # A bridge of the robot's launch files may have an argument for it.
+                is_launched = bool(it.part) and any(it.part in word for word in given)
+                if is_launched or _is_carried(it, texts, topics):
+                    continue
+                # The line in the source: inserted text moves those of the result.
+                written = robot.member.inventory.document.root.iter(it.tag)
+                number = [cast("int", one.sourceline) for one in written].index(it.line)
+                line = line_of(robot.member.source, it.tag, number)
+                message = f"{it.what} of {it.robot} is not bridged: {it.why}"
+                yield NO_TOPIC.finding(message, it.hint, file=robot.spec.description, line=line)
     yield from _for_all(groups, topics, simulators(plan) == ["gz"])
-
-
-def _read(group: RobotGroup) -> GroupBridges:
-    paths = group.companions.get("bridge", ())
-    spec = group.robots[0].spec
-    above = spec.bridge_namespace_of
-    made = {it: rewrite_bridge(own_yaml(spec, it), group.context, above=above(it)) for it in paths}
-    return GroupBridges(group, made)
 
 
 def _for_robot(
@@ -137,25 +145,6 @@ def _is_carried(
     return False
 
 
-def _is_launched(topic: UnbridgedTopic, arguments: Iterable[str]) -> bool:
-    """Has a bridge of the robot's launch files an argument for it?"""
-    return bool(topic.part) and any(topic.part in it for it in arguments)
-
-
-def _line(robot: RewrittenRobot, topic: UnbridgedTopic) -> int:
-    """The line in the source: inserted text moves those of the result."""
-    written = robot.member.inventory.document.root.iter(topic.tag)
-    lines = [cast("int", it.sourceline) for it in written]
-    number = lines.index(topic.line)
-    return line_of(robot.member.source, topic.tag, number)
-
-
-def _unbridged(robot: RewrittenRobot, topic: UnbridgedTopic) -> Finding:
-    message = f"{topic.what} of {topic.robot} is not bridged: {topic.why}"
-    line = _line(robot, topic)
-    return NO_TOPIC.finding(message, topic.hint, file=robot.spec.description, line=line)
-
-
 # Topics that several gz topics may come out on.
 TF = frozenset({"/tf", "/tf_static"})
 # What gz-transport takes in a topic (gz-transport TopicUtils).
@@ -195,7 +184,12 @@ def merge_bridges(
             ros = _full(text_of(node, BOTH) or text_of(node, ROS) or text_of(node, GZ))
             # Topics for all robots, such as the clock, are bridged once, by the first file.
             if bridged.setdefault(gz, at) == at:
-                findings += _same_ros_topic(document, node, gz, ros, onto.setdefault(ros, gz))
+                first = onto.setdefault(ros, gz)
+                to_ros = text_of(node, "direction") != "ROS_TO_GZ"
+                if first != gz and ros not in TF and to_ros:
+                    message = f"gz topics {first} and {gz} are both bridged to ROS topic {ros}"
+                    hint = "give each its own ros_topic_name"
+                    findings.append(found_at(document, node, ONE_ROS_TOPIC, message, hint))
                 parts.append(moved(cut_out(document, start, end), -column))
     more = [it for it in generated if _full(it.gz) not in bridged]
     return "".join(parts) + as_yaml(more), tuple(findings)
@@ -206,11 +200,3 @@ def _full(name: str) -> str:
 
 
 ONE_ROS_TOPIC = declare("MF506", "bridge-two-on-one-topic", ERROR, formats=("bridge",))
-
-
-def _same_ros_topic(
-    document: YamlText, node: yaml.Node, gz: str, ros: str, first: str
-) -> Iterator[Finding]:
-    if first != gz and ros not in TF and text_of(node, "direction") != "ROS_TO_GZ":
-        message = f"gz topics {first} and {gz} are both bridged to ROS topic {ros}"
-        yield found_at(document, node, ONE_ROS_TOPIC, message, "give each its own ros_topic_name")

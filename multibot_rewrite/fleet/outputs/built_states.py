@@ -12,7 +12,6 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.manifest import folders_of
 from multibot_rewrite.fleet.outputs.params_style import ZONES
 from multibot_rewrite.producers.evidence.parameter_files import named_values
-from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import Parameter, System, nodes_by_robot
 
@@ -38,14 +37,10 @@ def with_built(plan: System, folder: str) -> System:
             other = known.setdefault(name, it)
             if other.value != it.value:
                 known[name] = it._replace(value="")
-    return plan._replace(parameters=tuple(_joined(plan, built)))
-
-
-def _joined(plan: System, built: dict[str, dict[str, Parameter]]) -> Iterator[Parameter]:
-    yield from plan.parameters
     said = {(it.node, it.name) for it in plan.parameters}
-    for parameters in built.values():
-        yield from (it for it in parameters.values() if it.value and (it.node, it.name) not in said)
+    made = (it for parameters in built.values() for it in parameters.values() if it.value)
+    more = (it for it in made if (it.node, it.name) not in said)
+    return plan._replace(parameters=(*plan.parameters, *more))
 
 
 def _of_robot(
@@ -58,7 +53,13 @@ def _of_robot(
             document = read_yaml(data, path)
             names = _names(document, robot, nodes)
             for node, values in named_values(document, names):
-                yield names[node], {it.name: it for it in _parameters(names[node], values)}
+                found = {}
+                for key, (value, place) in values.items():
+                    every = value if isinstance(value, list) else [value]
+                    texts = [it for it in every if isinstance(it, str)]
+                    if not any(it in text for text in texts for it in _PLACEHOLDERS):
+                        found[key] = Parameter(names[node], key, parameter_text(value), place)
+                yield names[node], found
 
 
 def _names(document: YamlText, robot: str, nodes: Sequence[str]) -> dict[str, str]:
@@ -70,12 +71,3 @@ def _names(document: YamlText, robot: str, nodes: Sequence[str]) -> dict[str, st
         return {it: it for it in nodes}
     above = f"/{robot}"
     return {it.removeprefix(above): it for it in nodes if it.startswith(f"{above}/")}
-
-
-def _parameters(node: str, values: dict[str, Given]) -> Iterator[Parameter]:
-    for name, (value, place) in values.items():
-        texts = [
-            it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str)
-        ]
-        if not any(it in text for text in texts for it in _PLACEHOLDERS):
-            yield Parameter(node, name, parameter_text(value), place)

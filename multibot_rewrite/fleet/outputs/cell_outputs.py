@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import yaml
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
+from multibot_rewrite.base.findings.finding import WARNING, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.engine import splices_of
@@ -21,7 +21,7 @@ from multibot_rewrite.companions.moveit.file_kind import NAMES, OF_SERVO, SIMPLE
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, read_config, targets
 from multibot_rewrite.companions.rviz.rewrite import RvizText
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, read_yaml, replaced, spliced
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml, replaced, spliced
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP, Cell
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -54,16 +54,25 @@ def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindin
     made = {it.path: it.data for it in files}
     tree = builtin_tree(plan.file.vocabulary, plan.file.distro)
     world = world_of(plan.file, plan.fleet.naming)
-    joined = joined_arms(cell, world, [_arm(robot) for robot in plan.robots], tree)
+    arms = [
+        Arm(spec.name, spec.tag, it.description, it.srdf, spec.pose, f"{spec.file}:{spec.line}")
+        for it in plan.robots
+        for spec in [it.spec]
+    ]
+    joined = joined_arms(cell, world, arms, tree)
     moveit = [(it, robot) for robot in plan.robots for it in _moveit(plan, robot, made)]
     planning = joined_moveit(it for it, _ in moveit)
     robot_of = {it.file: robot for it, robot in moveit}
     for file, what in planning.notes:
-        yield _disagree(robot_of[file], what)
+        spec, hint = robot_of[file].spec, "give all arms of the cell one value"
+        message = f"{spec.name!r}: {what}"
+        yield DISAGREE.finding(message, hint, file=spec.file, line=spec.line)
     texts = {name: data.decode() for name, data in planning.files.items()}
     urdf, srdf = (joined[it].decode() for it in (".urdf", ".srdf"))
     values = {_DESCRIPTION: urdf, **parameters_from(srdf, texts, plan.file.distro)}
-    sources = tuple(it for robot in plan.robots for it in _sources(robot))
+    specs = [robot.spec for robot in plan.robots]
+    files_of = ((it.description, it.srdf, *it.companions.get("moveit", ())) for it in specs)
+    sources = tuple(it for its in files_of for it in its)
     for ending, data in joined.items():
         yield OutputFile(f"{cell.name}/{cell.name}{ending}", data, sources)
     yield OutputFile(parameters_path(cell), parameter_file(values), sources)
@@ -81,17 +90,6 @@ def cell_commands(plan: FleetPlan) -> Iterator[str]:
         yield f"\n## {cell.name}\n\nOne move_group for all arms.\n\n```sh\n{line}\n```\n"
 
 
-def _arm(robot: RewrittenRobot) -> Arm:
-    spec = robot.spec
-    place = f"{spec.file}:{spec.line}"
-    return Arm(spec.name, spec.tag, robot.description, robot.srdf, spec.pose, place)
-
-
-def _sources(robot: RewrittenRobot) -> Iterator[str]:
-    spec = robot.spec
-    yield from (spec.description, spec.srdf, *spec.companions.get("moveit", ()))
-
-
 def _moveit(
     plan: FleetPlan, robot: RewrittenRobot, made: Mapping[str, bytes]
 ) -> Iterator[PartMoveit]:
@@ -100,19 +98,15 @@ def _moveit(
         path = path_for(robot, it)
         document = read_yaml(made[path], path)
         kind = file_kind(document)
-        _check_manager(document, robot)
+        found = next((it for key, it in entries(document.root) if key.value == _MANAGER), None)
+        if found is not None and str(found.value).endswith(f"/{_ONE_MANAGER}"):
+            place = f"{robot.spec.file}:{robot.spec.line}: cell: {robot.spec.name!r}"
+            what = f"{_MANAGER} is {_ONE_MANAGER}, which asks one controller manager"
+            raise InputError(f"{place}: {what}; write {SIMPLE}")
         if plan.fleet.naming.topics == NAMESPACE:
             _into_namespace(document.root, robot.spec.namespace)
         if kind != OF_SERVO:
             yield PartMoveit(path, kind, document)
-
-
-def _check_manager(document: YamlText, robot: RewrittenRobot) -> None:
-    found = next((it for key, it in entries(document.root) if key.value == _MANAGER), None)
-    if found is not None and str(found.value).endswith(f"/{_ONE_MANAGER}"):
-        place = f"{robot.spec.file}:{robot.spec.line}: cell: {robot.spec.name!r}"
-        what = f"{_MANAGER} is {_ONE_MANAGER}, which asks one controller manager"
-        raise InputError(f"{place}: {what}; write {SIMPLE}")
 
 
 def _into_namespace(node: yaml.Node | None, namespace: str) -> None:
@@ -124,13 +118,6 @@ def _into_namespace(node: yaml.Node | None, namespace: str) -> None:
         it.value = f"{namespace}/{it.value}"
     if SIMPLE in found:
         _into_namespace(found[SIMPLE], namespace)
-
-
-def _disagree(robot: RewrittenRobot, what: str) -> Finding:
-    spec = robot.spec
-    hint = "give all arms of the cell one value"
-    message = f"{spec.name!r}: {what}"
-    return DISAGREE.finding(message, hint, file=spec.file, line=spec.line)
 
 
 _GROUP = "group"
@@ -149,11 +136,7 @@ def cell_window(
     own = spell(first.names, _GROUP, groups[0].slot.value)
     group = next(iter(cell.groups), own)
     splices = [*splices_of(document.text, document.file, ((it, group) for it in groups))]
-    splices += _seen_from((fixed_frame(config), *targets(config)), world)
-    return RvizText(cell.name, spliced(document, splices))
-
-
-def _seen_from(nodes: tuple[yaml.Node | None, ...], world: str) -> Iterator[Splice]:
-    for it in nodes:
+    for it in (fixed_frame(config), *targets(config)):
         if isinstance(it, yaml.ScalarNode) and it.value not in ("", "<Fixed Frame>"):
-            yield replaced(it, world)
+            splices.append(replaced(it, world))
+    return RvizText(cell.name, spliced(document, splices))

@@ -17,7 +17,6 @@ from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_commands
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile, path_for
 from multibot_rewrite.fleet.outputs.relays import relays
 from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands
-from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.fleet.robots.start_poses import InitialPose, start_poses
 from multibot_rewrite.knowledge.conditions import said
@@ -55,7 +54,10 @@ def commands_file(
         relayed = (it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file))
         driven = (it.start for it in teleop.teleops(one))
         rows += [*_lines((*relayed, *moveit_commands(one), *driven), clock), "```\n"]
-        rows += _prefixed(robot)
+        if prefix := robot.frame_prefix:
+            rows.append(
+                f"\nStart its {STATE_PUBLISHER} with `-p frame_prefix:={prefix}` as well.\n"
+            )
         if taking := list(vendor_commands(one)):
             rows += [TAKING, *(f"{it}\n" for it in taking), "```\n"]
         # nav2_bringup takes one file, which has them.
@@ -70,12 +72,6 @@ def commands_file(
         lines = map("".join, zip(there, _lines((it for _, it in windows), both), strict=True))
         rows += ["\n## RViz\n\n```sh\n", *lines, "```\n"]
     yield OutputFile(COMMANDS, "".join(rows).encode())
-
-
-def _prefixed(robot: RewrittenRobot) -> Iterator[str]:
-    """What puts the robot's name before the frames of its description."""
-    if prefix := robot.frame_prefix:
-        yield f"\nStart its {STATE_PUBLISHER} with `-p frame_prefix:={prefix}` as well.\n"
 
 
 def _lines(starts: Iterable[Start], use_sim_time: bool | None) -> Iterator[str]:

@@ -20,13 +20,13 @@ from multibot_rewrite.companions.context import (
     make_template,
 )
 from multibot_rewrite.companions.formats import made_for_any
-from multibot_rewrite.companions.named_file import LUA, MOVEIT, PARAMS, TREE, Companion, NamedFile
+from multibot_rewrite.companions.named_file import LUA, MOVEIT, PARAMS, TREE, Companion
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.params.rewrite import rewrite_params, rewrite_values
 from multibot_rewrite.companions.params.shared_defaults import all_sections, missing_defaults
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.sites import found_in
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, read_yaml
+from multibot_rewrite.companions.yaml_text import Splice, read_yaml
 from multibot_rewrite.description.own_ports import said_of_numbers
 from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
@@ -39,11 +39,10 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
     text_of,
 )
-from multibot_rewrite.fleet.robots.rewritten_robots import OWN_PORTS, RewrittenRobot
+from multibot_rewrite.fleet.robots.rewritten_robots import OWN_PORTS
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.knowledge.parameter_entries import PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
-from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.launch.handed_on import HandedOn
 from multibot_rewrite.producers.launch.known_node import STATIC
@@ -82,13 +81,18 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
 
     Raises InputError for values that rcl refuses.
     """
+    import yaml
+
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
     values: dict[tuple[str, str], Mapping[str, Any]] = {}
     findings: list[Finding] = []
     numbers = {it.spec.name: at for at, it in enumerate(plan.robots)}
     for group in group_robots(plan):
         evidence = plan.evidence_of(group.robots[0])
         once = {it.name for it in evidence.nodes if it.shared}
-        job = _values_job(plan, group)
+        known, bare = _known(plan, group)
+        facts = facts_by_name(group.facts, plan.file.distro)
+        job = ParamsJob(read_yaml(b"", ""), group.context, known, facts, (), bare)
         given: dict[str, set[str]] = defaultdict(set)
         for run in evidence.given:
             given[run.node].update(run.values)
@@ -97,7 +101,10 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
                 # It is no robot's: its names stay.
                 values |= {(one.spec.name, name): it.values for one in group.robots if it.values}
                 continue
-            made = rewrite_values(job._replace(document=_document(name, it)))
+            # As a parameter file has them.
+            body = {it.kind or name: {"ros__parameters": dict(it.values)}}
+            data = yaml.dump(body, None, dumper, sort_keys=False, allow_unicode=True).encode()
+            made = rewrite_values(job._replace(document=read_yaml(data, it.place.file)))
             lacking = _lacking(group, name, it, job.known, given[name])
             if not (it.values or lacking):
                 continue
@@ -137,41 +144,42 @@ def _section(text: str, file: str) -> Mapping[str, Any]:
     return dict(found)
 
 
-def _document(name: str, it: HandedOn) -> YamlText:
-    """The parameters that a launch file sets for a node, as a parameter file has them."""
-    import yaml
-
-    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
-    body = {it.kind or name: {"ros__parameters": dict(it.values)}}
-    text = yaml.dump(body, None, dumper, sort_keys=False, allow_unicode=True)
-    return read_yaml(text.encode(), it.place.file)
-
-
-def _values_job(plan: FleetPlan, group: RobotGroup) -> ParamsJob:
-    """What the parameters of a robot's nodes are rewritten with, yet without any."""
-    known, bare = _known(plan, group)
-    facts = facts_by_name(group.facts, plan.file.distro)
-    return ParamsJob(read_yaml(b"", ""), group.context, known, facts, (), bare)
-
-
 def _known(plan: FleetPlan, group: RobotGroup) -> tuple[KnownNodes, frozenset[str]]:
     """What is known of nodes with the frames that they send, and those that prefix their frames."""
     evidence = plan.evidence_of(group.robots[0])
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
     bare = _at_run_time(plan.fleet.naming, evidence.given, known)
-    sent = _sent(evidence.nodes, group.context.names.declared["link"])
-    return known._replace(sent=known.sent | {*sent}), bare
+    links = group.context.names.declared["link"]
+    sent = {it for node in evidence.nodes for it in children_of(node)}
+    # A frame may be a link with a typing mistake.
+    return known._replace(sent=known.sent | {it for it in sent if not meant_name(it, links)}), bare
 
 
 def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesAndFindings:
     """A file for each robot of a group, and what is found in it."""
-    made = _made(plan, group, _KINDS[key], path)
+    spec = group.robots[0].spec
+    if _KINDS[key] == PARAMS:
+        made = _params(plan, group, path)
+    else:
+        text_made = text_of(spec, path)
+        made = made_for_any(_KINDS[key], text_made, path, group.context, group.facts)
     numbers = _numbers(plan, key, path)
     # Robots that differ in their descriptions may have one file.
     file = made.file._replace(is_for_one=made.file.is_for_one and len(numbers) == 1)
     found = (*made.findings, *wrong_in_file(plan, file, group.robots))
-    yield from (_with_names_of(group.robots[0], it) for it in found)
-    yield from _numbered(made.file, numbers)
+    for it in found:
+        # It is about any robot: slots have the names of this one.
+        message, hint = (
+            text.replace(NAMESPACE_SLOT, spec.namespace).replace(TAG_SLOT, spec.tag)
+            for text in (it.message, it.hint)
+        )
+        yield it._replace(message=message, hint=hint)
+    # The ports that robots get numbers of their own for.
+    for site in made.file.names if len(numbers) > 1 else ():
+        if site.kind == PORT and site.text.isdecimal() and int(site.text):
+            given = {name: int(site.text) + at * NUMBER_STEP for name, at in numbers.items()}
+            message, hint = said_of_numbers(site.key, given.items())
+            yield found_in(made.file.file, site.slot, OWN_PORTS, message, hint)
     for robot in group.robots:
         spec = robot.spec
         text = fill_template(made.template, spec.namespace, spec.tag, numbers[spec.name])
@@ -195,30 +203,6 @@ def _numbers(plan: FleetPlan, key: str, path: str) -> dict[str, int]:
     return {it.spec.name: at for at, it in enumerate(having)}
 
 
-def _numbered(file: NamedFile, numbers: Mapping[str, int]) -> Iterator[Finding]:
-    """The ports that robots get numbers of their own for."""
-    for site in file.names if len(numbers) > 1 else ():
-        if site.kind == PORT and site.text.isdecimal() and int(site.text):
-            given = {name: int(site.text) + at * NUMBER_STEP for name, at in numbers.items()}
-            message, hint = said_of_numbers(site.key, given.items())
-            yield found_in(file.file, site.slot, OWN_PORTS, message, hint)
-
-
-def _made(plan: FleetPlan, group: RobotGroup, kind: str, path: str) -> Companion:
-    if kind == PARAMS:
-        return _params(plan, group, path)
-    text = text_of(group.robots[0].spec, path)
-    return made_for_any(kind, text, path, group.context, group.facts)
-
-
-def _with_names_of(robot: RewrittenRobot, finding: Finding) -> Finding:
-    """A finding about a file for any robot, with the names of this robot in its slots."""
-    message, hint = finding.message, finding.hint
-    for slot, name in {NAMESPACE_SLOT: robot.spec.namespace, TAG_SLOT: robot.spec.tag}.items():
-        message, hint = message.replace(slot, name), hint.replace(slot, name)
-    return finding._replace(message=message, hint=hint)
-
-
 def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     """A ROS parameter file; what the robot's other parameter files set is not inserted in it."""
     read = params_of(group.robots[0].spec)
@@ -238,26 +222,15 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     )
 
 
-def _sent(nodes: Iterable[NodeFacts], links: Iterable[str]) -> Iterator[str]:
-    """The frames that nodes send, but for one that is a link with a typing mistake."""
-    sent = (it for node in nodes for it in children_of(node))
-    return (it for it in sent if not meant_name(it, links))
-
-
 def _at_run_time(naming: Naming, given: Iterable[Run], known: KnownNodes) -> frozenset[str]:
     """The nodes that put the robot's name before their frames, by their files and launch files: those
     frames stay bare."""
     if not naming.layout.at_run_time:
         return frozenset()
-    return frozenset(
-        node.node.rpartition("/")[2]
-        for node in given
-        if node.fact.known in known.nodes and any(_prefixes(known, node))
-    )
-
-
-def _prefixes(known: KnownNodes, node: Run) -> Iterator[str]:
-    params = known.nodes[node.fact.known].params
-    for name, given in node.values.items():
-        if given.value and name in params and params[name].kind in RUN_TIME:
-            yield name
+    found = set()
+    for node in (it for it in given if it.fact.known in known.nodes):
+        params = known.nodes[node.fact.known].params
+        prefixes = (it for it, value in node.values.items() if value.value and it in params)
+        if any(params[it].kind in RUN_TIME for it in prefixes):
+            found.add(node.node.rpartition("/")[2])
+    return frozenset(found)

@@ -56,7 +56,15 @@ def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tup
             made = os.path.join(folder, path_for(robot, same[0])).translate(ESCAPES)
             edits.append(Edit(*slot, made.encode(), None))
         elif not same and any(named_alike(path, it) for it in params):
-            findings.append(_unsure(robot, path))
+            own = path_for(robot, path)
+            message = (
+                f"robot {robot.spec.name!r} has {own}, and its description still loads {path!r}"
+            )
+            hint = "name this very file under params"
+            if not os.path.isfile(os.path.join(os.path.dirname(robot.spec.description), path)):
+                hint = "that file is not there: write the path of the one under params into"
+                hint = f"{hint} <{PARAMETERS}>"
+            findings.append(at_robot(OTHER_CONTROLLER_FILE, robot, message, hint))
     return b"".join(cut(source, sorted(edits))), tuple(findings)
 
 
@@ -113,15 +121,6 @@ def named_alike(path: str, file: str) -> bool:
     return os.path.basename(path) == os.path.basename(file)
 
 
-def _unsure(robot: RewrittenRobot, path: str) -> Finding:
-    made = path_for(robot, path)
-    message = f"robot {robot.spec.name!r} has {made}, and its description still loads {path!r}"
-    hint = "name this very file under params"
-    if not os.path.isfile(os.path.join(os.path.dirname(robot.spec.description), path)):
-        hint = f"that file is not there: write the path of the one under params into <{PARAMETERS}>"
-    return at_robot(OTHER_CONTROLLER_FILE, robot, message, hint)
-
-
 PARAMS = "params"
 NOT_FOLLOWED = declare("MF834", "loaded-file-not-found", NOTE, formats=("fleet",))
 
@@ -141,7 +140,9 @@ def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
             continue
         found = next(_found(path, file), "")
         if not found:
-            findings.append(_unknown(robot, path))
+            message = f"robot {spec.name!r}: its description loads {path!r}, which is not there"
+            hint = "list the file under params, or source the workspace that has it"
+            findings.append(at_robot(NOT_FOLLOWED, robot, message, hint))
         elif not any(named_alike(found, it) for it in more):
             more.append(found)
     companions = {**spec.companions, PARAMS: (*params, *more)} if more else spec.companions
@@ -162,9 +163,3 @@ def _found(path: str, description: str) -> Iterator[str]:
         if os.path.isfile(it):
             yield it
     yield from _in_sources(plain, description)
-
-
-def _unknown(robot: RewrittenRobot, path: str) -> Finding:
-    message = f"robot {robot.spec.name!r}: its description loads {path!r}, which is not there"
-    hint = "list the file under params, or source the workspace that has it"
-    return at_robot(NOT_FOLLOWED, robot, message, hint)

@@ -31,21 +31,16 @@ def configurations(plan: System, setup: FreeFleet) -> Iterator[tuple[str, bytes]
     """Each file by its path; raises UsageError for names that the adapter does not look for."""
     numbers, whose = domain_of(plan), whose_by_plan(plan)
     for robot in plan.robots:
-        if problem := _not_served(plan, robot):
-            raise UsageError(f"{FREE_FLEET}: {problem}")
+        # Why the adapter would find nothing of the robot.
+        tf, served = f"/{robot.name}/{TF_TOPICS[0]}", f"/{robot.name}/{_NAVIGATE}"
+        if robot.tf_topic != tf:
+            wanted = f"its adapter reads {tf}, and {robot.name} has {robot.tf_topic}"
+            raise UsageError(f"{FREE_FLEET}: {wanted}; take layout tf-per-robot or both")
+        if not any((it.kind, it.role, it.name) == (ACTION, SERVES, served) for it in plan.ends):
+            what = f"no node of {robot.name} serves {served}"
+            raise UsageError(f"{FREE_FLEET}: {what}; name the stack that does, as nav2")
         yield f"{FREE_FLEET}/{robot.name}.json5", _bridge(robot, numbers[robot.name], setup)
     yield f"{FREE_FLEET}/{ROBOTS_FILE}", _robots(plan, setup, whose).encode()
-
-
-def _not_served(plan: System, robot: Robot) -> str:
-    """Why the adapter would find nothing of a robot; empty where it does."""
-    if robot.tf_topic != f"/{robot.name}/{TF_TOPICS[0]}":
-        wanted = f"its adapter reads /{robot.name}/tf, and {robot.name} has {robot.tf_topic}"
-        return f"{wanted}; take layout tf-per-robot or both"
-    name = f"/{robot.name}/{_NAVIGATE}"
-    if not any((it.kind, it.role, it.name) == (ACTION, SERVES, name) for it in plan.ends):
-        return f"no node of {robot.name} serves {name}; name the stack that does, as nav2"
-    return ""
 
 
 def _bridge(robot: Robot, domain: int, setup: FreeFleet) -> bytes:
@@ -80,21 +75,17 @@ def _robots(plan: System, setup: FreeFleet, whose: Whose) -> str:
         "  robots:",
     ]
     for it in plan.robots:
+        own_map = (one for one in it.other_frames if whose.plain_frame(one) == _MAP)
         told = {
             "charger": setup.charger.replace("{robot}", it.name),
             "navigation_stack": 2,
             "initial_map": setup.map,
-            "map_frame": _map_frame(plan, it, whose),
+            "map_frame": _MAP if _MAP in plan.shared_frames else next(own_map, _MAP),
             "robot_frame": _robot_frame(plan, it, whose),
         }
         rows.append(f"    {it.name}:")
         rows += [f"      {key}: {json.dumps(value)}" for key, value in told.items()]
     return "\n".join((*rows, ""))
-
-
-def _map_frame(plan: System, robot: Robot, whose: Whose) -> str:
-    own = (it for it in robot.other_frames if whose.plain_frame(it) == _MAP)
-    return _MAP if _MAP in plan.shared_frames else next(own, _MAP)
 
 
 def _robot_frame(plan: System, robot: Robot, whose: Whose) -> str:

@@ -66,7 +66,12 @@ def own_world(
     edits += _own_paths(it)
     findings: list[Finding] = []
     for kind in _kinds(robots):
-        gone = [one for one in world.iterchildren("include", "model") if _is(one, kind, path)]
+        gone = []
+        for one in world.iterchildren("include", "model"):
+            uri = text_at(one, "uri")
+            found = model_file(uri, os.path.dirname(os.path.abspath(path))) if uri else ""
+            is_of_file = bool(found) and os.path.realpath(found) in kind.files
+            gone += [one] if is_of_file or _name(one) in kind.names else []
         names = kind.names | {name for one in gone if (name := _name(one))}
         for one in gone:
             edits.append(Edit(*it.spans.of(one), b"", None))
@@ -76,7 +81,12 @@ def own_world(
             if plugin not in inside:
                 for edit in _in_plugin(it, plugin, kind._replace(names=names)):
                     (edits if isinstance(edit, Edit) else findings).append(edit)  # type: ignore[arg-type]
-    return b"".join(cut(document.source, _apart(edits))), findings
+    # In order, without those inside of another one.
+    apart: list[Edit] = []
+    for edit in sorted(edits, key=lambda one: (one.start, -one.end)):
+        if not apart or edit.start >= apart[-1].end:
+            apart.append(edit)
+    return b"".join(cut(document.source, apart)), findings
 
 
 def world_topics(path: str) -> dict[str, str]:
@@ -101,15 +111,6 @@ def _sent(world: str, systems: Sequence[str]) -> dict[str, str]:
     }
 
 
-def _apart(edits: Sequence[Edit]) -> Iterator[Edit]:
-    """In order, without those inside of another one."""
-    end = 0
-    for edit in sorted(edits, key=lambda it: (it.start, -it.end)):
-        if edit.start >= end:
-            end = edit.end
-            yield edit
-
-
 def _kinds(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
     found: dict[str, list[RewrittenRobot]] = {}
     for it in robots:
@@ -119,25 +120,11 @@ def _kinds(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
         model = root if root.tag == "robot" else next(root.iter("model"), root)
         spec = alike[0].spec
         files = (os.path.realpath(one) for one in (spec.description, spec.simulated) if one)
-        names = {model.get("name", ""), *_prefix(root)} - {""}
+        # What stands before all links, as in wamv/base_link, is the name that its launch spawns it by.
+        links = [it.get("name", "") for it in root.iter("link") if it.get("name")]
+        prefixes = {it.partition("/")[0] if "/" in it else "" for it in links}
+        names = {model.get("name", ""), *(prefixes if len(prefixes) == 1 else ())} - {""}
         yield _Kind(alike, frozenset(names), frozenset(files))
-
-
-def _prefix(root: _Element) -> Iterator[str]:
-    """What stands before all links, as in wamv/base_link, is the name that its launch spawns it by."""
-    links = [it.get("name", "") for it in root.iter("link") if it.get("name")]
-    first = {it.partition("/")[0] for it in links if "/" in it}
-    if len(first) == 1 and all("/" in it for it in links):
-        yield from first
-
-
-def _is(one: _Element, kind: _Kind, path: str) -> bool:
-    """Is this model of the world the robot?"""
-    uri = text_at(one, "uri")
-    found = model_file(uri, os.path.dirname(os.path.abspath(path))) if uri else ""
-    if found and os.path.realpath(found) in kind.files:
-        return True
-    return _name(one) in kind.names
 
 
 def _name(one: _Element) -> str:
@@ -145,8 +132,10 @@ def _name(one: _Element) -> str:
 
 
 def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Finding]:
-    blocks = [one for one in plugin.iterchildren("*") if len(one) and _names(one, kind)]
-    for block in blocks:
+    for block in (one for one in plugin.iterchildren("*") if len(one)):
+        texts_in = (text_of(one) for one in block.iter("*") if not len(one))
+        if not any(_new(text, kind.robots[0], kind.names, False) for text in texts_in):
+            continue
         start, end = it.spans.of(block)
         texts = [_block(it, block, kind, robot) for robot in kind.robots]
         yield Edit(start, end, b"\n".join(texts), None)
@@ -162,14 +151,6 @@ def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Find
         first = kind.robots[0].spec.name
         message = f"{who} of the world names one robot in <{named[0].tag}>: now {first} alone"
         yield _said(it, named[0], message, WARNING)
-
-
-def _names(block: _Element, kind: _Kind) -> bool:
-    return any(
-        _new(text_of(one), kind.robots[0], kind.names, False)
-        for one in block.iter("*")
-        if not len(one)
-    )
 
 
 def _block(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> bytes:

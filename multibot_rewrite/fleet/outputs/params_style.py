@@ -24,7 +24,6 @@ from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputF
 from multibot_rewrite.fleet.outputs.shape_outputs import taken_as_they_are
 from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
 from multibot_rewrite.fleet.robots.start_poses import start_poses
-from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.stacks import load_stack
 
 # The stacks that are nav2_bringup's launch files.
@@ -102,7 +101,9 @@ def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
     left = [
         f"{end.name} of {run.node}"
         for run, end, name in plan.fleet.table.ends
-        if run.robot == first and run.node in started and _is_left(end, name)
+        if run.robot == first and run.node in started
+        if end.name.startswith("/") and end.name != name and end.name not in _TF
+        if not end.parameter and not end.fixed
     ]
     if left:
         message = f"nav2_bringup gives no remap rule for {', '.join(dict.fromkeys(left))}"
@@ -110,8 +111,3 @@ def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
             "all robots share them; if you use one, start Nav2 with nav2.launch.py of this package"
         )
         yield NO_RULE.finding(message, hint, file=plan.file.file, line=1)
-
-
-def _is_left(own: Endpoint, name: str) -> bool:
-    moved = own.name.startswith("/") and own.name != name and own.name not in _TF
-    return moved and not own.parameter and not own.fixed

@@ -104,18 +104,13 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     names = robot.names._replace(robot=spec.tag)
     topics = robot.topics._replace(robot=spec.namespace)
     known = fleet_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
-    rules = tuple(_own_rules(plan))
+    # The name and the rules of an rviz2 that the robot's stacks start.
+    own = next((it for it in plan.fleet.table.runs if it.robot and it.node == RVIZ), None)
+    rules = own.rules if own else ()
+    if own and not plan.fleet.naming.layout.namespaced:
+        rules = (("__node", own.name), *rules)
     prefix = spec.tag if names.naming.layout.at_run_time else ""
     return RvizRobot(spec.name, names, topics, spec.colour, known, prefix, rules)
-
-
-def _own_rules(plan: FleetPlan) -> Iterator[tuple[str, str]]:
-    """The name and the rules of an rviz2 that the robot's stacks start."""
-    table = plan.fleet.table
-    own = next((it for it in table.runs if it.robot and it.node == RVIZ), None)
-    if own and not plan.fleet.naming.layout.namespaced:
-        yield "__node", own.name
-    yield from own.rules if own else ()
 
 
 def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:

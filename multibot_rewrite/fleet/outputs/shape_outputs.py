@@ -6,13 +6,13 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import yaml
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.companions.yaml_text import YamlText, pairs, replaced, spliced
+from multibot_rewrite.companions.yaml_text import pairs, replaced, spliced
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.file.shape import REAL, SIMULATED, TakingCommand, name_of, shapes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -31,7 +31,13 @@ def vendor_commands(plan: FleetPlan) -> Iterator[str]:
             continue
         paths = {key: shlex.quote(_path(robot, name)) for key, name in files.items() if name}
         words = (f"{argument}:=$PWD/{path}" for argument, path in paths.items())
-        yield " ".join([it.command.format(**_words(robot)), *_pose(it, robot), *words])
+        spec, pose = robot.spec, (robot.spec.pose or Pose())._asdict()
+        clock = str(is_simulated(robot)).lower()
+        command = it.command.format(
+            namespace=spec.namespace, folder=f"$PWD/{spec.name}", clock=clock
+        )
+        placed = (f"{name}:={pose[name]}" for name in it.pose if pose[name])
+        yield " ".join([command, *placed, *words])
 
 
 def taken_as_they_are(plan: FleetPlan) -> set[str]:
@@ -54,9 +60,17 @@ def copied(plan: FleetPlan) -> Iterator[OutputFile]:
     for robot in plan.robots:
         for name, keys in wanted.items():
             source = os.path.join(os.path.dirname(robot.spec.description), name)
-            if os.path.isfile(source):
-                text = _with_namespace(yaml_of(source), keys, robot.spec.namespace)
-                yield OutputFile(f"{robot.spec.name}/{name}", text.encode(), (source,))
+            if not os.path.isfile(source):
+                continue
+            document = yaml_of(source)
+            node = document.root
+            for key in keys:
+                node = next((value for name_, value in pairs(node) if name_.value == key), None)
+            if not isinstance(node, yaml.ScalarNode) or node.style in ("|", ">"):
+                what = f"{document.file}: {'.'.join(keys)} is not one word"
+                raise InputError(f"{what}; write it: each robot gets its own namespace there")
+            text = spliced(document, [replaced(node, robot.spec.namespace)])
+            yield OutputFile(f"{robot.spec.name}/{name}", text.encode(), (source,))
 
 
 def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[TakingCommand]:
@@ -68,27 +82,5 @@ def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[TakingCommand]
             yield it
 
 
-def _words(robot: RewrittenRobot) -> dict[str, str]:
-    spec = robot.spec
-    clock = str(is_simulated(robot)).lower()
-    return {"namespace": spec.namespace, "folder": f"$PWD/{spec.name}", "clock": clock}
-
-
-def _pose(it: TakingCommand, robot: RewrittenRobot) -> Iterator[str]:
-    pose = (robot.spec.pose or Pose())._asdict()
-    yield from (f"{name}:={pose[name]}" for name in it.pose if pose[name])
-
-
 def _path(robot: RewrittenRobot, name: str) -> str:
     return f"{robot.spec.name}/{dict(robot.spec.places).get(name, name)}"
-
-
-def _with_namespace(document: YamlText, keys: Sequence[str], namespace: str) -> str:
-    """The text with another value of a key; raises InputError where it has no such key."""
-    node = document.root
-    for key in keys:
-        node = next((value for name, value in pairs(node) if name.value == key), None)
-    if not isinstance(node, yaml.ScalarNode) or node.style in ("|", ">"):
-        what = f"{document.file}: {'.'.join(keys)} is not one word"
-        raise InputError(f"{what}; write it: each robot gets its own namespace there")
-    return spliced(document, [replaced(node, namespace)])

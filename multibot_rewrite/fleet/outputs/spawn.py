@@ -7,11 +7,9 @@ Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spaw
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
-
-from lxml import etree
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.lazy import without_comments
@@ -73,7 +71,13 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
         pairs = pairwise(own.arguments if own else ())
         further = tuple(word for it in pairs if it[0] in _FURTHER for word in it)
         made.append(spawn(robot, known.get(DESCRIPTION, ""))._replace(further=further))
-        findings += _half(robot)
+        named, bare = _namespaces(robot)
+        # Where names have a postfix, a plugin needs no namespace.
+        if named and bare and robot.topics.naming.topics == NAMESPACE:
+            some = f"robot {robot.spec.name!r}: some plugins have a namespace"
+            hint = "add <ros><namespace> to these; -robot_namespace would overwrite the others"
+            message = f"{some}, but not {', '.join(bare)}"
+            findings.append(at_robot(PARTLY_NAMESPACED, robot, message, hint))
         findings += _other_models(robot)
         findings += _of_ros_1(robot)
         findings += without_mass(robot)
@@ -85,14 +89,13 @@ def in_folder(plan: FleetPlan) -> tuple[Spawn, ...]:
     planned node publishes; of an SDF none does."""
     sent = {name for _, end, name in plan.fleet.table.ends if end.role == PUBLISHES}
     made, _ = spawns(plan)
-    return tuple(_from_file(*it, sent) for it in zip(made, plan.robots, strict=True))
-
-
-def _from_file(it: Spawn, robot: RewrittenRobot, sent: Set[str]) -> Spawn:
-    is_sdf = robot.member.inventory.document.root.tag == "sdf"
-    if it.file or (it.topic in sent and not is_sdf):
-        return it
-    return it._replace(file=path_for(robot, expanded_name(robot.spec.description)))
+    found = []
+    for it, robot in zip(made, plan.robots, strict=True):
+        is_sdf = robot.member.inventory.document.root.tag == "sdf"
+        has_source = it.file or (it.topic in sent and not is_sdf)
+        path = path_for(robot, expanded_name(robot.spec.description))
+        found.append(it if has_source else it._replace(file=path))
+    return tuple(found)
 
 
 def is_classic(robot: RewrittenRobot) -> bool:
@@ -129,9 +132,9 @@ def spawner(it: Spawn, classic: bool) -> Start:
     program, named = (CLASSIC, "-entity") if classic else (GZ, "-name")
     last = ["-robot_namespace", f"/{it.namespace}"] if it.namespace else []
     more = last if classic else ["-allow_renaming=false"]
-    return Start(
-        *program, arguments=(named, it.model, *it.source, *_pose(it.pose), *more, *it.further)
-    )
+    values = it.pose._asdict()
+    pose = (word for key, flag in FLAGS.items() for word in (flag, str(values[key])))
+    return Start(*program, arguments=(named, it.model, *it.source, *pose, *more, *it.further))
 
 
 def either(it: Spawn, robot: RewrittenRobot) -> str:
@@ -158,38 +161,20 @@ def placed_at(words: Sequence[str | File], pose: Pose | None) -> Iterator[str | 
         before = word if isinstance(word, str) else ""
 
 
-def _pose(pose: Pose) -> list[str]:
-    values = pose._asdict()
-    return [word for key, flag in FLAGS.items() for word in (flag, str(values[key]))]
-
-
 def _namespaces(robot: RewrittenRobot) -> tuple[list[str], list[str]]:
     """The Gazebo Classic plugins of a description: those with a namespace, those without."""
     named: list[str] = []
     bare: list[str] = []
     for plugin in robot.member.inventory.document.root.iter("plugin"):
         if CLASSIC_PLUGIN in (plugin.get("filename") or ""):
-            (named if _namespace(plugin) else bare).append(plugin.get("name") or "")
+            # Without <ros> gazebo_ros reads the plugin element itself (node.cpp).
+            ros = plugin.find("ros")
+            space = text_at(plugin if ros is None else ros, "namespace")
+            (named if space else bare).append(plugin.get("name") or "")
     return named, bare
 
 
-def _namespace(plugin: etree._Element) -> str:
-    # Without <ros> gazebo_ros reads the plugin element itself (node.cpp).
-    ros = plugin.find("ros")
-    return text_at(plugin if ros is None else ros, "namespace")
-
-
 PARTLY_NAMESPACED = declare("MF706", "plugins-partly-namespaced", WARNING, formats=("fleet",))
-
-
-def _half(robot: RewrittenRobot) -> Iterator[Finding]:
-    """Where names have a postfix, a plugin needs no namespace."""
-    named, bare = _namespaces(robot)
-    if not (named and bare and robot.topics.naming.topics == NAMESPACE):
-        return
-    some = f"robot {robot.spec.name!r}: some plugins have a namespace"
-    hint = "add <ros><namespace> to these; -robot_namespace would overwrite the others"
-    yield at_robot(PARTLY_NAMESPACED, robot, f"{some}, but not {', '.join(bare)}", hint)
 
 
 MODEL_OF_OTHER_NAME = declare("MF707", "model-of-other-name", WARNING, formats=("fleet",))

@@ -46,14 +46,14 @@ class Teleop(NamedTuple):
 def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
     """How each robot is driven that reads velocity commands. Raises InputError for a bridge file that
     cannot be read."""
-    return tuple(teleop(plan, robot) for robot in plan.robots if _is_driven(plan, robot))
-
-
-def _is_driven(plan: FleetPlan, robot: RewrittenRobot) -> bool:
-    """Does something read velocity commands, or send them to a base that is not in the plan?"""
-    own = _ends(plan, robot)
-    sends = any(end.role == PUBLISHES and name == _usual(robot) for _, end, name in own)
-    return sends or bool(_obeyed([*_commands(plan, robot)]))
+    found = []
+    for robot in plan.robots:
+        # Something reads velocity commands, or sends them to a base that is not in the plan.
+        own = _ends(plan, robot)
+        sends = any(end.role == PUBLISHES and name == _usual(robot) for _, end, name in own)
+        if sends or _obeyed([*_commands(plan, robot)]):
+            found.append(teleop(plan, robot))
+    return tuple(found)
 
 
 def _ends(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, Endpoint, str]]:
@@ -72,8 +72,11 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
     usual, obeyed = _usual(robot), _obeyed(ends)
     topic = entry_of(usual if usual in obeyed or not obeyed else obeyed[0], ends)
     types = {it.type for it in ends if it.role == SUBSCRIBES and it.topic == topic}
-    with_stamp = STAMPED in types and PLAIN not in types
-    return Teleop(robot.spec.namespace, topic, with_stamp, _base(robot) if with_stamp else "")
+    if STAMPED not in types or PLAIN in types:
+        return Teleop(robot.spec.namespace, topic, False, "")
+    children = {edge.child for edge in robot.tree}
+    root = next((link for link in robot.links if link not in children), "")
+    return Teleop(robot.spec.namespace, topic, True, root)
 
 
 def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[CommandEnd]:
@@ -109,9 +112,3 @@ def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]
     own = {robot.spec.namespace: fleet.inventories[robot.spec.namespace]}
     made, _ = bridged_topics(own, fleet.naming, fleet.models, fleet.table.runs)
     yield from ((it.ros, it.ros_type) for it in made if it.direction == TO_GZ)
-
-
-def _base(robot: RewrittenRobot) -> str:
-    """The root link of the rewritten description."""
-    children = {edge.child for edge in robot.tree}
-    return next((link for link in robot.links if link not in children), "")

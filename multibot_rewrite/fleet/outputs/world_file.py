@@ -8,7 +8,7 @@ in src/systems (ign-gazebo6 of Humble calls the libraries ignition-gazebo-...).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.releases import has_release
@@ -46,15 +46,26 @@ def world_file(plan: FleetPlan) -> FilesAndFindings:
         simulated = [it for it in plan.robots if is_simulated(it)]
         models = [(it.spec.model, it.member.inventory.document.root) for it in simulated]
         spawning = {it: usual[it] for it, _ in needed_systems(models) if it in usual}
-        systems = "".join(_lacking(given, spawning, ours, usual).values())
+        world = read_document(read_file(given), given).root.find("world")
+        plugins = world.iterchildren("plugin") if world is not None else ()
+        there = [it.get("filename") or "" for it in plugins]
+        lacking = {
+            library: text
+            for library, text in (spawning | ours).items()
+            if not any(f"-{library}-system" in it for it in there)
+        }
+        if not there:
+            # To a world that names none those are added that Gazebo gives it.
+            lacking = usual | ours if ours else {}
+        systems = "".join(lacking.values())
         data, findings = own_world(given, simulated, systems, *plan.file.world_place)
         yield OutputFile(FILE, data, (given,))
         yield from findings
     elif ours:
         systems = "".join({**usual, **ours}.values())
         place = own_text(__file__, "place_on_earth.sdf") if "navsat" in ours else ""
-        world = own_text(__file__, "empty_world.sdf").format(systems=systems, place=place)
-        yield OutputFile(FILE, world.encode())
+        empty = own_text(__file__, "empty_world.sdf").format(systems=systems, place=place)
+        yield OutputFile(FILE, empty.encode())
 
 
 def _needed(robots: Sequence[RewrittenRobot], kind: str) -> dict[str, str]:
@@ -63,28 +74,11 @@ def _needed(robots: Sequence[RewrittenRobot], kind: str) -> dict[str, str]:
     types = {sensor.get("type", "") for root in roots for sensor in root.iter("sensor")}
     needed = dict(sorted(SYSTEMS[it] for it in types & SYSTEMS.keys()))
     found = systems_of(robots).items()
-    theirs = {_of_library(library): f"    {text}\n" for library, text in found}
-    return {**{it: _system(kind, it, name) for it, name in needed.items()}, **theirs}
-
-
-def _of_library(library: str) -> str:
-    return library.removeprefix("gz-sim-").removesuffix("-system")
-
-
-def _lacking(
-    path: str, spawning: Mapping[str, str], ours: Mapping[str, str], usual: Mapping[str, str]
-) -> Mapping[str, str]:
-    """The systems that a world lacks; to one that names none those are added that Gazebo gives it."""
-    world = read_document(read_file(path), path).root.find("world")
-    plugins = world.iterchildren("plugin") if world is not None else ()
-    there = [it.get("filename") or "" for it in plugins]
-    if not there:
-        return {**usual, **ours} if ours else {}
-    return {
-        library: text
-        for library, text in {**spawning, **ours}.items()
-        if not any(f"-{library}-system" in it for it in there)
+    theirs = {
+        library.removeprefix("gz-sim-").removesuffix("-system"): f"    {text}\n"
+        for library, text in found
     }
+    return {**{it: _system(kind, it, name) for it, name in needed.items()}, **theirs}
 
 
 def _system(kind: str, library: str, name: str) -> str:

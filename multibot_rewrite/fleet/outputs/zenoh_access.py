@@ -9,7 +9,8 @@ with ``@adv`` (zenoh-ext ``advanced_publisher.rs``); ``**`` does not match a par
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import takewhile
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import OF_EVERY_NODE, SENT_BY_ANY_NODE
@@ -67,7 +68,18 @@ def rights(plan: System, domain: int) -> list[Rights]:
         if robot := owner.get(end.node):
             by_robot[robot].append(end)
     nodes = nodes_by_robot(plan)
-    spaces = _own_spaces(nodes, by_robot)
+    names = {
+        robot: [*nodes[robot], *(end.name for end in ends)] for robot, ends in by_robot.items()
+    }
+    # The namespace that all nodes of a robot are in, where no other robot has a name.
+    spaces = {}
+    for robot in by_robot:
+        levels = zip(*(node.split("/")[1:-1] for node in nodes[robot]), strict=False)
+        common = [it[0] for it in takewhile(lambda it: len(set(it)) == 1, levels)]
+        space = f"/{'/'.join(common)}/"
+        others = (name for other, mine in names.items() if other != robot for name in mine)
+        if common and not any(name.startswith(space) for name in others):
+            spaces[robot] = space
     found = [
         _rights(
             robot,
@@ -103,32 +115,6 @@ def _with_bridge(
         tuple(dict.fromkeys((*given.hears, *_latched(sorted(hears))))),
         tuple(dict.fromkeys((*given.domains, *at.values()))),
     )
-
-
-def _own_spaces(
-    nodes: Mapping[str, Sequence[str]], by_robot: Mapping[str, Sequence[End]]
-) -> dict[str, str]:
-    """The namespace that all nodes of a robot are in, where no other robot has a name."""
-    names = {
-        robot: [*nodes[robot], *(end.name for end in ends)] for robot, ends in by_robot.items()
-    }
-    found = {}
-    for robot in by_robot:
-        space = _common_space(nodes[robot])
-        others = (name for other, mine in names.items() if other != robot for name in mine)
-        if space and not any(name.startswith(space) for name in others):
-            found[robot] = space
-    return found
-
-
-def _common_space(nodes: Sequence[str]) -> str:
-    """``/robot1/`` for ``/robot1/amcl`` and ``/robot1/local_costmap/x``; empty for the root."""
-    common: list[str] = []
-    for parts in zip(*(node.split("/")[1:-1] for node in nodes), strict=False):
-        if len(set(parts)) > 1:
-            break
-        common.append(parts[0])
-    return f"/{'/'.join(common)}/" if common else ""
 
 
 def _rights(
@@ -208,12 +194,8 @@ def access_control(parts: Iterable[tuple[dict[str, object], Sequence[Rule]]]) ->
         "default_permission": "deny",
         "rules": [rule for _, rules in given for rule in rules],
         "subjects": [subject for subject, _ in given],
-        "policies": list(_policies(given)),
+        "policies": [
+            {"rules": [rule["id"] for rule in rules], "subjects": [subject["id"]]}
+            for subject, rules in given
+        ],
     }
-
-
-def _policies(
-    given: Iterable[tuple[dict[str, object], Sequence[Rule]]],
-) -> Iterator[dict[str, object]]:
-    for subject, rules in given:
-        yield {"rules": [rule["id"] for rule in rules], "subjects": [subject["id"]]}

@@ -56,10 +56,36 @@ def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
     """Each file by name: the router's, one for the nodes of each robot, one for each operator."""
     known = rights(plan, setup.domain)
     domains = sorted({*domain_of(plan).values()}) or [setup.domain]
-    yield ROUTER_FILE, _text(_router(known, setup, domains), _about_router(setup))
+    # On every address, at the port that the robots connect to.
+    protocol, _, address = _endpoint(setup).partition("/")
+    listening = f"{protocol}/0.0.0.0:{address.rpartition(':')[2]}"
+    config: Config = {"mode": "router", "listen": {"endpoints": [listening]}}
+    config |= _common(_ROUTER_ENCLAVE, setup)
+    about = f"The fleet's router: {_start(ROUTER_FILE)}."
+    if setup.keystore:
+        parts = [(_subject(f"/{it.robot}"), robot_rules(it, FLEET_ROUTER)) for it in known]
+        parts += [(_subject(it), [all_rule(it, domains)]) for it in setup.operators]
+        config["access_control"] = access_control(parts)
+        about = f"{about} It tells robots apart by their certificates"
+    else:
+        about = (
+            f"{about} Without a keystore it cannot tell robots apart, so each robot's"
+            " own file is all that keeps it from the others"
+        )
+    yield ROUTER_FILE, _text(config, about)
     for given in known:
         name = f"{given.robot}.json5"
-        yield name, _text(_robot(given, setup), f"The nodes of {given.robot}: {_session(name)}")
+        # A client of the fleet's router, or a peer beside a router of its own.
+        config = _client(f"/{given.robot}", setup)
+        if setup.own_routers:
+            config = {
+                "mode": "peer",
+                "connect": {"endpoints": [LOCAL_ROUTER]},
+                "listen": {"endpoints": ["tcp/localhost:0"]},
+                **_common("", setup._replace(keystore="")),
+            }
+        config["access_control"] = access_control([(_ANYBODY, robot_rules(given))])
+        yield name, _text(config, f"The nodes of {given.robot}: {_session(name)}")
         if setup.own_routers:
             name = f"{given.robot}_router.json5"
             about = f"The router on {given.robot}: {_start(name)}"
@@ -92,16 +118,6 @@ def _session(name: str) -> str:
     return f"export ZENOH_SESSION_CONFIG_URI={name} (its full path)"
 
 
-def _about_router(setup: Setup) -> str:
-    start = _start(ROUTER_FILE)
-    if setup.keystore:
-        return f"The fleet's router: {start}. It tells robots apart by their certificates"
-    return (
-        f"The fleet's router: {start}. Without a keystore it cannot tell robots apart, so each robot's"
-        " own file is all that keeps it from the others"
-    )
-
-
 def _text(config: Config, about: str) -> bytes:
     return f"// {about}.\n{json.dumps(config, indent=2)}\n".encode()
 
@@ -110,42 +126,21 @@ def _common(enclave: str, setup: Setup) -> Config:
     """What rmw_zenoh sets for ROS, and the certificates."""
     config: Config = json.loads(own_text(__file__, "zenoh_session.json"))
     if setup.keystore:
-        own = {"protocols": ["tls"], "tls": _certificates(enclave, setup)}
-        config["transport"]["link"] |= own
+        # As ``zenoh_security_tools`` writes them: both sides show a certificate of the keystore.
+        folder = f"{setup.keystore}/enclaves{enclave}"
+        key, certificate = f"{folder}/key.pem", f"{folder}/cert.pem"
+        tls = {
+            "enable_mtls": True,
+            # Certificates of sros2 name an enclave, not a host.
+            "verify_name_on_connect": False,
+            "root_ca_certificate": f"{folder}/identity_ca.cert.pem",
+            "listen_private_key": key,
+            "listen_certificate": certificate,
+            "connect_private_key": key,
+            "connect_certificate": certificate,
+        }
+        config["transport"]["link"] |= {"protocols": ["tls"], "tls": tls}
     return config
-
-
-def _certificates(enclave: str, setup: Setup) -> Config:
-    """As ``zenoh_security_tools`` writes them: both sides show a certificate of the keystore."""
-    folder = f"{setup.keystore}/enclaves{enclave}"
-    key, certificate = f"{folder}/key.pem", f"{folder}/cert.pem"
-    return {
-        "enable_mtls": True,
-        # Certificates of sros2 name an enclave, not a host.
-        "verify_name_on_connect": False,
-        "root_ca_certificate": f"{folder}/identity_ca.cert.pem",
-        "listen_private_key": key,
-        "listen_certificate": certificate,
-        "connect_private_key": key,
-        "connect_certificate": certificate,
-    }
-
-
-def _router(known: Sequence[Rights], setup: Setup, domains: Sequence[int]) -> Config:
-    config = {"mode": "router", "listen": {"endpoints": [_listening(setup)]}}
-    config |= _common(_ROUTER_ENCLAVE, setup)
-    if setup.keystore:
-        parts = [(_subject(f"/{it.robot}"), robot_rules(it, FLEET_ROUTER)) for it in known]
-        for enclave in setup.operators:
-            parts.append((_subject(enclave), [all_rule(enclave, domains)]))
-        config["access_control"] = access_control(parts)
-    return config
-
-
-def _listening(setup: Setup) -> str:
-    """On every address, at the port that the robots connect to."""
-    protocol, _, address = _endpoint(setup).partition("/")
-    return f"{protocol}/0.0.0.0:{address.rpartition(':')[2]}"
 
 
 def _endpoint(setup: Setup) -> str:
@@ -155,20 +150,6 @@ def _endpoint(setup: Setup) -> str:
 
 def _subject(enclave: str) -> Config:
     return {"id": enclave, "cert_common_names": [enclave]}
-
-
-def _robot(given: Rights, setup: Setup) -> Config:
-    """A robot's nodes: clients of the fleet's router, or peers beside a router of their own."""
-    config = _client(f"/{given.robot}", setup)
-    if setup.own_routers:
-        config = {
-            "mode": "peer",
-            "connect": {"endpoints": [LOCAL_ROUTER]},
-            "listen": {"endpoints": ["tcp/localhost:0"]},
-            **_common("", setup._replace(keystore="")),
-        }
-    config["access_control"] = access_control([(_ANYBODY, robot_rules(given))])
-    return config
 
 
 def _own_router(given: Rights, setup: Setup) -> Config:
@@ -208,18 +189,14 @@ def zenoh_of(read: FleetData) -> Setup | None:
         given.get("own_routers", False),
     )
     file, line = read.places[ZENOH,]
-    for what in _faults(setup, [it["name"] for it in read.data["robots"]]):
-        raise InputError(f"{file}:{line}: zenoh: {what}")
-    return setup
-
-
-def _faults(setup: Setup, robots: Sequence[str]) -> Iterator[str]:
+    place = f"{file}:{line}: zenoh:"
     if setup.operators and not setup.keystore:
-        yield "operators are known by certificates: give keystore as well"
-    for it in setup.operators:
-        if not it.startswith("/"):
-            yield f"{it!r} is no enclave; write /{it}"
-    names = file_names(robots, setup)
+        what = "operators are known by certificates: give keystore as well"
+        raise InputError(f"{place} {what}")
+    for it in (it for it in setup.operators if not it.startswith("/")):
+        raise InputError(f"{place} {it!r} is no enclave; write /{it}")
+    names = file_names([it["name"] for it in read.data["robots"]], setup)
     for name in sorted({it for it in names if names.count(it) > 1}):
-        word = name.removesuffix(".json5")
-        yield f"two of robots, operators and router are {word}; choose another name for one"
+        what = f"two of robots, operators and router are {name.removesuffix('.json5')}"
+        raise InputError(f"{place} {what}; choose another name for one")
+    return setup

@@ -7,7 +7,7 @@ They are texts of files that are on no disk; what reads a file of a robot takes 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from lxml import etree
@@ -18,9 +18,9 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.companions.join import Joined, join_plain
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, RVIZ
-from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
+from multibot_rewrite.description.joining.join import GivenPart, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
-from multibot_rewrite.description.joining.part import Part, ReadPart
+from multibot_rewrite.description.joining.part import Part
 from multibot_rewrite.description.joining.semantic import PartSemantics, joined_srdf, xml_text
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
@@ -43,22 +43,24 @@ def with_joined(file: FleetFile, trust: bool) -> tuple[FleetFile, Mapping[str, S
         if not it.parts or it.description in dict(it.filled):
             robots.append(it)
             continue
-        given = tuple(_with_arguments(part, it) for part in it.parts)
+        own = filled(it.arguments, it.name)
+        given = tuple(
+            part._replace(xacro_args={**own, **part.xacro_args})
+            if is_xacro(str(part.description))
+            else part
+            for part in it.parts
+        )
         key = repr(given)
         if key not in found:
             tree = builtin_tree(file.vocabulary, file.distro)
             found[key] = join_plain(given, f"{it.file}:{it.line}", tree, trust)
-            notes[it.name] = [_note(it, text) for text in found[key].notes]
+            hint = "see what it means for the robot; multibot join shows the files"
+            said = (f"robot {it.name!r} is joined of parts: {text}" for text in found[key].notes)
+            notes[it.name] = [
+                ABOUT_PARTS.finding(text, hint, file=it.file, line=it.line) for text in said
+            ]
         robots.append(_with_files(it, found[key]))
     return file._replace(robots=tuple(robots)), notes
-
-
-def _with_arguments(part: Part, robot: RobotSpec) -> Part:
-    """The part with the arguments of its robot besides its own, if it is a xacro."""
-    if not is_xacro(str(part.description)):
-        return part
-    given = {**filled(robot.arguments, robot.name), **part.xacro_args}
-    return part._replace(xacro_args=given)
 
 
 def _with_files(robot: RobotSpec, made: Joined) -> RobotSpec:
@@ -79,12 +81,6 @@ def _with_files(robot: RobotSpec, made: Joined) -> RobotSpec:
             companions[kind] = (*more, *companions.get(kind, ()))
     filled_in = ((path, data.decode()) for path, data in texts.items())
     return robot._replace(companions=companions, filled=(*robot.filled, *filled_in))
-
-
-def _note(robot: RobotSpec, text: str) -> Finding:
-    message = f"robot {robot.name!r} is joined of parts: {text}"
-    hint = "see what it means for the robot; multibot join shows the files"
-    return ABOUT_PARTS.finding(message, hint, file=robot.file, line=robot.line)
 
 
 # Several arms as one robot: the robots of a cell, as they are written, joined at one world link.
@@ -125,52 +121,34 @@ def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapp
         part = Part("", world, tuple(arm.pose or _STANDING), name=arm.tag)
         parts.append(GivenPart(part, arm.urdf, arm.where))
     made = join_texts(parts, tree)
-    semantics = _semantics(made, world, arms)
+    own, *others = (it.part for it in made.parts)
+    semantics = [PartSemantics(own, b"", "")]
+    for arm, read in zip(arms, others, strict=True):
+        if read.root == world and arm.pose not in (None, _STANDING):
+            what = f"has a pose, but its description fixes it to {world!r}"
+            raise InputError(f"{arm.where} {what}; set shared_frames: [map], or remove the pose")
+        if read.root != world and arm.pose is None:
+            what = f"has no pose; write where it stands in {world!r}: pose: {{x: 0.5}}"
+            raise InputError(f"{arm.where} {what}")
+        # A virtual joint says where an arm stands; in a cell the URDF does.
+        for it in read_xml(arm.srdf, arm.place).iterchildren("virtual_joint"):
+            if it.get("type") != "fixed":
+                what = f"its virtual joint {it.get('name')!r} is {it.get('type')}"
+                raise InputError(f"{arm.where}: {what}; an arm of a cell stands: make it fixed")
+        semantics.append(PartSemantics(read, arm.srdf, arm.where))
     srdf = read_xml(joined_srdf(semantics, made.data, hint=_HINT).data, cell.place)
     _add_groups(srdf, cell)
     return {".urdf": without_marks(made.data), ".srdf": xml_text(srdf)}
 
 
-def _semantics(made: JoinedText, world: str, arms: Sequence[Arm]) -> list[PartSemantics]:
-    first, *others = (it.part for it in made.parts)
-    found = [PartSemantics(first, b"", "")]
-    for arm, part in zip(arms, others, strict=True):
-        _check_place(arm, part, world)
-        _check_stands(arm)
-        found.append(PartSemantics(part, arm.srdf, arm.where))
-    return found
-
-
-def _check_place(arm: Arm, part: ReadPart, world: str) -> None:
-    if part.root == world and arm.pose not in (None, _STANDING):
-        what = f"has a pose, but its description fixes it to {world!r}"
-        raise InputError(f"{arm.where} {what}; set shared_frames: [map], or remove the pose")
-    if part.root != world and arm.pose is None:
-        what = f"has no pose; write where it stands in {world!r}: pose: {{x: 0.5}}"
-        raise InputError(f"{arm.where} {what}")
-
-
-def _check_stands(arm: Arm) -> None:
-    """A virtual joint says where an arm stands; in a cell the URDF does."""
-    for it in read_xml(arm.srdf, arm.place).iterchildren("virtual_joint"):
-        if it.get("type") != "fixed":
-            what = f"its virtual joint {it.get('name')!r} is {it.get('type')}"
-            raise InputError(f"{arm.where}: {what}; an arm of a cell stands: make it fixed")
-
-
 def _add_groups(srdf: _Element, cell: Cell) -> None:
     known = [it.get("name", "") for it in srdf.iterchildren("group")]
     for name, parts in cell.groups.items():
-        for what in _faults(name, parts, known):
-            raise InputError(f"{cell.place}: cell: group {name!r}{what}")
+        place = f"{cell.place}: cell: group {name!r}"
+        if name in known:
+            raise InputError(f"{place} is a group of one arm; write another name")
+        for it in (it for it in parts if it not in known):
+            near = did_you_mean_one_of(it, known) or "name a group of an SRDF"
+            raise InputError(f"{place}: no arm has a group {it!r}; {near}")
         group = etree.SubElement(srdf, "group", name=name)
         group.extend(etree.Element("group", name=it) for it in parts)
-
-
-def _faults(name: str, parts: Sequence[str], known: Sequence[str]) -> Iterator[str]:
-    if name in known:
-        yield " is a group of one arm; write another name"
-    for it in parts:
-        if it not in known:
-            near = did_you_mean_one_of(it, known) or "name a group of an SRDF"
-            yield f": no arm has a group {it!r}; {near}"

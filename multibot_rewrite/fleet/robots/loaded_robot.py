@@ -195,9 +195,11 @@ class LoadedRobot:
         empty dict. Raises UsageError for an unknown node, and as ``text`` and
         ``LoadedFleet.parameters`` for the file.
         """
-        document = self._read(file)
+        document = self._fleet.parameters(self._own(file))
         known = node in self.table.nodes
-        full = self.table.full_name(node) if known else self._placed(node)
+        release, naming = self._fleet.planned.table.release, self._robot.topics.naming
+        above, name = placed(self._graph, node, naming, is_apart(node, release))
+        full = self.table.full_name(node) if known else f"{above.rstrip('/')}/{name}"
         exact = exact_nodes(document)
         if not known and full not in exact:
             own = {it.removeprefix(f"/{self._graph}/").lstrip("/") for it in exact}
@@ -316,11 +318,3 @@ class LoadedRobot:
         made = self._fleet.placed.initial
         own = (it for it in made if it.robot == self._graph and it.node == node)
         return next((dict(it.values) for it in own), {})
-
-    def _placed(self, node: str) -> str:
-        apart = is_apart(node, self._fleet.planned.table.release)
-        namespace, name = placed(self._graph, node, self._robot.topics.naming, apart)
-        return f"{namespace.rstrip('/')}/{name}"
-
-    def _read(self, file: str) -> YamlText:
-        return self._fleet.parameters(self._own(file))

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import islice
 from typing import NamedTuple
 
@@ -16,8 +15,8 @@ from multibot_rewrite.description.checks.arguments import UNREAD
 from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
 from multibot_rewrite.description.library import Rewrite
 from multibot_rewrite.description.readback.meeting import SHARED_CODES
-from multibot_rewrite.description.readback.nodes import rules_of
-from multibot_rewrite.description.readback.reading import Reading, read
+from multibot_rewrite.description.readback.nodes import RuntimeName, rules_of
+from multibot_rewrite.description.readback.reading import FRAME, Reading, read
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
@@ -34,7 +33,7 @@ class Member(NamedTuple):
     robots of it would have, ``unread`` about arguments that its xacro does not know; ``read`` are the
     files that were read for it, ``plain`` the names that arguments of its xacro make, by what they are
     without. ``handed_on`` are the remap rules of a plugin with a controller manager, as they are in
-    ``source``.
+    ``source``. ``published`` are frames of ``described`` that the simulator's file has not.
     """
 
     robot: str
@@ -50,6 +49,7 @@ class Member(NamedTuple):
     read: tuple[str, ...]
     plain: NameTexts
     handed_on: tuple[RemapRule, ...] = ()
+    published: tuple[RuntimeName, ...] = ()
 
     @property
     def vocabulary(self) -> Vocabulary:
@@ -77,11 +77,17 @@ def member(
     shared = tuple(it for it in source.findings if it.code in SHARED_CODES)
     unread = tuple(it for it in source.findings if it.code == UNREAD)
     job = source.prepared.job
-    handed_on = () if real else tuple(_handed_on(source.template.inventory))
+    wide = (it for it, section in source.template.inventory.served if section.process_wide)
+    handed_on = () if real else tuple(rule for it in wide for rule in rules_of(it))
     words = (shared, unread, job.read.files, job.own.plain, handed_on)
-    sent = (described.described, described.sent) if described else (written, document)
-    files = (sent[0], written, reading, document, sent[1])
-    return Member(source.robot, tag, *files, tree, *words)
+    if not described:
+        return Member(
+            source.robot, tag, written, written, reading, document, document, tree, *words
+        )
+    frames = {it.name for it in reading.names if it.kind == FRAME}
+    others = (it for it in described.reading.names if it.kind == FRAME and it.name not in frames)
+    files = (described.described, written, reading, document, described.sent)
+    return Member(source.robot, tag, *files, tree, *words, published=tuple(others))
 
 
 def with_text(it: Member, data: bytes) -> Member:
@@ -91,12 +97,6 @@ def with_text(it: Member, data: bytes) -> Member:
     described = written if it.described is it.inventory else it.described
     reading = read(data, file, it.vocabulary)
     return it._replace(described=described, inventory=written, reading=reading)
-
-
-def _handed_on(inventory: Inventory) -> Iterator[RemapRule]:
-    for element, section in inventory.served:
-        if section.process_wide:
-            yield from rules_of(element)
 
 
 def without_simulator(data: bytes, file: str) -> bytes:

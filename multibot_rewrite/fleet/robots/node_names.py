@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.arguments import checked
@@ -74,7 +74,14 @@ class NodeNames(NamedTuple):
         """The other nodes in the process that is started for this one: costmaps, components; raises
         nothing."""
         homes = {it.node: it.fact.host or it.fact.container for it in self.nodes.values()}
-        return [name for name in homes if node in _above(name, homes)]
+        found = []
+        for name in homes:
+            # The nodes whose process this one is in, nearest first.
+            above = homes.get(name, "")
+            while above and above != node:
+                above = homes.get(above, "")
+            found += [name] if above else []
+        return found
 
     @checked
     def name(self, node: str) -> str:
@@ -99,12 +106,6 @@ class NodeNames(NamedTuple):
         raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
 
 
-def _above(name: str, homes: Mapping[str, str]) -> Iterator[str]:
-    """The nodes whose process this one is in, nearest first."""
-    while name := homes.get(name, ""):
-        yield name
-
-
 def names_of(table: Table, robot: str) -> NodeNames:
     """The nodes of one robot in a fleet's table; of those for all robots if it is empty."""
     nodes: dict[str, Run] = {}
@@ -112,12 +113,8 @@ def names_of(table: Table, robot: str) -> NodeNames:
     for it in own:
         nodes.setdefault(it.node, it)
     found = started(table._replace(runs=tuple(own)))
-    managed = {it.node: tuple(_managed(it)) for it in own}
+    managed = {}
+    for it in own:
+        called = (end.name.rpartition("/") for end, _ in it.names if end.role == CALLS)
+        managed[it.node] = tuple(name for name, _, last in called if last == CHANGE_STATE)
     return NodeNames(robot, nodes, {it.node.node: it for it in found}, managed)
-
-
-def _managed(manager: Run) -> Iterator[str]:
-    for end, _ in manager.names:
-        name, _, service = end.name.rpartition("/")
-        if (end.role, service) == (CALLS, CHANGE_STATE):
-            yield name

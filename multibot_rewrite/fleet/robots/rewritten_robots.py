@@ -18,7 +18,6 @@ from multibot_rewrite.description.checks.twice import CARRYING
 from multibot_rewrite.description.library import Rewrite, rewrite_job
 from multibot_rewrite.description.own_ports import numbered, ports_of
 from multibot_rewrite.description.readback.meeting import NUMBERED, SHARED_CODES
-from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import given_topics, words_of
 from multibot_rewrite.description.sources.job import (
     PARTS,
@@ -146,7 +145,15 @@ def read_jobs(
     for it in robots:
         if it.sources not in found:
             found[it.sources] = _jobs(it, read, (it.words, common[it.description]))
-    _check_arguments(robots, found)
+    own = {it.sources[:3]: it for it in robots if found[it.sources].description.naming.own}
+    for it in robots:
+        first = own.get(it.sources[:3])
+        # An argument that makes names of one robot is not for another one.
+        if first and not found[it.sources].description.naming.own:
+            both = (
+                f"{it.name!r} has the arguments of {first.name!r}, which put that name into names"
+            )
+            raise InputError(f"{it.file}:{it.line}: {both}; write {ROBOT} in its place")
     return found
 
 
@@ -173,17 +180,6 @@ def _jobs(
 def _taken(robot: RobotSpec, *files: str) -> Arguments:
     """The arguments for a robot's description or model: they are for whichever is a xacro."""
     return robot.arguments if any(map(is_xacro, files)) else {}
-
-
-def _check_arguments(robots: Sequence[RobotSpec], jobs: Mapping[Sources, Jobs]) -> None:
-    """An argument that makes names of one robot is not for another one."""
-    own = {it.sources[:3]: it for it in robots if jobs[it.sources].description.naming.own}
-    for it in robots:
-        first = own.get(it.sources[:3])
-        if first is None or jobs[it.sources].description.naming.own:
-            continue
-        both = f"{it.name!r} has the arguments of {first.name!r}, which put that name into names"
-        raise InputError(f"{it.file}:{it.line}: {both}; write {ROBOT} in its place")
 
 
 def rewrite_robots(
@@ -216,7 +212,11 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
         declared = with_srdf(text.template.inventory.declared, said)
         found = (*text.findings, *(_srdf_findings(semantic) if semantic else ()))
         if model and jobs.simulated:
-            declared = _both(declared, model.template.inventory.declared)
+            both = model.template.inventory.declared
+            declared = {
+                kind: {**both.get(kind, {}), **declared.get(kind, {})}
+                for kind in {*declared, *both}
+            }
             simulated = _final(model, robot, jobs.simulated.naming)
             found = (*found, *model.findings)
             made = member(model, simulated, robot.tag, described=made)
@@ -261,11 +261,6 @@ def _srdf_findings(semantic: Rewrite) -> Iterator[Finding]:
     yield from (it for it in semantic.findings if it.code not in _LOOSE)
 
 
-def _both(declared: Declared, model: Declared) -> Declared:
-    """What a description and the model for the simulator declare together."""
-    return {kind: {**model.get(kind, {}), **declared.get(kind, {})} for kind in {*declared, *model}}
-
-
 def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
     """The text of each robot with its namespace; refused where it carries one of its words.
 
@@ -274,17 +269,13 @@ def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
     words = [it.tag if "/" in it.namespace else it.namespace for it in group]
     for number, text in enumerate(rewrite_job(job, words, again=True)):
         if not number:
-            _check_new(text.template, group)
+            # A robot's namespace and tag may be in names that get the other word.
+            apart = [it for it in group if it.tag != it.namespace]
+            alike = [it.namespace for it in group if it.tag == it.namespace]
+            pipeline.check_new(text.template, alike, CARRYING)
+            pipeline.check_new(text.template, [it.namespace for it in apart], GRAPH_KINDS)
+            pipeline.check_new(text.template, [it.tag for it in apart], CARRYING - GRAPH_KINDS)
         yield text._replace(robot=group[number].namespace)
-
-
-def _check_new(template: Template, group: Sequence[RobotSpec]) -> None:
-    """A robot's namespace and tag may be in names that get the other word."""
-    alike = [it.namespace for it in group if it.tag == it.namespace]
-    apart = [it for it in group if it.tag != it.namespace]
-    pipeline.check_new(template, alike, CARRYING)
-    pipeline.check_new(template, [it.namespace for it in apart], GRAPH_KINDS)
-    pipeline.check_new(template, [it.tag for it in apart], CARRYING - GRAPH_KINDS)
 
 
 def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:

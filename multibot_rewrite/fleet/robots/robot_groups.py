@@ -72,15 +72,13 @@ def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
     count = Counter((it.file, it.line) for it in specs)
     names = {key: it.name for it in specs if count[key := (it.file, it.line)] == 1}
     lines = {name: line for (_, line), name in names.items()}
-    alike = [_at_robot(it, names.get((it.file, it.line), "")) for it in ordered]
+    alike = []
+    for it in ordered:
+        robot = names.get((it.file, it.line), "")
+        alike.append(it._replace(robot=robot, line=0) if robot else it)
     return [
         it._replace(robot="", robots=it.robots or (it.robot,), line=lines[it.robot])
         if it.robot
         else it
         for it in grouped(alike, plan.words)
     ]
-
-
-def _at_robot(finding: Finding, robot: str) -> Finding:
-    """The finding with the robot in the place of its line."""
-    return finding._replace(robot=robot, line=0) if robot else finding

@@ -5,10 +5,8 @@ for all robots, as one map_server with one map."""
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
-
-from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import InputError
@@ -49,7 +47,7 @@ from multibot_rewrite.knowledge.parameters import (
     is_called,
     load_known_nodes,
 )
-from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, load_stack
 from multibot_rewrite.producers.ends import BRIDGE_NODE
 from multibot_rewrite.producers.evidence.hardware import with_hardware
@@ -135,10 +133,20 @@ def robot_nodes(
     launched = without_bridges(launched) if launched else None
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
-    without, findings = nodes_with(launched, stack, given, known | _started_here(file.distro))
+    # A controller manager that only a parameter file has is as its usual launch files start it.
+    started_here = {it.name: it for it in load_stack(PROGRAM, file.distro) if it.name == MANAGER}
+    without, findings = nodes_with(launched, stack, given, known | started_here)
     source = member.source
-    drives = wheels_in(source.root) and not _is_mounted(source.root)
-    standing = without if drives else _standing(without, given)
+    held = source.root.iterfind("joint[@type='fixed']/parent")
+    standing = without
+    if not wheels_in(source.root) or any(it.get("link") == WORLD for it in held):
+        # Without controllers of wheels that a stack has for robots that drive.
+        filed = {it.node for it in given}
+        standing = tuple(
+            it
+            for it in without
+            if it.name in filed or not (it.host == MANAGER and it.when and it.sends)
+        )
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
@@ -187,7 +195,12 @@ def _as_written(
     outside = {it.node: frozenset(_outside(it, known, release)) for it in own}
     for it in nodes:
         moved = outside.get(it.name, frozenset())
-        ends = (_absolute(end) if end.parameter in moved else end for end in it.endpoints)
+        ends = (
+            end._replace(name=f"/{end.name}")
+            if end.parameter in moved and end.name[0] not in "/~"
+            else end
+            for end in it.endpoints
+        )
         yield it._replace(endpoints=tuple(ends)) if moved else it
 
 
@@ -199,13 +212,14 @@ def _made_by_arguments(
     values = {it.node: it.values for it in given}
     for it in nodes:
         own = values.get(it.name, {})
-        ends = (_in_full(end, topics) if end.parameter in own else end for end in it.endpoints)
+        names = (topics.get(end.name) or topics.get(end.name.lstrip("/")) for end in it.endpoints)
+        ends = (
+            end._replace(name=name, fixed=BY_ARGUMENT, own=True)
+            if name and end.parameter in own
+            else end
+            for end, name in zip(it.endpoints, names, strict=True)
+        )
         yield it._replace(endpoints=tuple(ends))
-
-
-def _in_full(end: Endpoint, topics: Mapping[str, str]) -> Endpoint:
-    name = topics.get(end.name) or topics.get(end.name.lstrip("/"))
-    return end._replace(name=name, fixed=BY_ARGUMENT, own=True) if name else end
 
 
 def _outside(it: Run, known: KnownNodes, release: str) -> Iterator[str]:
@@ -219,16 +233,6 @@ def _outside(it: Run, known: KnownNodes, release: str) -> Iterator[str]:
         fitting = (one for one in params if is_called(one, name))
         if any(below or is_absolute(one, release) for one in fitting):
             yield name
-
-
-def _absolute(end: Endpoint) -> Endpoint:
-    return end if end.name[0] in "/~" else end._replace(name=f"/{end.name}")
-
-
-def _is_mounted(root: _Element) -> bool:
-    """Does a joint hold the robot on its link world?"""
-    joints = root.iterfind("joint[@type='fixed']/parent")
-    return any(it.get("link") == WORLD for it in joints)
 
 
 def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
@@ -245,14 +249,6 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
         return library_key(it.plugin) in loaded
     of_one = it.name == BRIDGE_NODE and not it.shared
     return not of_one or bool(spec.companions.get("bridge")) or is_bridged(member.inventory)
-
-
-def _standing(nodes: Iterable[NodeFacts], given: Iterable[Run]) -> tuple[NodeFacts, ...]:
-    """The nodes without controllers of wheels that a stack has for robots that drive."""
-    named = {it.node for it in given}
-    return tuple(
-        it for it in nodes if it.name in named or not (it.host == MANAGER and it.when and it.sends)
-    )
 
 
 def _of_srdf(
@@ -295,12 +291,6 @@ def _manager_in_plugin(
         yield from [it for it in made if it.name == MANAGER and it.plugin in names][:1]
 
 
-def _started_here(release: str) -> dict[str, NodeFacts]:
-    """The controller manager that nothing but a parameter file has, as its usual launch files start
-    it."""
-    return {it.name: it for it in load_stack(PROGRAM, release) if it.name == MANAGER}
-
-
 def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> Iterator[NodeFacts]:
     """The nodes for which companion files are rewritten, with the names of their code: those in
     parameters are what is rewritten."""
@@ -321,27 +311,22 @@ def apart(
     marked = [it._replace(shared=_is_once(it.name, it.shared, file)) for it in nodes]
     shared = {it.name: None for it in marked if it.shared}
     managers = [it for it in marked if it.package == MANAGERS and not it.shared]
-    left = {it.name: _without(it, shared) for it in managers}
-    kept = tuple(left.get(it.name, it) for it in marked)
-    return kept, tuple(_notes(managers, file))
+    left, notes = {}, []
+    for it in managers:
+        heads = [end.name.partition("/")[0] for end in it.endpoints]
+        ends = zip(it.endpoints, heads, strict=True)
+        left[it.name] = it._replace(
+            endpoints=tuple(end for end, head in ends if head not in shared)
+        )
+        for name in (name for name in file.shared_nodes if name in heads):
+            message = f"{it.name} of each robot manages {name}, which all robots share"
+            hint = f"remove {name} from its node_names, and start {name} with a manager of its own"
+            notes.append(NOT_MANAGED.finding(message, hint, file=file.file, line=1))
+    return tuple(left.get(it.name, it) for it in marked), tuple(notes)
 
 
 def _is_once(name: str, once: bool, file: FleetFile) -> bool:
     return (once or name in file.shared_nodes) and name not in file.own_nodes
-
-
-def _without(manager: NodeFacts, shared: Collection[str]) -> NodeFacts:
-    ends = (it for it in manager.endpoints if it.name.partition("/")[0] not in shared)
-    return manager._replace(endpoints=tuple(ends))
-
-
-def _notes(managers: Sequence[NodeFacts], file: FleetFile) -> Iterator[Finding]:
-    for it in managers:
-        heads = {end.name.partition("/")[0] for end in it.endpoints}
-        for name in (name for name in file.shared_nodes if name in heads):
-            message = f"{it.name} of each robot manages {name}, which all robots share"
-            hint = f"remove {name} from its node_names, and start {name} with a manager of its own"
-            yield NOT_MANAGED.finding(message, hint, file=file.file, line=1)
 
 
 def check_shared(file: FleetFile, run: Mapping[str, object]) -> None:

@@ -181,15 +181,11 @@ def _has_drive(robot: RewrittenRobot, parts: Iterable[ActivePart]) -> bool:
     ends = (it for node in robot.member.reading.nodes for it in node.endpoints)
     topics, _ = bridged_topics({"": robot.member.inventory}, robot.topics.naming)
     return (
-        any(it.is_known and "joint " in _named(it, root) for it in parts if not _is_state(it))
+        # A plugin of a state tells where joints are, and moves none.
+        any(it.is_known and "joint " in _named(it, root) for it in parts if "state" not in it.name)
         or any(moves(it.code_name, it.type) for it in ends if it.role != PUBLISHES)
         or any(it.direction == DIRECTIONS["out"] for it in topics)
     )
-
-
-def _is_state(part: ActivePart) -> bool:
-    """Does it tell where joints are, and move none?"""
-    return "state" in part.name
 
 
 # The rule about a description alone; a fleet takes its advice.
@@ -204,7 +200,16 @@ def without_world_systems(robots: Sequence[RewrittenRobot]) -> list[RewrittenRob
     first = next((it for it in made if it.world_systems), None)
     if first is None:
         return made
-    said = tuple(_said(first, made))
+    every = systems_of(made)
+    message = f"the world loads {shorten(sorted(every))}, not each robot"
+    hint = "another world than the fleet's has to load them"
+    said = [at_robot(MOVED, first, message, hint)]
+    for robot in made:
+        for library, text in robot.world_systems.items():
+            if text.split() != every[library].split():
+                message = f"{robot.spec.name} has other settings of {library}: they are not used"
+                hint = "write one text for all robots"
+                said.append(at_robot(MOVED, first, message, hint, WARNING))
     return [it._replace(findings=(*it.findings, *said)) if it is first else it for it in made]
 
 
@@ -236,14 +241,3 @@ def _without(robot: RewrittenRobot) -> RewrittenRobot:
 
 def _library(plugin: _Element) -> str:
     return library_key((plugin.get("filename") or "").rpartition("/")[2])
-
-
-def _said(first: RewrittenRobot, robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
-    every = systems_of(robots)
-    hint = "another world than the fleet's has to load them"
-    yield at_robot(MOVED, first, f"the world loads {shorten(sorted(every))}, not each robot", hint)
-    for it in robots:
-        for library, text in it.world_systems.items():
-            if text.split() != every[library].split():
-                message = f"{it.spec.name} has other settings of {library}: they are not used"
-                yield at_robot(MOVED, first, message, "write one text for all robots", WARNING)

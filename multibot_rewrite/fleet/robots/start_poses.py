@@ -6,7 +6,7 @@ Sources: tf2_ros jazzy ``static_transform_publisher``; nav2_amcl jazzy (``set_in
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Rule, declare
@@ -15,13 +15,13 @@ from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, Pose
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
+from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.bridge_rows import PLUGINS, rows_of
 from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
@@ -104,21 +104,33 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         yield _finding(NO_SHARED_FRAME, robot, what, hint)
         return
     sent = _sent(plan, robot)
+    shared = naming.shared_frames
     placing = {
-        node: [it for it in edges if _is_placing(it, naming)] for node, edges in sent.items()
+        node: [it for it in edges if it.parent in shared and it.child not in shared]
+        for node, edges in sent.items()
     }
     locators = [node for node, edges in placing.items() if any(not it.static for it in edges)]
     if AMCL in locators:
         yield InitialPose(name, AMCL, initial_pose(pose))
         return
     if locators:
-        yield _localised(robot, locators)
+        nodes = " and ".join(it or "its description" for it in locators)
+        says = "already says" if len(locators) == 1 else "already say"
+        what = f"its pose is not published, because {nodes} {says} where it is"
+        hint, level = "remove the pose: a second parent would make the frame jump", WARNING
+        if is_simulated(robot):
+            hint, level = "the simulator starts it there, which is enough", NOTE
+        yield _finding(LOCALISED_ALREADY, robot, what, hint)._replace(level=level)
         return
     if held := placing[""]:
         if pose != ORIGIN:
             yield _on_world(robot, held[0])
         return
-    roots = _roots(sent, naming)
+    every = [edge for own in sent.values() for edge in own]
+    children = {edge.child for edge in every if edge.parent != edge.child}
+    parents = dict.fromkeys(edge.parent for edge in every)
+    # The robot's own frames without a parent.
+    roots = [it for it in parents if it not in children and it not in shared]
     if len(roots) != 1:
         frames = f"{len(roots)} root frames ({', '.join(roots)})" if roots else "no root frame"
         what = f"its pose is not published, because it has {frames} instead of one"
@@ -132,17 +144,6 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
     if local:
         yield InitialPose(name, AMCL, initial_pose(pose))
     yield static_transform(name, world, roots[0], ORIGIN if local else pose, naming)
-
-
-def _localised(robot: RewrittenRobot, locators: Sequence[str]) -> Finding:
-    nodes = " and ".join(it or "its description" for it in locators)
-    says = "already says" if len(locators) == 1 else "already say"
-    what = f"its pose is not published, because {nodes} {says} where it is"
-    if robot.spec.simulator not in ("", REAL):
-        hint = "the simulator starts it there, which is enough"
-        return _finding(LOCALISED_ALREADY, robot, what, hint)._replace(level=NOTE)
-    hint = "remove the pose: a second parent would make the frame jump"
-    return _finding(LOCALISED_ALREADY, robot, what, hint)._replace(level=WARNING)
 
 
 def static_transform(
@@ -168,7 +169,15 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
     tree = robot.tree
     children = {edge.child for edge in tree}
     bare = [link for link in robot.links if link not in children]
-    odometry = list(_gz_odometry(inventory, robot.spec.model))
+    odometry = []
+    # The odometry frames of gz-sim's systems, which a bridge brings to tf.
+    for host in inventory.hosts:
+        section = host.node.section.names[0] if host.node.section else ""
+        rows = rows_of(PLUGINS, section, inventory.release)
+        if any(row.element == TF_ELEMENT and not row.why for row in rows):
+            given = (text_at(host.element, tag) for tag in ODOMETRY)
+            odometry.append(next(filter(None, given), f"{robot.spec.model}/odom"))
+            break
     base = min(bare, default="")
     return {
         **sent,
@@ -193,22 +202,6 @@ def _own_odometry(plan: FleetPlan, robot: RewrittenRobot) -> str:
     return ""
 
 
-def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:
-    """The odometry frames of gz-sim's systems, which a bridge brings to tf."""
-    for host in inventory.hosts:
-        name = host.node.section.names[0] if host.node.section else ""
-        rows = rows_of(PLUGINS, name, inventory.release)
-        if any(row.element == TF_ELEMENT and not row.why for row in rows):
-            given = (text_at(host.element, tag) for tag in ODOMETRY)
-            yield next(filter(None, given), f"{model}/odom")
-            return
-
-
-def _is_placing(edge: Edge, naming: Naming) -> bool:
-    """Does it place a robot's frame in a shared frame?"""
-    return edge.parent in naming.shared_frames and edge.child not in naming.shared_frames
-
-
 def _on_world(robot: RewrittenRobot, held: Edge) -> Finding:
     """A simulator puts the robot at its pose, and needs the one world: only tf is not right then."""
     simulated = robot.spec.simulator not in ("", REAL)
@@ -220,14 +213,6 @@ def _on_world(robot: RewrittenRobot, held: Edge) -> Finding:
     own = f"let each robot have its own {held.parent!r} (shared_frames: [map]), or "
     hint, level = (way, WARNING) if simulated else (own + way, "")
     return at_robot(POSE_ON_WORLD, robot, f"robot {robot.spec.name!r}: {what}", hint, level)
-
-
-def _roots(sent: Mapping[str, list[Edge]], naming: Naming) -> list[str]:
-    """The robot's own frames without a parent."""
-    edges = [edge for own in sent.values() for edge in own]
-    children = {edge.child for edge in edges if edge.parent != edge.child}
-    parents = dict.fromkeys(edge.parent for edge in edges)
-    return [it for it in parents if it not in children and it not in naming.shared_frames]
 
 
 def _finding(rule: Rule, robot: RewrittenRobot, what: str, hint: str) -> Finding:

@@ -108,59 +108,38 @@ def parse(text: str, file: str) -> Document:
     if not isinstance(item.value, Mapping):
         wrong(item, "not a NoDL document; write nodl_version: 2 and the interface as keys")
     top = table(item, "the document", KEYS)
-    _check_version(item, top)
-    for key in ("description", "codegen"):
-        word_of(top, key) if key == "description" else _check_codegen(top)
-    return Document(
-        file,
-        tuple(_all_endpoints(top)),
-        tuple(_parameters(table_of(top, "parameters"))),
-        tuple(_includes(top)),
-    )
-
-
-def _check_version(item: YamlItem, top: Mapping[str, YamlItem]) -> None:
     given = top.get("nodl_version")
     if given is None:
         wrong(item, "nodl_version is missing; write nodl_version: 2")
     if given.value != VERSION:
         wrong(given, f"nodl_version {given.value!r} is not read; only version 2 is")
-
-
-def _check_codegen(top: Mapping[str, YamlItem]) -> None:
-    for key, item in table_of(top, "codegen").items():
-        table(item, f"codegen {key}")
-
-
-def _includes(top: Mapping[str, YamlItem]) -> Iterator[Include]:
+    word_of(top, "description")
+    for key, entry in table_of(top, "codegen").items():
+        table(entry, f"codegen {key}")
+    endpoints: list[Endpoint] = []
+    for section, (kind, role) in SECTIONS.items():
+        # One endpoint for two of a name, as two publishers of a node may have.
+        found: dict[str, Endpoint] = {}
+        for entry in _listed(top, section):
+            end = _endpoint(entry, section, kind, role)
+            first = found.setdefault(end.name, end)
+            if end.type not in (first.type, *first.also):
+                found[end.name] = first._replace(also=(*first.also, end.type))
+        endpoints += found.values()
+    parameters = tuple(_parameters(table_of(top, "parameters")))
+    includes = []
     for entry in _listed(top, "include"):
-        keys = table(entry, "an include", ("ref",))
-        ref = word_of(keys, "ref")
+        ref = word_of(table(entry, "an include", ("ref",)), "ref")
         if not _REFERENCE.fullmatch(ref):
             wrong(entry, f"include {ref!r}: write ref: nodl://PACKAGE/NAME or local://FILE")
-        yield Include(ref, entry.where)
+        includes.append(Include(ref, entry.where))
+    return Document(file, tuple(endpoints), parameters, tuple(includes))
 
 
 def _listed(top: Mapping[str, YamlItem], key: str) -> tuple[YamlItem, ...]:
     if key in top and isinstance(top[key].value, str):
         wrong(top[key], f"{key} is the text {top[key].value!r}; write a list")
     return entries_of(top, key)
-
-
-def _all_endpoints(top: Mapping[str, YamlItem]) -> Iterator[Endpoint]:
-    for section, (kind, role) in SECTIONS.items():
-        found: dict[str, Endpoint] = {}
-        for entry in _listed(top, section):
-            end = _endpoint(entry, section, kind, role)
-            found[end.name] = _joined(found.get(end.name), end)
-        yield from found.values()
-
-
-def _joined(first: Endpoint | None, end: Endpoint) -> Endpoint:
-    """One endpoint for two of a name, as two publishers of a node may have."""
-    if first is None or end.type in (first.type, *first.also):
-        return first or end
-    return first._replace(also=(*first.also, end.type))
 
 
 def _endpoint(item: YamlItem, section: str, kind: str, role: str) -> Endpoint:
@@ -171,33 +150,24 @@ def _endpoint(item: YamlItem, section: str, kind: str, role: str) -> Endpoint:
     for key in needed:
         if key not in keys:
             wrong(item, f"an entry of {section} has no {key}; write it")
-    name = _checked_name(keys["name"])
-    if "qos" in keys:
-        _check_qos(keys["qos"])
-    note, source = word_of(keys, "description"), (item.where,)
-    return Endpoint(kind, role, name, _full_type(keys["type"], kind), note=note, source=source)
-
-
-def _checked_name(item: YamlItem) -> str:
-    name = word(item, "name")
+    name = word(keys["name"], "name")
     if not _NAME.fullmatch(name):
         hint = "write letters, digits, _ and /, a letter, / or ~ first"
-        wrong(item, f"name {name!r} is not a name in NoDL; {hint}")
-    fault = check_name_in_code(name)
-    if fault:
-        wrong(item, f"name {name!r}: {fault.reason}")
-    return name
-
-
-def _full_type(item: YamlItem, kind: str) -> str:
-    """The type with its group, which a document may leave out."""
-    type_ = word(item, "type")
+        wrong(keys["name"], f"name {name!r} is not a name in NoDL; {hint}")
+    if fault := check_name_in_code(name):
+        wrong(keys["name"], f"name {name!r}: {fault.reason}")
+    if "qos" in keys:
+        _check_qos(keys["qos"])
+    note = word_of(keys, "description")
+    type_ = word(keys["type"], "type")
     found = _TYPE.fullmatch(type_)
     if not found:
-        wrong(item, f"{type_!r} is not a ROS type; write it like std_msgs/msg/String")
+        wrong(keys["type"], f"{type_!r} is not a ROS type; write it like std_msgs/msg/String")
     if found[2] not in (None, GROUP[kind]):
-        wrong(item, f"{type_} is not the type of {kind} but of a {found[2]}")
-    return f"{found[1]}/{GROUP[kind]}/{found[3]}"
+        wrong(keys["type"], f"{type_} is not the type of {kind} but of a {found[2]}")
+    # A document may leave out the group of a type.
+    full_type = f"{found[1]}/{GROUP[kind]}/{found[3]}"
+    return Endpoint(kind, role, name, full_type, note=note, source=(item.where,))
 
 
 def _check_qos(item: YamlItem) -> None:

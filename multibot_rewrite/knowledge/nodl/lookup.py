@@ -157,7 +157,8 @@ def load(path: str, interfaces: Interfaces) -> Document:
     documents = list(_with_included(path, interfaces, seen))
     names: dict[tuple[str, str, str], str] = {}
     for document in documents:
-        for key in _names(document):
+        ends = ((end.role, end.kind, end.name) for end in document.endpoints)
+        for key in (*ends, *(("", "parameter", it.name) for it in document.parameters)):
             first = names.setdefault(key, document.file)
             if first != document.file:
                 what = " ".join(filter(None, key))
@@ -169,13 +170,13 @@ def load(path: str, interfaces: Interfaces) -> Document:
     )
 
 
-def _names(document: Document) -> Iterator[tuple[str, str, str]]:
-    yield from ((end.role, end.kind, end.name) for end in document.endpoints)
-    yield from (("", "parameter", it.name) for it in document.parameters)
-
-
 def _with_included(path: str, interfaces: Interfaces, seen: dict[str, str]) -> Iterator[Document]:
-    document = _read(path)
+    try:
+        document = parse(read_text(path), path)
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
     yield document
     for include in document.includes:
         other = _resolved(include, path, interfaces)
@@ -203,15 +204,6 @@ def _resolved(include: Include, path: str, interfaces: Interfaces) -> str:
         hint = "source the workspace that has it, or name its folder with --nodes"
         raise UsageError(f"{include.where}: {ref} is not installed; {hint}")
     return found
-
-
-def _read(path: str) -> Document:
-    try:
-        return parse(read_text(path), path)
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
 
 
 EVERY_NODE = "every_node"
@@ -284,28 +276,31 @@ def _merged(
     parts: Mapping[str, tuple[Endpoint, ...]],
 ) -> NodeFacts:
     ours = {_slot(end, usual): end for end in reversed(node.endpoints)}
-    theirs = {_slot(end, usual): end for end in _folded(_own(document.endpoints, parts))}
+    # What ROS gives every node is not the node's own.
+    always = {(it.role, _last(it)) for it in (*parts.get(EVERY_NODE, ()), TYPE_DESCRIPTION)}
+    own = [end for end in document.endpoints if (end.role, _last(end)) not in always]
+    theirs = {_slot(end, usual): end for end in _folded(own)}
     ends = [_both(end, ours.get(slot)) for slot, end in theirs.items()]
     for end in node.endpoints:
         if _slot(end, usual) not in theirs:
             ends.append(end._replace(when=end.when or NOT_IN_NODL))
-    return node._replace(
-        endpoints=tuple(ends),
-        frames=tuple(_frames(node, document.parameters)),
-        interface=document.file,
-    )
+    frames = tuple(_frames(node, document.parameters))
+    return node._replace(endpoints=tuple(ends), frames=frames, interface=document.file)
+
+
+def _frames(node: NodeFacts, parameters: Iterable[Parameter]) -> Iterator[FrameParameter]:
+    """The frame ids in parameters: those the library names, by their names otherwise."""
+    given = {it.name: it.default for it in parameters if it.type == "string" and it.default}
+    if node.frames or node.sends:
+        yield from (it._replace(default=given.get(it.parameter, it.default)) for it in node.frames)
+        return
+    yield from (FrameParameter(*it) for it in given.items() if _FRAME.fullmatch(it[0]))
 
 
 def _slot(end: Endpoint, node: str) -> _Slot:
     above, _, own = node.rpartition("/")
     name = end.name if "<" in end.name else expand(end.name, f"/{above}", own)
     return _Slot(end.kind, end.role, name)
-
-
-def _own(ends: Iterable[Endpoint], parts: Mapping[str, tuple[Endpoint, ...]]) -> Iterator[Endpoint]:
-    """The endpoints without those that ROS gives every node."""
-    usual = {(it.role, _last(it)) for it in (*parts.get(EVERY_NODE, ()), TYPE_DESCRIPTION)}
-    yield from (end for end in ends if (end.role, _last(end)) not in usual)
 
 
 def _last(end: Endpoint) -> str:
@@ -337,12 +332,3 @@ def _both(end: Endpoint, ours: Endpoint | None) -> Endpoint:
     name = ours.name if ours.name.startswith("~") else end.name
     also = tuple(dict.fromkeys(it for it in (*end.also, *ours.also) if it != end.type))
     return ours._replace(name=name, type=end.type, also=also, source=end.source)
-
-
-def _frames(node: NodeFacts, parameters: Iterable[Parameter]) -> Iterator[FrameParameter]:
-    """The frame ids in parameters: those the library names, by their names otherwise."""
-    given = {it.name: it.default for it in parameters if it.type == "string" and it.default}
-    if node.frames or node.sends:
-        yield from (it._replace(default=given.get(it.parameter, it.default)) for it in node.frames)
-        return
-    yield from (FrameParameter(*it) for it in given.items() if _FRAME.fullmatch(it[0]))

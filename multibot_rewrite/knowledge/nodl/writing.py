@@ -7,7 +7,7 @@ A document has no conditions and no endpoint of several types: two types are two
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.base.model import ProofError, UsageError
@@ -48,9 +48,26 @@ def document_of(
     for section, (kind, role) in SECTIONS.items():
         own = [it for it in fitting if (it.kind, it.role) == (kind, role)]
         if own:
-            document[section] = [_entry(it, qos_of) for it in own]
-    text = _dumped(document, json)
-    _check(node, text, fitting)
+            rows = []
+            for it in own:
+                row: dict[str, object] = {"name": it.name, "type": it.type}
+                row |= {"qos": qos_of(it)} if it.kind == TOPIC else {}
+                rows.append(row | ({"description": it.note} if it.note else {}))
+            document[section] = rows
+    if json:
+        from json import dumps
+
+        text = dumps(document, indent=2) + "\n"
+    else:
+        import yaml
+
+        text = yaml.safe_dump(document, sort_keys=False, width=_WIDTH, allow_unicode=True)
+    try:
+        read = parse(text, file_name(node)).endpoints
+    except UsageError as error:
+        raise ProofError(f"the document of {node} cannot be read back: {error}") from None
+    if _names(read) != _names(fitting):
+        raise ProofError(f"the document of {node} is read back differently")
     left = [f"{it.role} {it.name}" for it in written if not _fits(it)]
     return NodlFile(node, text, tuple(dict.fromkeys(left)))
 
@@ -59,32 +76,6 @@ def _fits(end: Endpoint) -> bool:
     """Has NoDL a form for its name and type? Types of an action's parts have none."""
     group = f"/{GROUP[end.kind]}/"
     return bool(_NAME.fullmatch(end.name) and _TYPE.fullmatch(end.type) and group in end.type)
-
-
-def _entry(end: Endpoint, qos_of: QosOf) -> dict[str, object]:
-    entry: dict[str, object] = {"name": end.name, "type": end.type}
-    if end.kind == TOPIC:
-        entry["qos"] = qos_of(end)
-    return {**entry, "description": end.note} if end.note else entry
-
-
-def _dumped(document: dict[str, object], json: bool) -> str:
-    if json:
-        from json import dumps
-
-        return dumps(document, indent=2) + "\n"
-    import yaml
-
-    return str(yaml.safe_dump(document, sort_keys=False, width=_WIDTH, allow_unicode=True))
-
-
-def _check(node: str, text: str, written: Sequence[Endpoint]) -> None:
-    try:
-        read = parse(text, file_name(node)).endpoints
-    except UsageError as error:
-        raise ProofError(f"the document of {node} cannot be read back: {error}") from None
-    if _names(read) != _names(written):
-        raise ProofError(f"the document of {node} is read back differently")
 
 
 def _names(ends: Iterable[Endpoint]) -> set[tuple[str, str, str, str]]:

@@ -133,10 +133,9 @@ class Cache:
         if path not in self.shards:
             self.shards[path] = read_shard(path)
         entry = self.shards[path].get(key)
-        return entry.value if entry and self._holds(entry.asked) else None
-
-    def _holds(self, asked: Asked) -> bool:
-        return all(self._answer(question) == answer for question, answer in asked.items())
+        asked = entry.asked.items() if entry else ()
+        holds = all(self._answer(question) == answer for question, answer in asked)
+        return entry.value if entry and holds else None
 
     def _answer(self, question: Question) -> str:
         if question not in self.answers:
@@ -225,7 +224,6 @@ def among_from(value: Any, settings: Settings) -> Settings | None:
 
 # What reads descriptions; xacro may be that of a sourced ROS.
 LIBRARIES = ("lxml", "xacro", "yaml")
-_COMPILED = "__pycache__"
 _HERE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 
@@ -234,7 +232,10 @@ def identity(settings: Settings) -> str:
     where = (os.getcwd(), sys.version, os.uname().release, str(os.geteuid()))
     folders = filter(None, (_HERE, *map(_folder_of, LIBRARIES)))
     programs = sorted(it for folder in folders for it in _states(folder))
-    return digest(repr((__version__, where, programs, _vocabulary(settings), plain(settings))))
+    paths = [*(it.path for it in installed()), *settings.vocabulary]
+    # What is read beyond what is built in.
+    vocabulary = [(path, digest(read_bytes(path))) for path in paths]
+    return digest(repr((__version__, where, programs, vocabulary, plain(settings))))
 
 
 def plain(value: object) -> object:
@@ -248,12 +249,6 @@ def plain(value: object) -> object:
     return value
 
 
-def _vocabulary(settings: Settings) -> list[tuple[str, str]]:
-    """The files that are read beside those built in."""
-    paths = [*(it.path for it in installed()), *settings.vocabulary]
-    return [(path, digest(read_bytes(path))) for path in paths]
-
-
 def _folder_of(library: str) -> str:
     spec = find_spec(library)
     return os.path.dirname(spec.origin) if spec and spec.origin else ""
@@ -265,5 +260,5 @@ def _states(folder: str) -> Iterator[tuple[str, int, int]]:
             if not it.is_dir(follow_symlinks=False):
                 of = it.stat()
                 yield it.path, of.st_mtime_ns, of.st_size
-            elif it.name != _COMPILED:
+            elif it.name != "__pycache__":
                 yield from _states(it.path)

@@ -43,34 +43,28 @@ def read_baseline(path: str) -> Baseline:
     """The baseline in a file; raises UsageError for any other file."""
     try:
         content = load_json(read(path))
-        return Baseline(_counts(content))
+        if not isinstance(content, dict) or content.get(FORMAT) != VERSION:
+            raise ValueError(f'"{FORMAT}": {VERSION} is not in it')
+        listed = content.get("findings")
+        if not isinstance(listed, list):
+            raise ValueError('"findings" is not a list')
+        counts: Counter[Key] = Counter()
+        for number, entry in enumerate(listed, 1):
+            if not isinstance(entry, dict) or set(entry) != set(FIELDS):
+                raise ValueError(f"finding {number} does not have just {', '.join(FIELDS)}")
+            wrong = next(
+                (name for name, kind in FIELDS.items() if type(entry[name]) is not kind), None
+            )
+            if wrong is not None:
+                raise ValueError(f"{wrong!r} of finding {number} is {entry[wrong]!r}")
+            if entry["count"] < 1:
+                raise ValueError(f"'count' of finding {number} is {entry['count']}")
+            counts[Key(entry["code"], entry["file"], entry["message"])] += entry["count"]
+        return Baseline(counts)
     except ValueError as error:
         reason = " ".join(str(error).split())
         hint = f"write one with --write-baseline {path}"
         raise UsageError(f"{path}: not a baseline of urdf-lint: {reason}; {hint}") from None
-
-
-def _counts(content: object) -> Counter[Key]:
-    if not isinstance(content, dict) or content.get(FORMAT) != VERSION:
-        raise ValueError(f'"{FORMAT}": {VERSION} is not in it')
-    listed = content.get("findings")
-    if not isinstance(listed, list):
-        raise ValueError('"findings" is not a list')
-    counts: Counter[Key] = Counter()
-    for number, entry in enumerate(listed, 1):
-        _check(entry, number)
-        counts[Key(entry["code"], entry["file"], entry["message"])] += entry["count"]
-    return counts
-
-
-def _check(entry: object, number: int) -> None:
-    if not isinstance(entry, dict) or set(entry) != set(FIELDS):
-        raise ValueError(f"finding {number} does not have just {', '.join(FIELDS)}")
-    wrong = next((name for name, kind in FIELDS.items() if type(entry[name]) is not kind), None)
-    if wrong is not None:
-        raise ValueError(f"{wrong!r} of finding {number} is {entry[wrong]!r}")
-    if entry["count"] < 1:
-        raise ValueError(f"'count' of finding {number} is {entry['count']}")
 
 
 def beyond(
@@ -93,14 +87,13 @@ def beyond(
         else:
             new.append(finding)
     names = None if linted is None else {_relative(it, path) for it in linted}
-    gone = (count for key, count in left.items() if _is_judged(key.file, path, names))
+    folder = os.path.dirname(path)
+    gone = (
+        count
+        for key, count in left.items()
+        if names is None or key.file in names or not os.path.exists(os.path.join(folder, key.file))
+    )
     return new, sum(gone)
-
-
-def _is_judged(file: str, path: str, names: Collection[str] | None) -> bool:
-    if names is None or file in names:
-        return True
-    return not os.path.exists(os.path.join(os.path.dirname(path), file))
 
 
 def baseline_text(findings: Iterable[Finding], path: str) -> bytes:

@@ -46,15 +46,11 @@ def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
     """
     if not rev or rev.startswith("-") or "\0" in rev:
         raise UsageError(f"{rev!r} is not a revision; name a branch, a tag or a commit")
-    changes = _changes(rev)
-    touched = _touched(paths, changes)
-    return [it for it in paths if touched[it]]
-
-
-def _changes(rev: str) -> Changes:
     top = os.fsdecode(_git(".", "rev-parse", "--show-toplevel").removesuffix(b"\n"))
     changed, others = _differing(top, _base(rev))
-    return Changes(top, changed | others, _names(_git(top, "ls-files", "-z")), others)
+    changes = Changes(top, changed | others, _names(_git(top, "ls-files", "-z")), others)
+    touched = _touched(paths, changes)
+    return [it for it in paths if touched[it]]
 
 
 def _differing(top: str, base: str) -> tuple[frozenset[str], frozenset[str]]:
@@ -119,7 +115,9 @@ def _touched(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
     names = set(_base_names(changes))
     names.update(os.path.basename(path) for path, it in changed_by_path.items() if it)
     left = {path: patterns for path, patterns in reads.items() if not changed_by_path[path]}
-    while more := [path for path, patterns in left.items() if _reach(patterns, names)]:
+    while more := [
+        path for path, patterns in left.items() if any(_matching(it, names) for it in patterns)
+    ]:
         changed_by_path.update(dict.fromkeys(more, True))
         names.update(os.path.basename(path) for path in more)
         left = {path: patterns for path, patterns in left.items() if not changed_by_path[path]}
@@ -198,7 +196,3 @@ def _matching(pattern: str, names: Collection[str]) -> list[str]:
     if not any(it in pattern for it in "*?["):
         return found
     return found + [it for it in names if it != pattern and fnmatchcase(it, pattern)]
-
-
-def _reach(patterns: Iterable[str], names: Collection[str]) -> bool:
-    return any(_matching(it, names) for it in patterns)

@@ -52,7 +52,12 @@ def after_comments(
     """
     comments = [it for file, source in sources.items() for it in _comments(file, source)]
     left, used = _apply(findings, comments)
-    left += _selected(_broken(comments), BROKEN, settings)
+    faults = ((it, fault) for it in comments for fault in it.it.faults)
+    broken = (
+        Finding(BROKEN, "", what.message, what.hint, it.file, *locate(it.source, what.start))
+        for it, what in faults
+    )
+    left += _selected(broken, BROKEN, settings)
     if _UNFINISHED.isdisjoint(codes):
         own = [it for it in comments if it.file == next(iter(sources)) and _is_whole(it, settings)]
         left += _selected(_unused(own, used, settings), UNUSED, settings)
@@ -113,13 +118,6 @@ def _selected(found: Iterable[Finding], code: str, settings: Settings) -> Iterat
     for finding in found:
         if not is_silent(settings, finding.file, code):
             yield finding._replace(code=code, level=level)
-
-
-def _broken(comments: Iterable[Comment]) -> Iterator[Finding]:
-    for comment in comments:
-        for fault in comment.it.faults:
-            line, column = locate(comment.source, fault.start)
-            yield Finding(BROKEN, "", fault.message, fault.hint, comment.file, line, column)
 
 
 def _is_whole(comment: Comment, settings: Settings) -> bool:

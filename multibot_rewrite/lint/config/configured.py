@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.config import (
@@ -104,7 +104,9 @@ def _configured(path: str, table: Mapping[str, object]) -> Configured:
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in READERS:
-            raise UsageError(f"{path}: unknown key {key!r}{_meant(key, READERS)}")
+            near = nearest(key.replace("_", "-"), list(READERS))
+            meant = f"did you mean {near!r}?" if near else f"use one of {', '.join(READERS)}"
+            raise UsageError(f"{path}: unknown key {key!r}, {meant}")
         field = FIELDS.get(key, key.replace("-", "_"))
         values[field] = READERS[key](KeyValue(f"{path}: {key}", folder, value))
     naming_options = {name: values.pop(name) for name in NAMING if name in values}
@@ -132,11 +134,6 @@ def _named(it: Configured, naming_options: Mapping[str, Any]) -> Configured:
     return it._replace(settings=settings, naming=naming)
 
 
-def _meant(key: str, known: Iterable[str]) -> str:
-    near = nearest(key.replace("_", "-"), list(known))
-    return f", did you mean {near!r}?" if near else f", use one of {', '.join(known)}"
-
-
 def is_excluded(path: str, it: Configured) -> bool:
     """Does the configuration leave out a file that was found below a folder?"""
     return any(matches(path, pattern) for pattern in it.exclude)
@@ -162,23 +159,17 @@ def with_options(it: Configured, **given: Any) -> Configured:
     own = {
         name: options.pop(name) for name in ("exclude", "baseline", "fail_on") if name in options
     }
-    settings = _added(_selected(it.settings, options.pop("select", ())), options)
-    return _named(it._replace(settings=settings, **own), naming_options)
-
-
-def _selected(settings: Settings, select: tuple[str, ...]) -> Settings:
-    if not select:
-        return settings
-    ignore = tuple(it for it in settings.ignore if it not in select)
-    levels = {it: at for it, at in settings.levels.items() if at != OFF or it not in select}
-    return settings._replace(select=tuple(select), ignore=ignore, levels=levels)
-
-
-def _added(settings: Settings, options: dict[str, Any]) -> Settings:
+    settings, select = it.settings, tuple(options.pop("select", ()))
+    if select:
+        ignore = tuple(code for code in settings.ignore if code not in select)
+        levels = settings.levels.items()
+        left = {code: at for code, at in levels if at != OFF or code not in select}
+        settings = settings._replace(select=select, ignore=ignore, levels=left)
     if "arguments" in options:
         options["arguments"] = (ArgumentSet(EVERY_FILE, tuple(options["arguments"])),)
     options["readable"] = options.get("roots", ())
     for name in ("ignore", "vocabulary", "roots", "readable", "arguments"):
         if name in options:
             options[name] = (*getattr(settings, name), *options[name])
-    return settings._replace(**options)
+    settings = settings._replace(**options)
+    return _named(it._replace(settings=settings, **own), naming_options)

@@ -85,7 +85,9 @@ def read_directives(source: bytes) -> list[Directive]:
     parts = list(_parts(source))
     ends = _element_ends(parts)
     sometimes = [(parts[at].start, end) for at, end in ends.items() if parts[at].name in _SOMETIMES]
-    reached = _reached(sorted(sometimes))
+    # Their starts in order, and how far those up to each one go.
+    sometimes.sort()
+    reached = ([it[0] for it in sometimes], [*accumulate((it[1] for it in sometimes), max)])
     tags = [it for it in parts if it.kind in (_OPEN, _EMPTY)]
     below = _elements_below(source, parts, ends)
     found, before, last = [], _OTHER, 0
@@ -138,13 +140,9 @@ def _directive(source: bytes, part: TagPart) -> Directive | None:
     elif word not in (IGNORE, IGNORE_FILE):
         faults = [_unknown_word(word, part.start)]
     codes = [] if faults and faults[0].start == part.start else codes
-    lines = source.rfind(b"\n", 0, part.start) + 1, _line_end(source, part.end)
+    end = source.find(b"\n", part.end)
+    lines = source.rfind(b"\n", 0, part.start) + 1, (len(source) if end < 0 else end)
     return Directive(part.start, part.end, word, tuple(codes), tuple(faults), lines)
-
-
-def _line_end(source: bytes, offset: int) -> int:
-    end = source.find(b"\n", offset)
-    return len(source) if end < 0 else end
 
 
 def _unknown_word(word: str, start: int) -> DirectiveFault:
@@ -161,8 +159,7 @@ def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[CodeName], lis
     faults: list[DirectiveFault] = []
     for found in _WORD.finditer(source, comment.start(3), end):
         text = found[0].decode("utf-8", "replace")
-        fault = _fault(text, found.start())
-        if fault:
+        if fault := _fault(text, found.start()):
             faults.append(fault)
         else:
             codes.append(CodeName(text, *found.span()))
@@ -228,11 +225,6 @@ def _is_idle(it: Directive, tags: Sequence[TagPart], before: int) -> bool:
     last = bisect_left(tags, it.lines[1], key=lambda tag: tag.start) - 1
     on_the_lines = last >= 0 and tags[last].end > it.lines[0]
     return not it.element and not on_the_lines and before != _OPEN
-
-
-def _reached(spans: Sequence[tuple[int, int]]) -> tuple[list[int], list[int]]:
-    """Return the starts of spans in their order, and how far those up to each one go."""
-    return [it[0] for it in spans], [*accumulate((it[1] for it in spans), max)]
 
 
 def _meets(it: Directive, reached: tuple[list[int], list[int]]) -> bool:

@@ -91,10 +91,6 @@ def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
         raise UsageError(f"{where}: {error}") from None
 
 
-def _separators(given: KeyValue) -> dict[str, str]:
-    return {kind: _text(it) for kind, it in _table_of(given)}
-
-
 def _path(given: KeyValue) -> str:
     return os.path.join(given.folder, _text(given))
 
@@ -180,7 +176,7 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "affix": _text,
     "topics": _text,
     "groups": _text,
-    "separators": _separators,
+    "separators": lambda it: {kind: _text(one) for kind, one in _table_of(it)},
     "shared-frames": _texts,
     "shared-topics": _texts,
     "targets": targets,

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.lazy import lazy_compile, without_comments
@@ -85,7 +85,8 @@ def _is_read(path: str) -> bool:
 def _asked_for(path: str) -> Iterator[str]:
     """The paths that a file includes, without what only xacro can fill in, and without itself."""
     own = real_path(path)
-    for name in _names(path):
+    for found in _INCLUDE.findall(text_of_file(path)):
+        name = found.decode("utf-8", "replace")
         # What is before the last substitution of a path is not known; one within a file's name stands
         # for a part of it.
         folder, _, last = _FILLED.sub("*", _FILLED.sub("*", name)).rpartition("/")
@@ -96,10 +97,6 @@ def _asked_for(path: str) -> Iterator[str]:
         asked = os.path.normpath(known).lstrip("./") if known.strip("/. ") else ""
         if asked and not fnmatchcase(own, f"*/{asked}"):
             yield asked
-
-
-def _names(path: str) -> Iterable[str]:
-    return (name.decode("utf-8", "replace") for name in _INCLUDE.findall(text_of_file(path)))
 
 
 def set_among(paths: Sequence[str], settings: Settings) -> Settings:

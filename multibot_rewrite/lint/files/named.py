@@ -18,7 +18,6 @@ _NAME = lazy_compile(rb"<robot\b[^<>]*?\sname\s*=\s*[\"']([^\"'$<]+)[\"']")
 SRDF_MARK = ".srdf"
 # The root element is in the first bytes: the whole file need not be read.
 HEAD = 4096
-_ENDINGS = (".urdf", ".xacro")
 # A package's folders, how deep, and how many files of it are looked at.
 _SKIPPED = frozenset(("meshes", "mesh", "test", "tests", "build", "install", "log", "worlds"))
 _DEEP, _MOST = 3, 60
@@ -50,7 +49,7 @@ def descriptions_below(folder: str) -> list[str]:
 def _files(folder: str, deep: int) -> Iterator[str]:
     inner = []
     for name in sorted(entries(folder)):
-        if name.endswith(_ENDINGS):
+        if name.endswith((".urdf", ".xacro")):
             yield os.path.join(folder, name)
         elif "." not in name and name not in _SKIPPED:
             inner.append(os.path.join(folder, name))

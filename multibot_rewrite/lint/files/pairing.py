@@ -85,11 +85,9 @@ def _candidates(path: str, name: str, settings: Settings) -> list[str]:
     """Files with that robot's name, the nearest first; else what is near on disk."""
     folder = os.path.dirname(os.path.abspath(path))
     named = [urdf for robot, urdf in settings.urdfs if robot == name]
-    return sorted(named, key=lambda it: (_distance(folder, it), it)) or _near(path, folder, name)
-
-
-def _distance(folder: str, path: str) -> int:
-    return os.path.relpath(os.path.abspath(path), folder).count(os.sep)
+    return sorted(
+        named, key=lambda it: (os.path.relpath(os.path.abspath(it), folder).count(os.sep), it)
+    ) or _near(path, folder, name)
 
 
 def _near(path: str, folder: str, name: str) -> list[str]:

@@ -79,27 +79,23 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
     sets = [given for given in settings.arguments if matches(path, given.pattern)]
     for given in (DEFAULT, *sets):
         try:
-            yield _expanded(path, data, given, settings)
+            # A URDF needs none of it.
+            from multibot_rewrite.description.sources.expand import expand_traced
+            from multibot_rewrite.lint.files.pairing import reach_of
+
+            find = partial(package_folder, file=path, roots=settings.readable)
+            # Warnings of xacro are not findings, and would be printed between them.
+            with redirect_stderr(StringIO()):
+                found = expand_traced(path, data, dict(given.arguments), find, reach_of(settings))
+            subject = make_subject(read_document(found.data, path + EXPANDED), settings)
+            names = tuple(name for name, _ in given.arguments)
+            yield subject._replace(
+                origins=found.origins, sources=found.sources, arguments=str(given), given=names
+            )
         except InputError as error:
             # With arguments that have no default there is no default expansion.
             if given is not DEFAULT or not sets or error.cause != NO_ARGUMENT:
                 yield Failed(error, str(given))
-
-
-def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
-    # A URDF needs none of it.
-    from multibot_rewrite.description.sources.expand import expand_traced
-    from multibot_rewrite.lint.files.pairing import reach_of
-
-    find = partial(package_folder, file=path, roots=settings.readable)
-    # Warnings of xacro are not findings, and would be printed between them.
-    with redirect_stderr(StringIO()):
-        found = expand_traced(path, data, dict(given.arguments), find, reach_of(settings))
-    subject = make_subject(read_document(found.data, path + EXPANDED), settings)
-    names = tuple(name for name, _ in given.arguments)
-    return subject._replace(
-        origins=found.origins, sources=found.sources, arguments=str(given), given=names
-    )
 
 
 def _only_defines(root: _Element) -> bool:
@@ -107,13 +103,9 @@ def _only_defines(root: _Element) -> bool:
 
     One that only includes may be a whole robot; one that defines macros as well is read by others.
     """
-    tags = {_local(child) for child in root.iterchildren("*")}
+    parts = (str(child.tag).rpartition("}") for child in root.iterchildren("*"))
+    tags = {name if "xacro" in space else "" for space, _, name in parts}
     return tags <= DEFINITIONS and ("include" not in tags or "macro" in tags)
-
-
-def _local(element: _Element) -> str:
-    space, _, name = str(element.tag).rpartition("}")
-    return name if "xacro" in space else ""
 
 
 def make_subject(document: Document, settings: Settings) -> Subject:

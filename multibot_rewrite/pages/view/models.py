@@ -216,7 +216,13 @@ def _shape(it: _Element, pose: Matrix, colour: Colour, source: str) -> Iterator[
 def _joint(it: _Element) -> Joint:
     parent, child = (_named(it, tag, "link") for tag in ("parent", "child"))
     axis = it.find("axis")
-    kind = it.get("type", "")
+    kind, lower, upper = it.get("type", ""), 0.0, 0.0
+    if kind == "continuous":
+        lower, upper = -round(pi, 4), round(pi, 4)
+    elif kind in ("revolute", "prismatic"):
+        lower, upper = (_number(it, "limit", key, 0.0) for key in ("lower", "upper"))
+    factor, offset = _number(it, "mimic", "multiplier", 1.0), _number(it, "mimic", "offset", 0.0)
+    leader = _named(it, "mimic", "joint")
     return Joint(
         it.get("name", ""),
         kind,
@@ -224,8 +230,9 @@ def _joint(it: _Element) -> Joint:
         child,
         _pose(it),
         X if axis is None else vector(axis.get("xyz", "")) or X,
-        *_limits(it, kind),
-        _mimic(it),
+        lower,
+        upper,
+        (leader, factor, offset) if leader else None,
     )
 
 
@@ -234,25 +241,6 @@ def _named(joint: _Element, tag: str, key: str) -> str:
     return "" if found is None else found.get(key, "")
 
 
-def _limits(joint: _Element, kind: str) -> tuple[float, float]:
-    if kind == "continuous":
-        return -round(pi, 4), round(pi, 4)
-    if kind not in ("revolute", "prismatic"):
-        return 0.0, 0.0
-    return _number(joint, "limit", "lower", 0.0), _number(joint, "limit", "upper", 0.0)
-
-
 def _number(joint: _Element, tag: str, key: str, default: float) -> float:
     found = numbers(_named(joint, tag, key))
     return found[0] if found else default
-
-
-def _mimic(joint: _Element) -> tuple[str, float, float] | None:
-    leader = _named(joint, "mimic", "joint")
-    if not leader:
-        return None
-    return (
-        leader,
-        _number(joint, "mimic", "multiplier", 1.0),
-        _number(joint, "mimic", "offset", 0.0),
-    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from importlib.resources import files
 from typing import Any
@@ -13,7 +13,7 @@ from typing import Any
 from multibot_rewrite.base.wording import one_line, plural
 from multibot_rewrite.base.workers import limit_time, worker_pool
 from multibot_rewrite.pages.page import Framed, source_hash
-from multibot_rewrite.pages.view.models import Mesh, Model, Shape, load_mesh, prepare_meshes, three
+from multibot_rewrite.pages.view.models import Mesh, Model, load_mesh, prepare_meshes, three
 from multibot_rewrite.pages.view.scene import DEGREES, METRES, ShownScene, ViewedRobot
 
 MESH_SECONDS = 10.0
@@ -100,17 +100,16 @@ def _asset(name: str) -> str:
 def _data(scene: ShownScene, meshes: Meshes) -> dict[str, Any]:
     numbers = {path: at for at, path in enumerate(meshes)}
     return {
-        "meshes": [_mesh(it) for it in meshes.values()],
+        "meshes": [
+            {"missing": it}
+            if isinstance(it, str)
+            else {"v": _base64(it.vertices), "f": _base64(it.faces), "c": _base64(it.colours)}
+            for it in meshes.values()
+        ],
         "robots": [_robot(it, numbers, meshes) for it in scene.robots],
         "trees": scene.trees,
         "same": [METRES, DEGREES],
     }
-
-
-def _mesh(it: Mesh | str) -> dict[str, str]:
-    if isinstance(it, str):
-        return {"missing": it}
-    return {"v": _base64(it.vertices), "f": _base64(it.faces), "c": _base64(it.colours)}
 
 
 def _base64(data: bytes) -> str:
@@ -119,17 +118,22 @@ def _base64(data: bytes) -> str:
 
 def _robot(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:
     names = {one.after: [one.before, one.line] for one in it.names}
+    links: dict[str, list[Any]] = {}
+    for link, shapes in it.model.links.items():
+        links[link] = rows = []
+        for shape in shapes:
+            mesh = meshes[shape.mesh] if shape.mesh else None
+            missing = mesh if isinstance(mesh, str) else shape.missing
+            number = numbers.get(shape.mesh, -1)
+            rows.append([shape.kind, shape.size, shape.pose, shape.colour, number, missing])
     return {
         "name": it.name,
         "file": it.file,
         "pose": it.pose,
         "names": names,
-        "links": {
-            link: [_shape(one, numbers, meshes) for one in its]
-            for link, its in it.model.links.items()
-        },
+        "links": links,
         "joints": [list(one) for one in it.model.joints],
-        "changes": list(_changes(it.changes)),
+        "changes": [[at.line, at.kind, at.path, at.old, at.new, at.rule] for at in it.changes],
         "plugins": it.plugins,
         "bare": bare(it.model),
         "topic": it.topic,
@@ -137,15 +141,3 @@ def _robot(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:
         "heard": it.heard,
         "transforms": it.transforms,
     }
-
-
-def _shape(it: Shape, numbers: Mapping[str, int], meshes: Meshes) -> Any:
-    missing = it.missing
-    if it.mesh and isinstance(bad := meshes[it.mesh], str):
-        missing = bad
-    return [it.kind, it.size, it.pose, it.colour, numbers.get(it.mesh, -1), missing]
-
-
-def _changes(changes: Iterable[Any]) -> Any:
-    for it in changes:
-        yield [it.line, it.kind, it.path, it.old, it.new, it.rule]

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import acos, degrees, dist, isfinite
 from typing import NamedTuple
 
@@ -15,9 +15,7 @@ from multibot_rewrite.base.model import Change
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.checks.poses import inverse, matrix_of_quaternion, product
 from multibot_rewrite.description.library import Prepared
-from multibot_rewrite.description.steps.apply import list_changes
-from multibot_rewrite.description.steps.document import Document
-from multibot_rewrite.fleet.file.robot_spec import Sources
+from multibot_rewrite.description.steps.apply import Template, list_changes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import GRAPH_KINDS, RewrittenRobot
 from multibot_rewrite.pages.view.models import Joint, Model, load_urdf
@@ -27,8 +25,6 @@ from multibot_rewrite.system.records import Edge, System
 from multibot_rewrite.system.tf_copies import tree_topic
 
 HEARD, ELSEWHERE, SILENT = "heard", "elsewhere", "silent"
-# What is changed for a robot, by its name.
-_Changes = Callable[[str], list[Change]]
 
 
 class Name(NamedTuple):
@@ -76,8 +72,8 @@ class ShownScene(NamedTuple):
 
 def scene_of(plan: FleetPlan, graph: System | None = None) -> ShownScene:
     """The robots; raises as ``load_sdf``."""
-    changes = {sources: _changes(plan, sources) for sources in plan.jobs}
-    robots = tuple(_robot(it, changes[it.spec.sources], graph) for it in plan.robots)
+    templates = {sources: Prepared(job.description).template for sources, job in plan.jobs.items()}
+    robots = tuple(_robot(it, templates[it.spec.sources], graph) for it in plan.robots)
     if graph is None:
         return ShownScene(robots, ())
     frames = [
@@ -87,21 +83,35 @@ def scene_of(plan: FleetPlan, graph: System | None = None) -> ShownScene:
     return ShownScene(robots, heard_trees(graph.edges, frames, plan.fleet.naming.shared_frames))
 
 
-def _changes(plan: FleetPlan, sources: Sources) -> _Changes:
-    template = Prepared(plan.jobs[sources].description).template
-    return lambda robot: list_changes(template, robot)
-
-
-def _robot(it: RewrittenRobot, changes: _Changes, graph: System | None) -> ViewedRobot:
+def _robot(it: RewrittenRobot, template: Template, graph: System | None) -> ViewedRobot:
     spec = it.spec
-    model = _model(it)
+    root, source = it.member.described.document.root, os.path.abspath(spec.description)
+    model = (load_sdf if root.tag == "sdf" else load_urdf)(root, source)
     # Frames have the tag of a robot, its topics the namespace.
-    made = [*_of(changes(spec.tag), False), *_of(changes(spec.namespace), True)]
-    names = tuple(_names(it, model))
+    made = [one for one in list_changes(template, spec.tag) if one.kind not in GRAPH_KINDS]
+    made += (one for one in list_changes(template, spec.namespace) if one.kind in GRAPH_KINDS)
+    before = _before(it, model)
+    keys = (("link", model.links), ("joint", [one.name for one in model.joints]))
+    names = tuple(
+        Name(name, *before.get((kind, name), (name, 0))) for kind, own in keys for name in own
+    )
+    document, plugins = it.member.source, []
+    for element, start in zip(document.elements, document.starts, strict=True):
+        if element.tag == "plugin":
+            line = document.source.count(b"\n", 0, start) + 1
+            text = (element.text or "").strip()
+            plugins.append(Plugin(element.get("name", text), element.get("filename", text), line))
     prefix, topic = it.frame_prefix, tf_topic(spec.namespace, it.names.naming)
     sent = graph.edges if graph else ()
     edges = {one.child: one for one in sent if tree_topic(one.topic) == topic}
-    heard = _heard(model, edges, prefix) if graph else {}
+    # Each link: is it a frame of the robot's tf, below the parent that it has here?
+    known = {*edges, *(one.parent for one in edges.values())}
+    above = {one.child: f"{prefix}{one.parent}" for one in model.joints}
+    heard = {}
+    for link in model.links if graph else ():
+        edge = edges.get(f"{prefix}{link}")
+        here = link not in above or (edge is not None and edge.parent == above[link])
+        heard[link] = SILENT if f"{prefix}{link}" not in known else HEARD if here else ELSEWHERE
     links = [one.child for one in model.joints if heard.get(one.child) == HEARD]
     transforms = {link: placed(edges[f"{prefix}{link}"]) for link in links}
     file = (
@@ -111,33 +121,8 @@ def _robot(it: RewrittenRobot, changes: _Changes, graph: System | None) -> Viewe
     )
     return ViewedRobot(
         spec.name, file, tuple(spec.pose or (0.0,) * 6), model, names,
-        tuple(sorted(made)), tuple(_plugins(it.member.source)), topic, prefix, heard, transforms,
+        tuple(sorted(made)), tuple(plugins), topic, prefix, heard, transforms,
     )  # fmt: skip
-
-
-def _of(changes: Iterable[Change], graph: bool) -> Iterator[Change]:
-    yield from (it for it in changes if (it.kind in GRAPH_KINDS) == graph)
-
-
-def _model(it: RewrittenRobot) -> Model:
-    root, source = it.member.described.document.root, os.path.abspath(it.spec.description)
-    return (load_sdf if root.tag == "sdf" else load_urdf)(root, source)
-
-
-def _plugins(document: Document) -> Iterator[Plugin]:
-    """In the order of the file."""
-    for it, start in zip(document.elements, document.starts, strict=True):
-        if it.tag == "plugin":
-            line = document.source.count(b"\n", 0, start) + 1
-            text = (it.text or "").strip()
-            yield Plugin(it.get("name", text), it.get("filename", text), line)
-
-
-def _names(it: RewrittenRobot, model: Model) -> Iterator[Name]:
-    before = _before(it, model)
-    for kind, names in (("link", model.links), ("joint", [one.name for one in model.joints])):
-        for name in names:
-            yield Name(name, *before.get((kind, name), (name, 0)))
 
 
 def _before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str, int]]:
@@ -157,23 +142,6 @@ def _before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str
         for one in root.iterfind(kind)
         for name in [one.get("name", "")]
     }
-
-
-def _heard(model: Model, edges: Mapping[str, Edge], prefix: str) -> dict[str, str]:
-    """Each link: is it a frame of the robot's tf, below the parent that it has here?"""
-    parents = {child: edge.parent for child, edge in edges.items()}
-    known = {*parents, *parents.values()}
-    above = {one.child: one.parent for one in model.joints}
-    found = {}
-    for link in model.links:
-        frame = f"{prefix}{link}"
-        if frame not in known:
-            found[link] = SILENT
-        elif link in above and parents.get(frame) != f"{prefix}{above[link]}":
-            found[link] = ELSEWHERE
-        else:
-            found[link] = HEARD
-    return found
 
 
 # What rounding and single precision explain.
@@ -213,14 +181,16 @@ def heard_trees(
     by_topic: dict[str, dict[str, Edge]] = defaultdict(dict)
     for it in heard:
         by_topic[tree_topic(it.topic)].setdefault(it.child, it)
-    return tuple(
-        HeardTree(topic, root, _robot_of(topic, root, frames, robots, shared), frames)
-        for topic, above in by_topic.items()
-        for root in dict.fromkeys(it.parent for it in above.values())
-        if root not in above
-        for frames in [tuple(_below(root, above))]
-        if frames
-    )
+    found = []
+    for topic, above in by_topic.items():
+        for root in dict.fromkeys(it.parent for it in above.values() if it.parent not in above):
+            frames = tuple(_below(root, above))
+            names = {root, *(it.name for it in frames)}
+            own = [it.robot for it in robots if it.topic == topic and it.frames & names]
+            # The one robot whose tree this is: nothing says where its root is in the world.
+            is_of_one = root not in shared and root not in WORLD_FRAMES and len(own) == 1
+            found += [HeardTree(topic, root, own[0] if is_of_one else "", frames)] if frames else []
+    return tuple(found)
 
 
 def placed(edge: Edge) -> tuple[float, ...]:
@@ -238,21 +208,6 @@ def _below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
             if transform := placed(it):
                 yield HeardFrame(it.child, name, transform)
                 todo.append(it.child)
-
-
-def _robot_of(
-    topic: str,
-    root: str,
-    frames: Sequence[HeardFrame],
-    robots: Sequence[LinkFrames],
-    shared: frozenset[str],
-) -> str:
-    """The one robot whose tree this is: nothing says where its root is in the world."""
-    if root in shared or root in WORLD_FRAMES:
-        return ""
-    names = {root, *(it.name for it in frames)}
-    own = [it.robot for it in robots if it.topic == topic and it.frames & names]
-    return own[0] if len(own) == 1 else ""
 
 
 def moved(joints: Iterable[Joint], heard: Mapping[str, tuple[float, ...]]) -> Iterator[str]:

@@ -55,7 +55,12 @@ def load_sdf(root: _Element, source: str) -> Model:
     loose = [name for name in at if name not in ends]
     if [at[it] for it in loose] == [HERE]:
         return Model(shapes, tuple(joints))
-    return Model({MODEL: (), **shapes}, (*(_fixed(it, at[it]) for it in loose), *joints))
+    # Where a link that no joint moves is.
+    fixed = (
+        Joint(f"{it} in {MODEL}", "fixed", MODEL, it, matrix_of(at[it]), (1, 0, 0), 0, 0, None)
+        for it in loose
+    )
+    return Model({MODEL: (), **shapes}, (*fixed, *joints))
 
 
 def declared(root: _Element) -> dict[str, int]:
@@ -90,11 +95,6 @@ def _limits(it: Named, kind: str) -> tuple[float, float]:
     ends = (numbers(it.text(f"axis/limit/{end}")) for end in ("lower", "upper"))
     lower, upper = (end[0] if end else sign * most for sign, end in zip((-1, 1), ends, strict=True))
     return max(lower, -most), min(upper, most)
-
-
-def _fixed(link: str, pose: Pose) -> Joint:
-    """Where a link that no joint moves is."""
-    return Joint(f"{link} in {MODEL}", "fixed", MODEL, link, matrix_of(pose), (1, 0, 0), 0, 0, None)
 
 
 def _shapes(link: Named, frames: Frames, at: Pose) -> Iterator[Shape]:

@@ -14,7 +14,7 @@ from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import check_name_in_code
 from multibot_rewrite.knowledge.conditions import ALSO, Values, chosen_type, holds, verdict
-from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, SentTransform
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import Origin
 
@@ -43,7 +43,19 @@ def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeF
         of_stack.get((it.role, it.named_from or it.name), alone).append(it)
     each = ((it, of_stack[it.role, it.name]) for it in whole.endpoints)
     made = [it for raw, own in each for it in _endpoint(node, raw, own, values, value_of)] + alone
-    with_frames = node._replace(frames=tuple(_frame(it, values) for it in node.frames))
+    frames = []
+    for frame in node.frames:
+        told = values.get(frame.parameter)
+        # <pose_name> stands for the value of another parameter.
+        other = values.get(frame.default.strip("<>")) if "<" in frame.default else None
+        if told is not None and told.value != "":
+            frame_set = frame._replace(default=str(told.value), given=True, is_kept=False)
+        elif other is not None:
+            frame_set = frame._replace(default=str(other.value), given=True)
+        else:
+            frame_set = frame
+        frames.append(frame_set)
+    with_frames = node._replace(frames=tuple(frames))
     return with_frames._replace(
         name=given.node,
         endpoints=tuple(dict.fromkeys(made)),
@@ -63,15 +75,6 @@ def lookup(node: NodeFacts, values: Mapping[str, Given]) -> Values:
     """What conditions ask: the value of a parameter, or its default where it names a frame."""
     defaults = {it.parameter: it.default for it in node.frames}
     return lambda name: values[name].value if name in values else defaults.get(name)
-
-
-def _frame(frame: FrameParameter, values: Mapping[str, Given]) -> FrameParameter:
-    given = values.get(frame.parameter)
-    if given is None or given.value == "":
-        # <pose_name> stands for the value of another parameter.
-        other = values.get(frame.default.strip("<>")) if "<" in frame.default else None
-        return frame if other is None else frame._replace(default=str(other.value), given=True)
-    return frame._replace(default=str(given.value), given=True, is_kept=False)
 
 
 def _endpoint(
@@ -109,7 +112,16 @@ def _endpoint(
             typed = _typed(_sure(bound, decided), value_of)
             words = [it for it in _ID.findall(raw.name) if it in ids]
             listed = values.get(_put(ids[words[-1]], binding)) if words else None
-            typed = _listed_type(typed, listed, binding[words[-1]] if words else "")
+            if (
+                words
+                and listed
+                and isinstance(listed.value, list)
+                and typed.type.startswith(OF_LIST)
+            ):
+                # The type stands behind its word in a list of names and types.
+                items = [str(it) for it in listed.value]
+                behind = items[items.index(binding[words[-1]]) + 1 :][:1]
+                typed = typed._replace(type=next(filter(_TYPE.search, behind), ""))
             for it in _named(typed, values, _ending(node, raw)):
                 yield _checked(it, listed)
 
@@ -194,18 +206,6 @@ def _words(given: Given | None) -> list[str]:
     return [it for it in words if not _TYPE.search(it)]
 
 
-def _listed_type(endpoint: Endpoint, listed: Given | None, word: str) -> Endpoint:
-    """The endpoint with the type that stands behind its word in a list of names and types."""
-    if (
-        not endpoint.type.startswith(OF_LIST)
-        or listed is None
-        or not isinstance(listed.value, list)
-    ):
-        return endpoint
-    behind = [str(it) for it in listed.value][[str(it) for it in listed.value].index(word) + 1 :]
-    return endpoint._replace(type=next(filter(_TYPE.search, behind[:1]), ""))
-
-
 def _put(text: str, binding: Ids) -> str:
     return _ID.sub(lambda found: binding.get(found[1], found[0]), text)
 
@@ -251,15 +251,14 @@ def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[st
     parameters the first that has one. An empty text is one, too: it stands for no topic."""
     found: list[tuple[str, str]] = []
     for one in parameter.split(ALSO):
-        found = [it for name in _called(one, values) for it in _topics(name, values[name])]
+        found = []
+        for name in _called(one, values):
+            value = values[name].value
+            topics = _words(values[name]) if isinstance(value, list) else [str(value)]
+            found += ((name, it) for it in topics if not it or not check_name_in_code(it))
         if any(topic for _, topic in found):
             break
     yield from found
-
-
-def _topics(name: str, given: Given) -> Iterator[tuple[str, str]]:
-    words = _words(given) if isinstance(given.value, list) else [str(given.value)]
-    yield from ((name, it) for it in words if not it or not check_name_in_code(it))
 
 
 def _called(parameter: str, values: Mapping[str, Given]) -> list[str]:

@@ -89,18 +89,13 @@ def with_hardware(
     if manager is None:
         return own
     when = manager.when
-    made = (
-        known[kind]._replace(name=name, known=kind, origin=it, when=when, of_hardware=True)
-        for name, kind, it in _hardware_nodes(root, file)
-    )
-    return (*own, *made)
-
-
-def _hardware_nodes(root: _Element, file: str) -> Iterator[tuple[str, str, Origin]]:
+    made = []
     for hardware in root.iterfind("ros2_control/hardware"):
-        plugin = _plugin(hardware)
+        plugin, origin = _plugin(hardware), Origin(place=_place(hardware, file))
         for name, kind in plugin.nodes.items() if plugin else ():
-            yield name, kind, Origin(place=_place(hardware, file))
+            node = known[kind]._replace(name=name, known=kind, origin=origin, when=when)
+            made.append(node._replace(of_hardware=True))
+    return (*own, *made)
 
 
 def _by_code(hardware: _Element, file: str) -> Iterator[Exported]:
@@ -151,21 +146,16 @@ def control_system(
     start so."""
     declared = [it for it in given if it.host_name]
     own = [Interface(it.kind, it.name, f"/{MANAGER}", EXPORTS, it.place) for it in exports]
+    controllers = []
     for it in declared:
-        own += (_claim(claim, it) for claim in _claims(it, known))
-    return System(
-        controllers=tuple(_controller(it, known, active) for it in declared),
-        interfaces=tuple(own),
-    )
-
-
-def _controller(it: Run, known: Mapping[str, NodeFacts], active: Collection[str]) -> Controller:
-    claims = (claim.name for claim in _claims(it, known) if claim.kind == COMMAND)
-    is_active = it.node in active
-    name = it.node.rpartition("/")[2]
-    return Controller(
-        f"/{it.host_name}", name, ACTIVE if is_active else "", tuple(claims) * is_active
-    )
+        claims, is_active = [*_claims(it, known)], it.node in active
+        for one in claims:
+            place = one.place or it.place
+            own.append(Interface(one.kind, one.name, f"/{it.node}", CLAIMS, place))
+        commands = tuple(one.name for one in claims if one.kind == COMMAND) * is_active
+        name, state = it.node.rpartition("/")[2], ACTIVE if is_active else ""
+        controllers.append(Controller(f"/{it.host_name}", name, state, commands))
+    return System(controllers=tuple(controllers), interfaces=tuple(own))
 
 
 def _claims(it: Run, known: Mapping[str, NodeFacts]) -> Iterator[Claimed]:
@@ -174,10 +164,6 @@ def _claims(it: Run, known: Mapping[str, NodeFacts]) -> Iterator[Claimed]:
     if node is not None:
         yield from claims_of(node.claims, it)
         yield from (claim for claim, _ in claimed_twice(node.claims, it))
-
-
-def _claim(claim: Claimed, it: Run) -> Interface:
-    return Interface(claim.kind, claim.name, f"/{it.node}", CLAIMS, claim.place or it.place)
 
 
 TYPE, COMMAND = "type", "command"
@@ -252,10 +238,14 @@ def _names(template: str, made: _Made, values: Mapping[str, Given]) -> Iterator[
 def _choices(
     part: re.Match[str], values: Mapping[str, Given]
 ) -> Iterator[tuple[str, Place | None]]:
-    if not part["names"]:
-        yield from ((it, None) for it in _counted(part))
+    if part["words"]:
+        yield from ((it, None) for it in part["words"].split(","))
         return
-    given = next((values[it] for it in part["names"].split("|") if _is_set(values.get(it))), None)
+    if not part["names"]:
+        yield from ((f"{it}", None) for it in range(int(part["first"]), int(part["last"]) + 1))
+        return
+    named = (values[it] for it in part["names"].split("|") if it in values)
+    given = next((it for it in named if it.value not in ("", [])), None)
     if given is not None:
         many = given.value if isinstance(given.value, list) else [given.value]
         yield from ((str(it), given.place) for it in many)
@@ -264,13 +254,3 @@ def _choices(
         # An empty text in a file is the value; an empty list makes no name.
         words = part["default"][1:].split(",") if empty is None else [""] * (empty.value == "")
         yield from ((it, None) for it in words)
-
-
-def _counted(part: re.Match[str]) -> list[str]:
-    if part["words"]:
-        return part["words"].split(",")
-    return [str(it) for it in range(int(part["first"]), int(part["last"]) + 1)]
-
-
-def _is_set(given: Given | None) -> bool:
-    return given is not None and given.value not in ("", [])

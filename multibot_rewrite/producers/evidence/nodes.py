@@ -28,8 +28,6 @@ from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import COMMAND, STATE, Origin
 
 MANAGER = "controller_manager"
-# So many names in one line.
-_SHOWN = 3
 NOT_DECLARED = declare(
     "MF801", "controller-not-declared", NOTE, formats=("params",), options={"stack": "ros2_control"}
 )
@@ -68,8 +66,16 @@ def nodes_of(
     names = {it.node for it in filter(None, sections.values())}
     of_stack = {it.place.file for it in given if it.node in names}
     sent = {child for node in kept for child in children_of(node)}
-    more = [it for it in given if it.node not in names and _may_run(it, known)]
-    meant = dict(_meant([it for it in stack if it not in kept], more, known))
+    more = []
+    for it in (it for it in given if it.node not in names):
+        # A controller that a file declares, or a known node with a process of its own.
+        entry = known.get(it.fact.known)
+        more += [it] if it.host_name or (entry is not None and not entry.host) else []
+    meant: dict[str, NodeFacts] = {}
+    for node in (it for it in stack if it not in kept):
+        alike = [it.node for it in more if not it.host_name and _stands_for(it, node, known)]
+        # Of several, as two filters with rules of their own, it is not known which stands for it.
+        meant |= {alike[0]: node} if len(alike) == 1 else {}
     for it in more:
         if it.node in meant:
             entry = known[it.fact.known]
@@ -105,21 +111,15 @@ def _left_out(
     kept = []
     for node in stack:
         if sections[node.name] is None and node.host == MANAGER and controllers:
-            findings += [] if node.when else [_not_declared(node, controllers[0])]
+            beside = controllers[0]
+            file, line, _ = beside.place
+            message = f"{node.name} of the stack is declared in no file; it is left out"
+            hint = f"declare it beside {beside.node}, or name a stack without it"
+            found = NOT_DECLARED.finding(message, hint, file=file, line=line)
+            findings += [] if node.when else [found]
         elif sections[node.name] or not any(_stands_for(it, node, known) for it in given):
             kept.append(node)
     return findings, kept
-
-
-def _meant(
-    stack: Iterable[NodeFacts], given: Sequence[Run], known: Mapping[str, NodeFacts]
-) -> Iterator[tuple[str, NodeFacts]]:
-    """The one node of the files that stands for each of these nodes of the stack; of several, as two
-    filters with rules of their own, it is not known which."""
-    for node in stack:
-        found = [it.node for it in given if not it.host_name and _stands_for(it, node, known)]
-        if len(found) == 1:
-            yield found[0], node
 
 
 def _stands_for(given: Run, node: NodeFacts, known: Mapping[str, NodeFacts]) -> bool:
@@ -136,12 +136,6 @@ def children_of(node: NodeFacts) -> Iterator[str]:
     """The frames that a node sends."""
     frames = {it.parameter: it.default for it in node.frames}
     yield from (frames[it.child] for it in node.sends)
-
-
-def _may_run(given: Run, known: Mapping[str, NodeFacts]) -> bool:
-    """Is it a controller that a file declares, or a known node with a process of its own?"""
-    node = known.get(given.fact.known)
-    return bool(given.host_name) or (node is not None and not node.host)
 
 
 def _of_stack(
@@ -191,13 +185,6 @@ def _nobody(given: Iterable[Run]) -> Iterator[Finding]:
         yield NOBODY.finding(message, hint, file=file, line=first.place.line, column=1)
 
 
-def _not_declared(node: NodeFacts, beside: Run) -> Finding:
-    file, line, _ = beside.place
-    message = f"{node.name} of the stack is declared in no file; it is left out"
-    hint = f"declare it beside {beside.node}, or name a stack without it"
-    return NOT_DECLARED.finding(message, hint, file=file, line=line, column=1)
-
-
 def _unknown(given: Sequence[Run]) -> Iterator[Finding]:
     for it in given:
         if it.host_name and not (it.program or it.fact.known):
@@ -209,7 +196,10 @@ def _unknown(given: Sequence[Run]) -> Iterator[Finding]:
             described = "describe it in a file of nodes (docs/stacks.md)"
             meant = it.fact.known
             taken = f"the plan takes it for a {meant}" if meant else "the plan has its name alone"
-            hint = f"{described}; {taken}{_guess(it)}"
+            # What it claims, if its parameters have their usual names.
+            names = list(dict.fromkeys(one.name for one in claims_of(GUESSED, it)))
+            claims = f"; by its parameters it seems to claim {shorten(names)}" if names else ""
+            hint = f"{described}; {taken}{claims}"
             hint = f"did you mean {it.like}?" if it.like else hint
             yield UNKNOWN_TYPE.finding(
                 message, hint, file=it.place.file, line=it.place.line, column=1
@@ -226,15 +216,6 @@ def _of_another_release(given: Sequence[Run], known: Mapping[str, NodeFacts]) ->
             )
 
 
-def _guess(controller: Run) -> str:
-    """What a controller of an unknown type claims, if its parameters have their usual names."""
-    names = list(dict.fromkeys(it.name for it in claims_of(GUESSED, controller)))
-    if not names:
-        return ""
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return f"; by its parameters it seems to claim {', '.join(names[:_SHOWN])}{more}"
-
-
 _JOINTS = "<joints|joint|joint_names|joint_name|dof_names>"
 _INTERFACES = "<command_interfaces|command_interface|interface_name|interface_names>"
 # What the parameters of controllers are usually called.
@@ -248,7 +229,11 @@ def alternatives(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> dict[s
     """Controllers that command what another one commands -> the condition under which they run."""
     by_owner: dict[tuple[str, str], list[str]] = defaultdict(list)
     for controller in (it for it in given if it.host_name):
-        for owner in dict.fromkeys(_commanded(controller, known)):
+        # The joints, sensors and gpios that it commands.
+        node = known.get(controller.fact.known)
+        claims = claims_of(node.claims if node else GUESSED, controller)
+        owners = (it.name.rpartition("/")[0] for it in claims if it.kind == COMMAND)
+        for owner in dict.fromkeys(owners):
             by_owner[controller.host_name, owner].append(controller.node)
     found: dict[str, str] = {}
     for names in (it for it in by_owner.values() if len(it) > 1):
@@ -256,14 +241,6 @@ def alternatives(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> dict[s
             other = next(it for it in names if it != name)
             found.setdefault(name, f"{other} does not command the same joints")
     return found
-
-
-def _commanded(controller: Run, known: Mapping[str, NodeFacts]) -> Iterator[str]:
-    """The joints, sensors and gpios that it commands."""
-    node = known.get(controller.fact.known)
-    for it in claims_of(node.claims if node else GUESSED, controller):
-        if it.kind == COMMAND:
-            yield it.name.rpartition("/")[0]
 
 
 _TF = ("/tf", "/tf_static")

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import lru_cache
+from itertools import dropwhile
 from operator import itemgetter
 from typing import NamedTuple
 
@@ -36,7 +37,6 @@ from multibot_rewrite.companions.yaml_text import YamlText, line_of, names_below
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import UNKNOWN
 from multibot_rewrite.spelling.records import Given, Run
-from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import Place
 
 OWN_TYPE = "type"
@@ -54,13 +54,6 @@ class _Section(NamedTuple):
     @property
     def place(self) -> Place:
         return Place(self.file, line_of(self.raw.keys[0]))
-
-
-def _name(path: str) -> str:
-    tokens = path.strip("/").split("/")
-    while tokens and tokens[0] in ANY:
-        tokens.pop(0)
-    return "/".join(tokens) if not set(tokens) & set(ANY) else ""
 
 
 def given_nodes(
@@ -123,15 +116,12 @@ def values_for(node: str, documents: Iterable[YamlText]) -> dict[str, Given]:
 @lru_cache(maxsize=64)
 def _sections(document: YamlText) -> tuple[_Section, ...]:
     """The sections of a file: each node of a launch file that gets it asks for them."""
-    return tuple(
-        _Section(
-            document.file,
-            it,
-            dict(_flat(document, it.body, "")),
-            _name(it.path),
-        )
-        for it in raw_sections(document)
-    )
+    found = []
+    for it in raw_sections(document):
+        tokens = [*dropwhile(ANY.__contains__, it.path.strip("/").split("/"))]
+        name = "/".join(tokens) if not set(tokens) & set(ANY) else ""
+        found.append(_Section(document.file, it, dict(_flat(document, it.body, "")), name))
+    return tuple(found)
 
 
 def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Given]]:
@@ -142,14 +132,13 @@ def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str
             continue
         # What rcl rejects is reported where the file is rewritten.
         with suppress(InputError):
-            yield name, Given(_plain(value_of(document, node)), Place(document.file, line_of(key)))
-
-
-def _plain(value: Value) -> Value:
-    """A value without what stands for the robot in names."""
-    if isinstance(value, list):
-        return [of_one_robot(it) if isinstance(it, str) else it for it in value]
-    return of_one_robot(value) if isinstance(value, str) else value
+            value = value_of(document, node)
+            # Without what stands for the robot in names.
+            if isinstance(value, list):
+                value = [of_one_robot(it) if isinstance(it, str) else it for it in value]
+            elif isinstance(value, str):
+                value = of_one_robot(value)
+            yield name, Given(value, Place(document.file, line_of(key)))
 
 
 class _Controller(NamedTuple):

@@ -56,10 +56,12 @@ class Semantics(NamedTuple):
 
 def semantics(srdf: _Element, urdf: _Element, file: str) -> Semantics:
     """What an SRDF says of the robot of a URDF; ``file`` is the SRDF's."""
-    return Semantics(
-        tuple(_groups(srdf, read_robot(urdf), file)),
-        tuple(_virtual(it, file) for it in srdf.iterchildren("virtual_joint")),
-    )
+    virtual = []
+    for it in srdf.iterchildren("virtual_joint"):
+        parent, child = text_of(it, "parent_frame"), text_of(it, "child_link")
+        own = text_of(it), text_of(it, "type"), parent, child
+        virtual.append(VirtualJoint(*own, _place(it, file)))
+    return Semantics(tuple(_groups(srdf, read_robot(urdf), file)), tuple(virtual))
 
 
 def _groups(srdf: _Element, robot: Robot, file: str) -> Iterator[PlanningGroup]:
@@ -68,20 +70,10 @@ def _groups(srdf: _Element, robot: Robot, file: str) -> Iterator[PlanningGroup]:
     for name, element in groups.items():
         joints = joints_of(name, groups, robot)
         active = (it.name for it in robot.joints if it.name in joints and it.name not in passive)
-        moved = tuple(it for it in dict.fromkeys(active) if _moves(robot, it))
+        joined = ((it, robot.joint[it]) for it in dict.fromkeys(active))
+        # Those that are variables of their own.
+        moved = tuple(it for it, own in joined if own.type != FIXED and "mimic" not in own.parts)
         yield PlanningGroup(name, moved, _place(element, file))
-
-
-def _moves(robot: Robot, name: str) -> bool:
-    """Is it a variable of its own?"""
-    joint = robot.joint[name]
-    return joint.type != FIXED and "mimic" not in joint.parts
-
-
-def _virtual(joint: _Element, file: str) -> VirtualJoint:
-    name, type_ = text_of(joint), text_of(joint, "type")
-    parent, child = text_of(joint, "parent_frame"), text_of(joint, "child_link")
-    return VirtualJoint(name, type_, parent, child, _place(joint, file))
 
 
 def _place(element: _Element, file: str) -> Place:
@@ -113,7 +105,9 @@ def listed(holder: yaml.Node, key: str) -> list[yaml.ScalarNode]:
 def planning_system(documents: Iterable[YamlText], semantics: Semantics) -> System:
     """The joints that controllers of MoveIt move, and those that groups of the SRDF are planned for."""
     moved = (
-        Interface(JOINT, str(joint.value), f"/{key.value}", EXPORTS, _place_in(document, joint))
+        Interface(
+            JOINT, str(joint.value), f"/{key.value}", EXPORTS, Place(document.file, line_of(joint))
+        )
         for document in documents
         for manager in managers(document.root)
         for key, body in controllers_of(manager)
@@ -125,7 +119,3 @@ def planning_system(documents: Iterable[YamlText], semantics: Semantics) -> Syst
         for joint in group.joints
     )
     return System(interfaces=(*moved, *planned))
-
-
-def _place_in(document: YamlText, node: yaml.Node) -> Place:
-    return Place(document.file, line_of(node))

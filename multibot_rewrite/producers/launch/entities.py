@@ -15,6 +15,8 @@ from lxml import etree
 from multibot_rewrite.base.bounded import A_VALUE, compose_yaml, load_yaml
 from multibot_rewrite.companions.yaml_text import line_of
 
+# What is made of an entity has its line in this attribute, where the maker knows it.
+LINE = "multibot_line"
 _SEPARATOR, _CHILDREN = "-sep", "children"
 # What libxml2 says of it, by its release.
 _TOO_DEEP = (etree.ErrorTypes.ERR_RESOURCE_LIMIT, etree.ErrorTypes.ERR_INTERNAL_ERROR)

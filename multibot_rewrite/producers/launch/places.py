@@ -13,7 +13,7 @@ from typing import Any
 from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
-from multibot_rewrite.producers.launch.entities import root_of
+from multibot_rewrite.producers.launch.entities import LINE, root_of
 from multibot_rewrite.system.records import Place
 
 _KEPT = "multibot_place"
@@ -42,13 +42,13 @@ def _keeping(made: Callable[..., None]) -> Callable[..., None]:
 
 
 def place_of(action: Any, file: str, what: tuple[str, str] | None = None) -> Place:
-    """The place of an action; ``file`` is the launch file that has it, ``what`` its package and
-    executable, by which it is found in a file that is not Python."""
+    """Return the place of an action; ``file`` is the launch file that has it, ``what`` its package and
+    executable, by which launch's own action is found in a file that is not Python."""
     kept = getattr(action, _KEPT, None)
     if isinstance(kept, Place):
         return kept
     real = os.path.realpath(file)
-    return Place(real, _lines(real).get(what, 1) if what else 1)
+    return Place(real, getattr(action, LINE, 0) or (_lines(real).get(what, 1) if what else 1))
 
 
 def _maker(frame: FrameType | None) -> Place | None:

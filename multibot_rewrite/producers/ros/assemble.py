@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -25,6 +26,8 @@ from multibot_rewrite.system.records import (
 
 # Participants announce themselves every 3 s: a shorter quiet time proves nothing.
 QUIET_SECONDS = 3.5
+# What a network loses is sent again every 3 s, and may be lost again.
+LOSSY_QUIET_SECONDS = 10.5
 # Where all participants that there can be are known. Their nodes and endpoints follow at once, or one
 # after another where a program starts.
 ALL_KNOWN_SECONDS = 1.5
@@ -135,6 +138,17 @@ def unannounced(announced: int, here: int, nodes: int, lost: int) -> Iterator[Ca
     yield Caveat("programs-unannounced", True, text)
 
 
+def seen_by_one(nodes: Sequence[str]) -> Iterator[Caveat]:
+    """Yield a caveat where two participants of this process see different ends of these nodes."""
+    if nodes:
+        text = (
+            f"two participants of this look see different topics or services of"
+            f" {shorten(nodes, SEVERAL)}: the network between the machines loses packets;"
+            " look again, with a longer --timeout"
+        )
+        yield Caveat("network-loses-packets", True, text)
+
+
 def not_heard(silent: Sequence[str]) -> Iterator[Caveat]:
     """Where the time was over before messages could come."""
     which = f" on {shorten(silent, SEVERAL)}" if silent else ""
@@ -149,16 +163,16 @@ def why_settled(
     timeout: float,
     quiet: float = QUIET_SECONDS,
     *,
-    starved: bool = False,
+    unsure: bool = False,
 ) -> str:
     """Why the observation can end, or an empty string; times are seconds since its start.
 
     ``complete``: all that is expected is there; ``quiet``: so long without a change suffices, unless
-    the look was ``starved`` meanwhile.
+    the look is ``unsure``: it waited for a processor meanwhile, or two participants see different ends.
     """
     if complete and now - changed.expected >= BURST_SECONDS:
         return EXPECTED
-    if now - changed.all >= quiet and not starved:
+    if now - changed.all >= quiet and not unsure:
         return QUIET
     return TIMEOUT if now >= timeout else ""
 
@@ -242,17 +256,26 @@ def numbers_of(transform: Any) -> tuple[float, ...]:
     return tuple(round(it, _DIGITS) if abs(it) < FARTHEST else math.inf for it in numbers)
 
 
+def age_of(stamp: float | None) -> float:
+    """How old a message is by this machine's clock; what is less than a second is the network's."""
+    if stamp is None:
+        return 0.0
+    age = round(time.time() - stamp, 1)
+    return math.inf if not stamp else age if abs(age) >= 1.0 else 0.0
+
+
 def frames(
     received: Iterable[ReceivedTransform],
     endpoints: Iterable[End],
     of_several: Collection[ReceivedTransform] = (),
     last: Mapping[ReceivedTransform, tuple[float, ...]] = NO_TRANSFORMS,
     rates: Mapping[ReceivedTransform, float] = NO_RATES,
+    ages: Mapping[ReceivedTransform, float] = NO_RATES,
 ) -> Iterator[Edge]:
     """The transforms received, each once a topic; static if it came from a latched subscription.
 
     ``of_several`` are those that more than one publisher sends, ``last`` what each was at last,
-    ``rates`` how often it came.
+    ``rates`` how often it came, ``ages`` how old it was.
     """
     publishers = defaultdict(set)
     for end in endpoints:
@@ -265,9 +288,10 @@ def frames(
     several = {(it.topic, it.parent, it.child) for it in of_several}
     numbers = {(it.topic, it.parent, it.child): own for it, own in last.items()}
     often = {(it.topic, it.parent, it.child): own for it, own in rates.items()}
+    old = {(it.topic, it.parent, it.child): own for it, own in ages.items()}
     for edge, static in sorted(latched.items()):
         topic, parent, child = edge
         senders = tuple(sorted(publishers[topic]))
         transform = numbers.get(edge, ())
-        rate = often.get(edge, 0.0)
-        yield Edge(child, parent, topic, static, senders, edge in several, transform, rate)
+        rate, age = often.get(edge, 0.0), old.get(edge, 0.0)
+        yield Edge(child, parent, topic, static, senders, edge in several, transform, rate, age=age)

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Set
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK, LISTENER
-from multibot_rewrite.producers.ros.assemble import numbers_of
+from multibot_rewrite.producers.ros.assemble import age_of, numbers_of
 from multibot_rewrite.producers.ros.tf_subscriptions import Mark, Pace
 from multibot_rewrite.producers.zenoh.cdr import (
     read_child_frame,
@@ -24,6 +24,7 @@ from multibot_rewrite.producers.zenoh.cdr import (
     read_stamp,
 )
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, End, Heard
+from multibot_rewrite.system.words import is_of_a_body
 
 # Their headers name frames of tf; where there are too many topics the first ones matter most.
 PACKAGES = (
@@ -53,6 +54,10 @@ LARGE = frozenset({
 })  # fmt: skip
 # A rate is that of so many seconds at least, so that 2 Hz are known, and of no more messages.
 RATE_SECONDS, MOST_MESSAGES = 0.4, 100
+# One message in so many seconds says that more do not come.
+ONE_SECONDS = 2.0
+# So much longer a laser, an IMU or odometry is waited for: that it is silent is an error.
+BODY_FACTOR = 2
 ODOMETRY = "nav_msgs/msg/Odometry"
 # The texts before their pose: frames.
 POSED = {
@@ -144,6 +149,8 @@ class HeaderSamples:
         self._heard: dict[str, dict[tuple[str, ...], Heard]] = defaultdict(dict)
         self._clock: Pace | None = None
         self._spans: dict[str, _Span] = {}
+        self._since: dict[str, float] = {}
+        self._bodies: set[str] = set()
         self._left_out = 0
         self._began = time.monotonic()
 
@@ -162,7 +169,8 @@ class HeaderSamples:
         )
         if end:
             self._open[topic.name] = end
-            self._began = time.monotonic()
+            self._bodies.update([topic.name] if is_of_a_body(topic.type) else [])
+            self._began = self._since[topic.name] = time.monotonic()
 
     def _receive(self, topic: SensorTopic, data: bytes, mark: Mark = None) -> None:
         if topic.type == CLOCK_TYPE:
@@ -175,7 +183,7 @@ class HeaderSamples:
         said = (frame or "", *joints)
         pose = pose_in(topic.type, data)
         if frame is not None and (said not in own or math.inf in pose):
-            age = 0.0 if topic.latched else _age(read_stamp(data))
+            age = 0.0 if topic.latched else age_of(read_stamp(data))
             child = read_child_frame(data) if topic.type == ODOMETRY else ""
             told = Heard(topic.name, frame, age, child=child or "", joints=joints, pose=pose)
             own[said] = told
@@ -199,8 +207,14 @@ class HeaderSamples:
             end()
 
     def keep_waiting(self, seconds: float) -> bool:
-        """Whether to wait for silent topics, until ``seconds`` after the last subscription."""
-        return bool(self.silent()) and time.monotonic() - self._began < seconds
+        """Whether to wait for silent topics, until ``seconds`` after the last subscription, or for a
+        second message."""
+        now, silent = time.monotonic(), self.silent()
+        longer = seconds * (BODY_FACTOR if silent & self._bodies else 1)
+        if silent and now - self._began < longer:
+            return True
+        once = (it for it in self._open if it in self._spans and self._spans[it].messages == 1)
+        return any(now - self._since[it] < ONE_SECONDS for it in once)
 
     def silent(self) -> Set[str]:
         """The topics on which nothing has come."""
@@ -209,7 +223,8 @@ class HeaderSamples:
 
     def heard(self) -> tuple[Heard, ...]:
         """What was heard by topic; several of a topic that several nodes publish."""
-        rates = {topic: span.rate() for topic, span in self._spans.items()}
+        now = time.monotonic()
+        rates = {it: own.rate() or self._at_most(it, now) for it, own in self._spans.items()}
         heard = [it for own in self._heard.values() for it in own.values()]
         told = [it._replace(rate=rates.get(it.topic, 0.0)) for it in heard]
         if CLOCK in self._open:
@@ -218,16 +233,14 @@ class HeaderSamples:
             told.append(Heard(CLOCK, "", math.inf if stands else 0.0, back=round(clock.back, 1)))
         return tuple(sorted(told))
 
+    def _at_most(self, topic: str, now: float) -> float:
+        """How often messages come at most, of which one came in some seconds; 0 if not known."""
+        waited = now - self._since.get(topic, now)
+        once = self._spans[topic].messages == 1
+        return round(1 / waited, 1) if once and waited >= ONE_SECONDS else 0.0
+
     def caveats(self) -> Iterator[Caveat]:
         """Where there were more topics than are listened to."""
         if self._left_out:
             text = f"frame_id was read of {MOST_TOPICS} topics, and not of {self._left_out} more"
             yield Caveat("headers-not-read", False, text)
-
-
-def _age(stamp: float | None) -> float:
-    """How old a message is by this machine's clock; what is less than a second is the network's."""
-    if stamp is None:
-        return 0.0
-    age = round(time.time() - stamp, 1)
-    return math.inf if not stamp else age if abs(age) >= 1.0 else 0.0

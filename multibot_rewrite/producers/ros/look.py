@@ -7,11 +7,14 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from functools import partial
 from typing import Any, NamedTuple
 
 from multibot_rewrite.producers.ros import assemble, queries, ros
+from multibot_rewrite.producers.ros.described import DescriptionSamples
 from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, HeaderSamples, Receive
+from multibot_rewrite.producers.ros.participants import make_room
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, Mark, TfSubscriptions
 from multibot_rewrite.producers.zenoh.cdr import read_tf, read_transform
@@ -21,6 +24,8 @@ from multibot_rewrite.system.records import ACTION, CALLS, SERVES, UNKNOWN_NODE,
 POLL_SECONDS = 0.1
 # What a look may take beyond its timeout, for the last queries.
 GRACE_SECONDS = 1.0
+# What two participants see differs for a fraction of this where no packet is lost.
+LOSSY_AFTER_SECONDS = 1.0
 
 
 class GraphSession(NamedTuple):
@@ -47,6 +52,45 @@ class GraphSession(NamedTuple):
     def over(self) -> bool:
         """Whether it has to end, also in the midst of queries."""
         return self.stop.is_set() or self.now() >= self.request.timeout + GRACE_SECONDS
+
+
+class SecondParticipant:
+    """Another participant of this process that looks at the same graph, where there are other machines:
+    of a network that loses packets the two do not miss the same.
+
+    It joins when another machine is seen first, and is in the graph until ``stack`` is closed.
+    ``lossy``: the two have differed for longer than packets take that arrive.
+    """
+
+    def __init__(self, session: GraphSession, stack: ExitStack) -> None:
+        self._session, self._stack = session, stack
+        self._second: GraphSession | None = None
+        self._agreed, self.lossy = 0.0, False
+
+    def missed(self, seen: tuple[list[str], list[End]]) -> tuple[str, ...]:
+        """Return the nodes that have not the same ends for both, as the first one has ``seen`` them."""
+        self._second = self._second or self._joined()
+        if not self._second:
+            return ()
+        (names, ends), (other_names, other_ends) = seen, overview(self._second)
+        nodes = {*names} ^ {*other_names}
+        missed = tuple(sorted(nodes | {it.node for it in {*ends} ^ {*other_ends}}))
+        if not missed:
+            self._agreed = self._session.now()
+        self.lossy |= self._session.now() - self._agreed > LOSSY_AFTER_SECONDS
+        return missed
+
+    def _joined(self) -> GraphSession | None:
+        node = self._session.node
+        found = queries.participants(node)
+        if len(queries.on_this_machine(node, found)) == len(found):
+            return None
+        opened = self._stack.enter_context(ros.opened())
+        self._agreed = self._session.now()
+        # Under the same name, which is left out of what is seen.
+        second = ros.add_node(opened, node.get_name())
+        make_room()
+        return self._session._replace(ros=opened, node=second)
 
 
 def receive(session: GraphSession, seconds: float) -> None:
@@ -120,12 +164,14 @@ class Ears:
         self._request = session.request
         self.tf = TfSubscriptions(partial(_subscribe, session))
         self.headers = HeaderSamples(partial(_subscribe_to_headers, session))
+        self.descriptions = DescriptionSamples(partial(_subscribe_to_last, session))
 
     def update(self, endpoints: Sequence[End]) -> None:
         """Subscribe to what is published now."""
         self.tf.update(endpoints, self._request.substitutes)
         if self._request.headers:
             self.headers.update(endpoints)
+            self.descriptions.update(endpoints)
 
     def silent(self) -> list[str]:
         """The topics on which nothing has come."""
@@ -160,6 +206,12 @@ def _subscribe_to_headers(
     """Subscribe to the last message only, since there may be large images; None without a header."""
     if type_ != CLOCK_TYPE and not ros.begins_with_header(type_):
         return None
+    return _subscribe_to_last(session, topic, type_, latched, callback)
+
+
+def _subscribe_to_last(
+    session: GraphSession, topic: str, type_: str, latched: bool, callback: Receive
+) -> Callable[[], None] | None:
     class_, _ = ros.raw_message_class(type_)
     # Of the clock all are wanted: it may go back at any.
     depth = 0 if type_ == CLOCK_TYPE else 1

@@ -11,7 +11,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from math import inf
 
@@ -22,6 +22,7 @@ from multibot_rewrite.producers.ros.look import (
     TF_SECONDS,
     Ears,
     GraphSession,
+    SecondParticipant,
     complete_view,
     overview,
     receive,
@@ -105,11 +106,14 @@ def take_snapshot(session: GraphSession) -> System:
     """A snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
     cache: queries.TopicCache = {}
     ears = Ears(session)
-    why, clock, last = _wait_until_settled(session, cache, ears)
+    with ExitStack() as stack:
+        second = SecondParticipant(session, stack)
+        why, clock, last, missed = _wait_until_settled(session, cache, ears, second)
     seconds = session.now()
     names, endpoints = complete_view(session, cache)
     # Who names what is expected does not wait for anything that may be late.
     late = () if why == EXPECTED else [*clock.starved(), *_unannounced(session, names)]
+    late = [*late, *assemble.seen_by_one(missed)]
     more = [*late, *(assemble.cut_short(names, endpoints) if session.over() else ())]
     ears.update(endpoints)
     while not session.over() and ears.keep_waiting():
@@ -169,11 +173,11 @@ def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[Answer]:
 
 
 def _wait_until_settled(
-    session: GraphSession, cache: queries.TopicCache, ears: Ears
-) -> tuple[str, assemble.ObservationClock, Sequence[str]]:
+    session: GraphSession, cache: queries.TopicCache, ears: Ears, second: SecondParticipant
+) -> tuple[str, assemble.ObservationClock, Sequence[str], Sequence[str]]:
     """Wait until the graph is settled; returns why it is, empty if the observation was stopped, the
-    time since the last change: what is late on a busy machine has had the time before, and the names
-    that came or went with that change.
+    time since the last change: what is late on a busy machine has had the time before, the names
+    that came or went with that change, and the nodes of which a second participant sees something else.
 
     The slow queries are made while there is only waiting to do, and tf is received; the cache grows.
     """
@@ -194,23 +198,27 @@ def _wait_until_settled(
             session.tell(assemble.so_far(seen[0]).encode())
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
+        missed = second.missed(seen) if changed.all < now else ()
         quiet = _enough(session, changed.all, losses.last(now))
+        if second.lossy:
+            quiet = assemble.LOSSY_QUIET_SECONDS
         # Not later than the moment at which it is quiet.
         pause = min(pause, max(POLL_SECONDS, changed.all + quiet - now))
         # Its timeout is of real time.
         timeout = request.timeout - (session.now() - now)
         unchanged = clock.since(last_change)
         met, starved = request.is_met(seen[1]), any(unchanged.starved())
-        why = assemble.why_settled(now, changed, met, timeout, quiet, starved=starved)
+        unsure = starved or bool(missed)
+        why = assemble.why_settled(now, changed, met, timeout, quiet, unsure=unsure)
         if why:
-            return why, unchanged, times.last
+            return why, unchanged, times.last, () if why == EXPECTED else missed
         still = SHORT_IDLE_SECONDS if quiet < assemble.QUIET_SECONDS else IDLE_SECONDS
         idle = now - changed.all >= still or now >= timeout - TF_SECONDS[1]
         if idle and queried != seen:
             queried = seen
             _query(session, cache, ears, now)
         spent = time.thread_time() - began
-    return "", clock, ()
+    return "", clock, (), ()
 
 
 def _query(session: GraphSession, cache: queries.TopicCache, ears: Ears, now: float) -> None:
@@ -321,11 +329,12 @@ def _snapshot(
         tuple(_frames(ears.tf, placed)),
         around,
         ears.headers.heard(),
+        descriptions=ears.descriptions.found(),
     )
 
 
 def _frames(tf: TfSubscriptions, placed: Iterable[End]) -> Iterator[Edge]:
-    return assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates())
+    return assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates(), tf.ages)
 
 
 # States and parameters change without the graph: nodes are asked for them again after so long.

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.wording import SEVERAL, shorten
-from multibot_rewrite.producers.ros.assemble import TF_TYPES, ReceivedTransform, numbers_of
+from multibot_rewrite.producers.ros.assemble import TF_TYPES, ReceivedTransform, age_of, numbers_of
 from multibot_rewrite.system.records import PUBLISHES, Caveat, End
 
 # So many times between two messages say how often they come, and more do not say more.
@@ -79,7 +79,7 @@ Subscribe = Callable[[str, str, bool, Callback], "Callable[[], None] | str"]
 
 class TfSubscriptions:
     """Subscriptions to all tf topics, and the transforms received on them; ``last`` is the last message
-    of each, empty where several latched ones differ."""
+    of each, empty where several latched ones differ, ``ages`` how old each was."""
 
     def __init__(self, subscribe: Subscribe) -> None:
         self._subscribe = subscribe
@@ -88,6 +88,7 @@ class TfSubscriptions:
         self._received: dict[ReceivedTransform, float] = {}
         self._voices: dict[ReceivedTransform, Voices] = {}
         self.last: dict[ReceivedTransform, tuple[float, ...]] = {}
+        self.ages: dict[ReceivedTransform, float] = {}
         self._paces: dict[ReceivedTransform, Pace] = {}
         self._began = time.monotonic()
 
@@ -130,6 +131,9 @@ class TfSubscriptions:
             if not latched:
                 pace = self._paces.get(edge, Pace())
                 self._paces[edge] = pace.after(transform.header.stamp)
+                # The youngest: a message may be late.
+                age = age_of(transform.header.stamp)
+                self.ages[edge] = min(self.ages.get(edge, age), age, key=abs)
             self._voices[edge] = self._voices.get(edge, Voices()).after(mark)
             now_at, before = numbers_of(transform.transform), self.last.get(edge)
             # What several latched publishers have each in another way is nowhere.

@@ -65,14 +65,11 @@ def read_cpp(text: str, place: Place) -> Source:
         for item in HANDLERS[node.type](node, place):
             found[type(item)].append(item)
     found[Plugin] = [Plugin(last(one), last(base)) for one, base in _EXPORT.findall(text)]
-    found[Call] += [_component(it, place) for it in COMPONENT.findall(text)]
+    # A registered component is made as a main would.
+    components = COMPONENT.findall(text)
+    found[Call] += [Call("", "main", last(it), (), (), "", "", place) for it in components]
     read = Source(*(tuple(found[kind]) for kind in _COLUMNS))
     return read._replace(imports=tuple(dict.fromkeys(_INCLUDE.findall(text))))
-
-
-def _component(name: str, place: Place) -> Call:
-    """A registered component is made as a main would."""
-    return Call("", "main", last(name), (), (), "", "", place)
 
 
 _COLUMNS = (Class, Call, Value, Alias, Constructor, Plugin)
@@ -127,7 +124,10 @@ def _asked(node: Node) -> str:
         if above.type == "if_statement" and below != above.child_by_field_name("condition"):
             text = _test(above.child_by_field_name("condition"))
             found.append(_not(text) if below.type == "else_clause" else text)
-        elif above.type in _SOMETIMES or _is_left_before(above, below):
+        elif above.type in _SOMETIMES or (
+            # The function may end in a statement before this one.
+            above.type == "compound_statement" and _left_at(above) < below.start_byte
+        ):
             found.append(OTHERWISE)
     if _is_built_sometimes(above):
         found.append(OTHERWISE)
@@ -159,11 +159,6 @@ def _not(text: str) -> str:
     return OTHERWISE if text == OTHERWISE else text[1:] if text[:1] == "!" else f"!{text}"
 
 
-def _is_left_before(block: Node, statement: Node) -> bool:
-    """May the function end in a statement before this one?"""
-    return block.type == "compound_statement" and _left_at(block) < statement.start_byte
-
-
 @lru_cache(maxsize=256)
 def _left_at(block: Node) -> float:
     """Where the first statement of a block begins in which the function may end."""
@@ -187,7 +182,12 @@ def _class(node: Node, place: Place) -> Iterator[Class]:
     bases = tuple(text_of(it) for it in clause.named_children if it.type in named) if clause else ()
     above = node.parent
     heads = above.child_by_field_name("parameters") if above is not None else None
-    parameters = tuple(_head(it) for it in heads.named_children) if heads else ()
+    parameters = []
+    for it in heads.named_children if heads else ():
+        # ``typename T = a::B`` -> ``T=a::B``.
+        word, _, default = text_of(it).partition("=")
+        own = word.split()[-1]
+        parameters.append(f"{own}={default.strip()}" if default else own)
     members = {
         last(text_of(name)): text_of(field.child_by_field_name("type"))
         for field in body.named_children
@@ -195,13 +195,7 @@ def _class(node: Node, place: Place) -> Iterator[Class]:
         for name in field.children_by_field_name("declarator")
         if not text_of(name).startswith(("&", "*"))
     }
-    yield Class(last(text_of(name)), bases, parameters, members, _at(node, place))
-
-
-def _head(node: Node) -> str:
-    """``typename T = a::B`` -> ``T=a::B``."""
-    name, _, default = text_of(node).partition("=")
-    return f"{name.split()[-1]}={default.strip()}" if default else name.split()[-1]
+    yield Class(last(text_of(name)), bases, tuple(parameters), members, _at(node, place))
 
 
 def _at(node: Node, place: Place) -> Place:

@@ -119,14 +119,6 @@ def _all(node: Node) -> str:
     return "".join(evaluated(it) for it in node.named_children)
 
 
-def _sum(node: Node) -> str:
-    return _all(node) if any(it.type == "+" for it in node.children) else "<?>"
-
-
-def _field_of(node: Node) -> str:
-    return f"<{'.'.join(dotted(node)) or text_of(node.child_by_field_name('field'))}>"
-
-
 def _called(node: Node) -> str:
     function, arguments = (node.child_by_field_name(it) for it in ("function", "arguments"))
     if function is None:
@@ -141,16 +133,15 @@ def _called(node: Node) -> str:
         return f"<@{braced(texts[0])}>" if texts else "<?>"
     if name in MAKERS and types:
         return f"<new {made}>"
-    return _passed_on(name, given, on) or f"<{name}>"
-
-
-def _passed_on(name: str, given: tuple[str, ...], on: str) -> str:
-    """The text that a function gives back; empty where it is another one."""
+    # The text that a function gives back.
+    same = ""
     if name.startswith(("as_", "get_value", "value")) and "@" in on:
-        return on
-    if name in LAST_TEXT and given:
-        return given[-1]
-    return (given[0] if given else on) if name in SAME_TEXT else ""
+        same = on
+    elif name in LAST_TEXT and given:
+        same = given[-1]
+    elif name in SAME_TEXT:
+        same = given[0] if given else on
+    return same or f"<{name}>"
 
 
 TEXTS: dict[str, Callable[[Any], str]] = {
@@ -159,12 +150,16 @@ TEXTS: dict[str, Callable[[Any], str]] = {
     "concatenated_string": _all,
     "initializer_list": _all,
     "compound_literal_expression": _field("value"),
-    "binary_expression": _sum,
+    "binary_expression": lambda node: (
+        _all(node) if any(it.type == "+" for it in node.children) else "<?>"
+    ),
     "parenthesized_expression": _all,
     "pointer_expression": _field("argument"),
     "new_expression": lambda node: f"<new {last(text_of(node.child_by_field_name('type')))}>",
     "conditional_expression": lambda node: "<either>",
-    "field_expression": _field_of,
+    "field_expression": lambda node: (
+        f"<{'.'.join(dotted(node)) or text_of(node.child_by_field_name('field'))}>"
+    ),
     "call_expression": _called,
 }
 

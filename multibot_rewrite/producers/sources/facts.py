@@ -13,7 +13,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.base.rosnames import check_node_name, check_topic_name, propose_token
 from multibot_rewrite.knowledge.conditions import AND, OPEN_KIND, OR, SOURCE, joined
-from multibot_rewrite.knowledge.parameters import KnownNodes, built_in_nodes, guess
+from multibot_rewrite.knowledge.parameters import built_in_nodes, guess
 from multibot_rewrite.knowledge.records import (
     Endpoint,
     FrameParameter,
@@ -127,52 +127,54 @@ def _node(
     made = [it for it in events if isinstance(it, Declared)]
     every = dict.fromkeys(end for it in made for end in _endpoints(names, it, release))
     doubted = ("~",) * (len(plain) > 1) if not any(it.space for it in named) else _RELATIVE
-    ends = tuple(it._replace(when=PERHAPS) if _is_in(it, doubted) else it for it in every)
+    # Each end once, and without a condition where it is there without one, too.
+    surest: dict[tuple[str, ...], Endpoint] = {}
+    for it in every:
+        # Its name is resolved in a namespace or below a node that is not known for sure.
+        is_doubted = doubted and it.name.startswith(doubted)
+        is_doubted = is_doubted or (doubted == _RELATIVE and it.name[:1] != "/")
+        end = it._replace(when=PERHAPS) if is_doubted else it
+        key = (end.kind, end.role, end.name, end.type, end.parameter)
+        other = surest.setdefault(key, end)
+        if other.when and not end.when:
+            surest[key] = end
+        elif other.when and other.when != end.when:
+            surest[key] = other._replace(when=PERHAPS)
+    ends = tuple(surest.values())
     params = tuple(_params(names, events, read.source.values))
     sends, of_sends = _sends(names, events)
     both = {it.parameter: it for it in (*_frames(names, events), *of_sends)}
-    frames = tuple(_as_rewritten(it, built_in_nodes(release)) for it in both.values())
+    known, frames = built_in_nodes(release), []
+    for frame in both.values():
+        # As build leaves it: in a file it changes what is called as a frame, and adds nothing.
+        seen = not frame.in_code and guess(known, frame.parameter) == "frame"
+        frames.append(frame._replace(in_code=not seen, is_kept=seen))
+    # The parameters that names are made of.
+    as_set = (it.name.split("<")[1:] for it in ends if it.when.endswith(SET))
+    ids = dict.fromkeys(part.partition(">")[0] for parts in as_set for part in parts)
+    looked = (it for it in events if isinstance(it, Looked) and it.text and "<" not in it.text)
+    named_frames = tuple((it.role, it.text, At(it.place.path, it.place.line)) for it in looked)
     where = At(
         start.path, named[0].place.line if named and named[0].place.path == start.path else 0
     )
     facts = NodeFacts(
         next(iter(plain), propose_token(word)),
         package,
-        _surest(ends),
-        frames=frames,
+        ends,
+        frames=tuple(frames),
         sends=sends,
-        ids=tuple((it, it) for it in dict.fromkeys(_ids(ends))),
+        ids=tuple((it, it) for it in ids),
         origin=Origin(place=where),
         source=tuple(dict.fromkeys(_at(it.place) for it in named)) or (start.path,),
         programs=() if start.class_ else (program,),
         component=program if start.class_ else "",
         untold=tuple(_untold(read, named, plain, events, ends)),
     )
-    return NodeSource(facts, params, tuple(_names_of_frames(events)), read.files)
-
-
-def _is_in(end: Endpoint, doubted: tuple[str, ...]) -> bool:
-    """Is its name resolved in a namespace or below a node that is not known for sure?"""
-    return bool(doubted) and (
-        end.name.startswith(doubted) or (doubted == _RELATIVE and end.name[:1] != "/")
-    )
+    return NodeSource(facts, params, named_frames, read.files)
 
 
 def _at(place: Place) -> str:
     return f"{place.path}:{place.line}"
-
-
-def _surest(ends: Iterable[Endpoint]) -> tuple[Endpoint, ...]:
-    """Each end once, and without a condition where it is there without one, too."""
-    found: dict[tuple[str, ...], Endpoint] = {}
-    for it in ends:
-        key = (it.kind, it.role, it.name, it.type, it.parameter)
-        known = found.get(key)
-        if known is None or (known.when and not it.when):
-            found[key] = it
-        elif known.when and known.when != it.when:
-            found[key] = known._replace(when=PERHAPS)
-    return tuple(found.values())
 
 
 def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
@@ -198,9 +200,8 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
     for name, parameter, more in (
         one for word in _each(it.name) for one in _spelled(names, it.spot, word)
     ):
-        end = bare._replace(
-            name=name, parameter=parameter, when=_both(when, more), transport=images
-        )
+        both = joined(when, more) if when and more else when or more
+        end = bare._replace(name=name, parameter=parameter, when=both, transport=images)
         yield end
         if it.api.function in _WITH_INFO and type_ == IMAGE and "<" not in name:
             info = f"{name.rpartition('/')[0]}/camera_info".lstrip("/" if name[:1] != "/" else "")
@@ -218,10 +219,6 @@ def _each(text: str) -> Iterator[str]:
         return
     for it in words.split("|"):
         yield from _each(text.replace(f"<{EACH}{LIST}{words}>", it))
-
-
-def _both(when: str, more: str) -> str:
-    return joined(when, more) if when and more else when or more
 
 
 def _spelled(names: Names, spot: Spot, text: str) -> Iterator[tuple[str, str, str]]:
@@ -243,22 +240,16 @@ def _spelled(names: Names, spot: Spot, text: str) -> Iterator[tuple[str, str, st
         yield (known if fine else f"<{asked[0]}>"), asked[0], ""
     elif fine and len(asked) <= MOST_PARAMETERS:
         yield known, "", AND.join(f"{it} unset" for it in asked)
-        yield from _as_set(text, asked, defaults)
-    else:
-        yield _unknown(text), "", ""
-
-
-def _as_set(
-    text: str, asked: Sequence[str], defaults: Mapping[str, str | None]
-) -> Iterator[tuple[str, str, str]]:
-    """The name where each of some of its parameters is set, and the others are not."""
-    for size in range(1, len(asked) + 1):
-        for given in combinations(asked, size):
+        # Where each of some of its parameters is set, and the others are not.
+        sizes = range(1, len(asked) + 1)
+        for given in (it for size in sizes for it in combinations(asked, size)):
             name = text
             for it in asked:
                 name = name.replace(f"<@{it}>", f"<{it}>" if it in given else defaults[it] or "")
             said = (f"{it}{SET if it in given else ' unset'}" for it in reversed(asked))
             yield name, "", AND.join(sorted(said, key=lambda it: it.endswith(SET)))
+    else:
+        yield _unknown(text), "", ""
 
 
 def _unknown(text: str) -> str:
@@ -323,13 +314,6 @@ def _frames(names: Names, events: Iterable[Event]) -> Iterator[FrameParameter]:
                 yield FrameParameter(parameter, default, source=(_at(it.place),))
 
 
-def _names_of_frames(events: Iterable[Event]) -> Iterator[tuple[str, str, At]]:
-    """Frames that the code itself names: what for, the frame, and where."""
-    for it in events:
-        if isinstance(it, Looked) and it.text and "<" not in it.text:
-            yield it.role, it.text, At(it.place.path, it.place.line)
-
-
 def _sends(
     names: Names, events: Sequence[Event]
 ) -> tuple[tuple[SentTransform, ...], tuple[FrameParameter, ...]]:
@@ -345,45 +329,27 @@ def _sends(
         pair = [written.get((_where(sent.spot), f"{sent.variable} {it}"), []) for it in _ENDS]
         if not all(len({it.text for it in rows}) == 1 for rows in pair):
             continue
-        words = [_frame_word(rows[0].text) for rows in pair]
+        words = []
+        for text in (rows[0].text for rows in pair):
+            is_set = text.startswith("<@") and text.count("<") == 1 and "{" not in text
+            words.append(text[2:-1] if is_set else f"'{text}'" if text and "<" not in text else "")
         if all(words) and words[0] != words[1]:
             # That a callback may never run is no switch.
             asked = "&".join(it for it in sent.asked.split("&") if it != OTHERWISE)
             switch = _condition(names, sent.spot, asked)
             sends.append(SentTransform(words[0], words[1], "" if switch == PERHAPS else switch))
-            frames += [_frame_of(names, rows[0], it) for rows, it in zip(pair, words, strict=True)]
+            for (it, *_), word in zip(pair, words, strict=True):
+                in_code = word[0] == "'"
+                own = word.strip("'") if in_code else default_of(names, it.spot, word) or ""
+                frames.append(FrameParameter(word, own, "", (_at(it.place),), in_code, in_code))
     return tuple(dict.fromkeys(sends)), tuple(frames)
 
 
 _ENDS = ("header.frame_id", "child_frame_id")
 
 
-def _as_rewritten(it: FrameParameter, known: KnownNodes) -> FrameParameter:
-    """A frame as build leaves it: in a file it changes what is called as a frame, and adds nothing."""
-    seen = not it.in_code and guess(known, it.parameter) == "frame"
-    return it._replace(in_code=not seen, is_kept=seen)
-
-
-def _ids(ends: Iterable[Endpoint]) -> Iterator[str]:
-    """The parameters that names are made of."""
-    for end in (it for it in ends if it.when.endswith(SET) and "<" in it.name):
-        yield from (it.partition(">")[0] for it in end.name.split("<")[1:])
-
-
 def _where(spot: Spot) -> object:
     return spot.owner, spot.function, spot.path
-
-
-def _frame_word(text: str) -> str:
-    if text.startswith("<@") and text.count("<") == 1 and "{" not in text:
-        return text[2:-1]
-    return f"'{text}'" if text and "<" not in text else ""
-
-
-def _frame_of(names: Names, it: Looked, word: str) -> FrameParameter:
-    in_code = word[0] == "'"
-    own = word.strip("'") if in_code else default_of(names, it.spot, word) or ""
-    return FrameParameter(word, own, "", (_at(it.place),), in_code, in_code)
 
 
 def _untold(

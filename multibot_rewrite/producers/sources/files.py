@@ -39,7 +39,8 @@ def read_program(files: Sequence[str], packages: Packages) -> Read:
         path = os.path.realpath(waiting.pop(0))
         if path not in found:
             found[path] = _read(path)
-            waiting += _beside(path, found[path].imports, packages)
+            follow = _included if path.endswith(tuple(READERS)[:-1]) else _imported
+            waiting += (it for one in found[path].imports for it in follow(path, one, packages))
     faults = [(Place("", "", it, 1), "is more than is followed") for it in waiting[:1]]
     left = Source(faults=tuple(faults) if len(found) >= MOST_FILES else ())
     return Read(joined([*found.values(), left]), tuple(found))
@@ -67,15 +68,6 @@ def _parsed(path: str, data: bytes, changed: int) -> Source:
     if "\ufffd" in text:
         found = found._replace(faults=(*found.faults, (place, "is not UTF-8")))
     return found
-
-
-def _beside(path: str, imports: Sequence[str], packages: Packages) -> Iterator[str]:
-    if path.endswith(tuple(READERS)[:-1]):
-        for it in imports:
-            yield from _included(path, it, packages)
-        return
-    for it in imports:
-        yield from _imported(path, it, packages)
 
 
 def _imported(path: str, module: str, packages: Packages) -> Iterator[str]:
@@ -113,18 +105,12 @@ def _included(path: str, name: str, packages: Packages) -> Iterator[str]:
         header = os.path.normpath(os.path.join(it, name))
         if os.path.isfile(header) and header.endswith(tuple(READERS)):
             yield header
-            yield from _units(header, _package_of(header, packages))
+            package = _package_of(header, packages)
+            stem = os.path.splitext(os.path.basename(header))[0]
+            units = {f"{stem}{end}" for end in _UNITS}
+            every = sources_in(package) if package else ()
+            yield from (one for one in every if os.path.basename(one) in units)
             return
-
-
-def _units(header: str, package: str) -> Iterator[str]:
-    stem = os.path.splitext(os.path.basename(header))[0]
-    yield from (it for it in sources_in(package) if _is_unit(it, stem)) if package else ()
-
-
-def _is_unit(path: str, stem: str) -> bool:
-    own, end = os.path.splitext(os.path.basename(path))
-    return own == stem and end in _UNITS
 
 
 def _package_of(path: str, packages: Packages) -> str:

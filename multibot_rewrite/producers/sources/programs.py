@@ -82,14 +82,12 @@ def _set_by(call: CmakeCall) -> Iterator[tuple[str, str]]:
     elif name == "list" and words[:1] == ("APPEND",) and len(words) > 1:
         yield words[1], ";".join((f"${{{words[1]}}}", *words[2:]))
     elif name == "file" and words[:1] in (("GLOB",), ("GLOB_RECURSE",)):
-        yield words[1], ";".join(_globbed(call.folder, words[2:]))
-
-
-def _globbed(folder: str, patterns: tuple[str, ...]) -> Iterator[str]:
-    for it in patterns:
-        above, _, last = os.path.join(folder, it).rpartition(os.sep)
-        inside = (one for one in sources_in(folder) if one.startswith(above.rstrip("*")))
-        yield from (one for one in inside if one.endswith(last.lstrip("*")))
+        files: list[str] = []
+        for it in words[2:]:
+            above, _, last = os.path.join(call.folder, it).rpartition(os.sep)
+            inside = (one for one in sources_in(call.folder) if one.startswith(above.rstrip("*")))
+            files += (one for one in inside if one.endswith(last.lstrip("*")))
+        yield words[1], ";".join(files)
 
 
 def _words(raw: str, known: dict[str, str]) -> tuple[str, ...]:
@@ -118,7 +116,12 @@ def start_of(folder: str, program: str) -> Start | None:
     where its source is not found."""
     if "::" in program:
         return _component(folder, program)
-    return _of_python(folder, program) or _of_cmake(folder, program) or _script(folder, program)
+    calls = (_by_call(folder, it, program) for it in cmake_calls(folder))
+    if found := _of_python(folder, program) or next(filter(None, calls), None):
+        return found
+    # The one file of that name that can be started: a rule for its folder installs it.
+    scripts = [it for it in _scripts(folder) if os.path.basename(it) == program]
+    return _begin((scripts[0],)) if len(scripts) == 1 else None
 
 
 def _begin(files: tuple[str, ...], function: str = "", class_: str = "") -> Start:
@@ -168,11 +171,6 @@ def _said(node: ast.AST, known: dict[str, str]) -> str:
     return known.get(node.id, "") if isinstance(node, ast.Name) else ""
 
 
-def _of_cmake(folder: str, program: str) -> Start | None:
-    found = (_by_call(folder, it, program) for it in cmake_calls(folder))
-    return next((it for it in found if it), None)
-
-
 def _by_call(folder: str, call: CmakeCall, program: str) -> Start | None:
     """What a call says of where this program starts."""
     if call.name.endswith("add_executable") and call.words[:1] == (program,):
@@ -205,23 +203,14 @@ def _component(folder: str, class_: str) -> Start | None:
     return None
 
 
-def _script(folder: str, program: str) -> Start | None:
-    """The one file of that name that can be started: a rule for its folder installs it."""
-    names = {os.path.basename(it): it for it in _scripts(folder)}
-    times = [os.path.basename(it) for it in _scripts(folder)].count(program)
-    return _begin((names[program],)) if times == 1 else None
-
-
 @lru_cache(maxsize=64)
 def _scripts(folder: str) -> tuple[str, ...]:
     found: list[str] = []
     for above, folders, names in os.walk(folder):
         folders[:] = sorted(it for it in folders if it[0] != "." and it not in NOT_RUN)
         paths = (os.path.join(above, it) for it in sorted(names))
-        found += (it for it in paths if it.endswith(".py") or _is_python(it))
+        for it in paths:
+            is_plain = "." not in os.path.basename(it)
+            if it.endswith(".py") or (is_plain and _SCRIPT.match(start_of_file(it)[:80])):
+                found.append(it)
     return tuple(found)
-
-
-def _is_python(path: str) -> bool:
-    plain = "." not in os.path.basename(path)
-    return plain and _SCRIPT.match(start_of_file(path)[:80]) is not None

@@ -203,7 +203,7 @@ def _walk(part: _Part) -> Iterator[_Part]:
         below = part
         if isinstance(node, (ast.If, ast.IfExp)) and name != "test":
             below = _under(part, node.test, name == "orelse")
-        elif isinstance(node, ast.For) and name == "body" and not _may_leave_loop(node):
+        elif isinstance(node, ast.For) and name == "body" and not any(map(_may_leave, node.body)):
             below = part._replace(asked=_and(part.asked, _over(node.iter)))
         elif name in _SOMETIMES.get(type(node), ()):
             below = part._replace(asked=_and(part.asked, OTHERWISE))
@@ -234,10 +234,6 @@ def _each(nodes: list[Any], part: _Part) -> Iterator[_Part]:
         yield from _walk(part._replace(node=it, function=inside))
         if isinstance(it, ast.If) and _may_leave(it):
             part = part._replace(asked=_and(part.asked, OTHERWISE))
-
-
-def _may_leave_loop(node: ast.For) -> bool:
-    return any(_may_leave(it) for it in node.body)
 
 
 def _may_leave(node: ast.AST) -> bool:
@@ -274,7 +270,10 @@ def _call(node: ast.Call, owner: str, part: _Part, types: dict[str, str], place:
         if of_type is None and len(node.args) > at:
             of_type = node.args[at]
             del given[at]
-        typed = (_written(of_type, types),) if of_type is not None else ()
+        if of_type is not None:
+            # With the module that it is from.
+            head, dot, rest = ast.unparse(of_type).partition(".")
+            typed = (f"{types.get(head, head)}{dot}{rest}",)
         topic = next((named.pop(it) for it in _TOPICS if it in named), None)
         given += [_text(topic)] if topic is not None else []
     on = _text(node.func.value) if isinstance(node.func, ast.Attribute) else ""
@@ -291,12 +290,6 @@ def _call(node: ast.Call, owner: str, part: _Part, types: dict[str, str], place:
         part.asked,
         tuple((key, _text(it)) for key, it in named.items()),
     )
-
-
-def _written(node: ast.expr, types: dict[str, str]) -> str:
-    """A type with the module that it is from."""
-    head, dot, rest = ast.unparse(node).partition(".")
-    return f"{types.get(head, head)}{dot}{rest}"
 
 
 def _parameters(node: ast.Call, owner: str, function: str, place: Place) -> Iterator[Value]:
@@ -362,20 +355,14 @@ def _put_in(text: str, words: list[ast.expr]) -> str:
     )
 
 
-def _formatted(node: ast.FormattedValue) -> str:
-    return ANY if node.format_spec else _text(node.value)
-
-
 def _called(node: ast.Call) -> str:
     name = _called_name(node)
     if name in _PARAMETERS:
         named = (it.value for it in node.keywords if it.arg == "name")
         key = node.args[0] if node.args else next(named, None)
         return f"<@{braced(_text(key))}>" if key is not None else ANY
-    return _method(name, node) if isinstance(node.func, ast.Attribute) else _plain_call(node)
-
-
-def _plain_call(node: ast.Call) -> str:
+    if isinstance(node.func, ast.Attribute):
+        return _method(name, node)
     made = _text(node.func).strip("<>")
     if made == "range":
         return _range(node)
@@ -413,7 +400,7 @@ TEXTS: dict[type, Callable[[Any], str]] = {
     ast.Constant: _constant,
     ast.BinOp: _sum,
     ast.JoinedStr: lambda node: "".join(map(_text, node.values)),
-    ast.FormattedValue: _formatted,
+    ast.FormattedValue: lambda node: ANY if node.format_spec else _text(node.value),
     ast.Attribute: _attribute,
     ast.Name: lambda node: "<this>" if node.id == "self" else f"<{node.id}>",
     ast.Call: _called,

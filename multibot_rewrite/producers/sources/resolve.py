@@ -121,7 +121,12 @@ def _value(names: Names, spot: Spot, name: str, without: str, depth: int) -> str
     if name.isdigit():
         return name
     if name.startswith("@"):
-        return f"<{_BRACED.sub(lambda it: _inside(names, spot, it[1], depth), name)}>"
+
+        def inside(found: re.Match[str]) -> str:
+            text = text_in(names, spot, f"<{found[1]}>", "", depth)
+            return text.replace("<", "{").replace(">", "}")
+
+        return f"<{_BRACED.sub(inside, name)}>"
     if name.startswith(EACH):
         over = name.removeprefix(EACH)
         text = text_in(names, spot, f"<{over}>", without, depth)
@@ -141,11 +146,6 @@ def _value(names: Names, spot: Spot, name: str, without: str, depth: int) -> str
         return of_parameters.pop()
     only = found.pop() if len(found) == 1 else ANY
     return only if only != ANY else f"<{name}>"
-
-
-def _inside(names: Names, spot: Spot, name: str, depth: int) -> str:
-    text = text_in(names, spot, f"<{name}>", "", depth)
-    return text.replace("<", "{").replace(">", "}")
 
 
 def _candidates(names: Names, spot: Spot, name: str, depth: int) -> Iterator[tuple[Spot, str]]:
@@ -189,14 +189,9 @@ def _is_member(made: Made, name: str) -> bool:
 
 def _where(spot: Spot, row: Value) -> Spot:
     """The function that sets a member; of a constructor it is known what it is given."""
-    given = (
-        spot.made.given.get(row.owner, NO_WORDS) if _makes(row.owner, row.function) else NO_WORDS
-    )
+    makes = row.function in ("__init__", row.owner)
+    given = spot.made.given.get(row.owner, NO_WORDS) if makes else NO_WORDS
     return spot._replace(owner=row.owner, function=row.function, given=given, path=row.place.path)
-
-
-def _makes(owner: str, function: str) -> bool:
-    return function in ("__init__", owner)
 
 
 def _constants(names: Names, spot: Spot, name: str) -> Iterator[tuple[Spot, str]]:
@@ -221,14 +216,10 @@ def default_of(names: Names, spot: Spot, parameter: str) -> str | None:
         found = {text_in(names, _where(spot, it), it.text, parameter) for it in rows}
         if found:
             only = found.pop()
-            return only if not found and ("<" not in only or _is_value(only)) else None
+            number = only[1:-1].replace(".", "", 1).lstrip("-")
+            is_value = only in FLAGS or (number.isdigit() and only[:1] == "<")
+            return only if not found and ("<" not in only or is_value) else None
     return None
-
-
-def _is_value(text: str) -> bool:
-    """Is it true, false or a number?"""
-    number = text[1:-1].replace(".", "", 1).lstrip("-")
-    return text in FLAGS or (number.isdigit() and text[:1] == "<")
 
 
 def type_in(names: Names, spot: Spot, type_: str) -> str:

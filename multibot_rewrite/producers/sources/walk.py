@@ -152,15 +152,10 @@ def _never_reached(walk: _Walk) -> Iterator[Unread]:
     this program does not make is none of its parts."""
     names = walk.names
     for (owner, function), rows in names.calls.items():
-        for it in (it for it in rows if _opens(it) and it.place not in walk.seen):
+        for it in (it for it in rows if it.name in OF_ANY and it.place not in walk.seen):
             if not _is_new_node(names, f"<new {owner}>"):
                 yield Unread(f"{owner or function}, which nothing is seen to call,", it.place)
                 break
-
-
-def _opens(call: Call) -> bool:
-    """Does it declare an endpoint, whatever it is asked of?"""
-    return call.name in OF_ANY
 
 
 def _rest(walk: _Walk, made: Made) -> Iterator[Event]:
@@ -188,21 +183,14 @@ def _function(walk: _Walk, spot: Spot) -> Iterator[Event]:
         return
     walk.seen.update((key, own))
     spot = spot._replace(trail=(*spot.trail, own))
-    for call in _calls(walk.names, spot):
-        yield from _call(walk, spot, call)
-    yield from _frames(walk.names, spot)
-
-
-def _calls(names: Names, spot: Spot) -> Iterator[Call]:
-    rows = names.calls.get((spot.owner, spot.function), ())
-    yield from (it for it in rows if spot.owner or it.place.path == spot.path)
-
-
-def _frames(names: Names, spot: Spot) -> Iterator[Looked]:
-    """Frames that are written into messages."""
-    for it in names.frames.get((spot.owner, spot.function), ()):
+    at = spot.owner, spot.function
+    for call in walk.names.calls.get(at, ()):
+        if spot.owner or call.place.path == spot.path:
+            yield from _call(walk, spot, call)
+    # Frames that are written into messages.
+    for it in walk.names.frames.get(at, ()):
         if spot.owner or it.place.path == spot.path:
-            text = text_in(names, spot, it.text)
+            text = text_in(walk.names, spot, it.text)
             yield Looked(frame_in(it), text, it.variable, spot.asked, it.place, spot)
 
 
@@ -228,9 +216,12 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
     on = text_in(names, spot, call.on) if call.on else ""
     if _is_base(spot, call, name) or name in NODES or name == "create_node":
         yield from _base(walk, here, call, name)
-    elif (found := _class(names, name, call.place)) and _is_made(call, name, on):
+    elif (found := _class(names, name, call.place)) and (
+        # An object is made, and no method of that name called.
+        not call.on or call.on.endswith(f"{name}>") or call.name != name or "." not in on
+    ):
         yield from _object(walk, found, call.given, types, here, call.named)
-    elif name in apis() and not _is_method_here(names, on, name):
+    elif name in apis() and not (on.startswith("<new ") and (on[5:-1], name) in names.takers):
         walk.seen.add(call.place)
         yield from _declared(names, here, call, name, types)
     elif followed := _followed(walk, here, call, name, on):
@@ -238,16 +229,6 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
             yield from _function(walk, it)
     elif name not in harmless():
         yield from _handed(names, spot, call, name)
-
-
-def _is_made(call: Call, name: str, on: str) -> bool:
-    """Is an object of the class made, and no method of that name called?"""
-    return not call.on or call.on.endswith(f"{name}>") or call.name != name or "." not in on
-
-
-def _is_method_here(names: Names, on: str, name: str) -> bool:
-    """Has the object that is asked a method of its own of that name?"""
-    return on.startswith("<new ") and (on[5:-1], name) in names.takers
 
 
 def _handed(names: Names, spot: Spot, call: Call, name: str) -> Iterator[Unread]:
@@ -403,7 +384,12 @@ def _base(walk: _Walk, spot: Spot, call: Call, name: str) -> Iterator[Event]:
         made.given[above.name] = own  # type: ignore[index]
         yield from _constructed(walk, made, above, own, spot)
         return
-    base = name if name in (*NODES, "create_node") else _beyond(spot, call, name)
+    base, beyond = name, made.beyond
+    if name not in (*NODES, "create_node"):
+        # The base that is not here.
+        word = name if name != "__init__" else call.on.strip("<>").rpartition(".")[2]
+        nodes = (it for it in beyond if last(it) in NODES)
+        base = word if word in beyond else next(nodes, next(iter(beyond), ""))
     if last(base) not in (*NODES, "create_node"):
         if base and base not in HARMLESS_BASES:
             yield Unread(base, call.place)
@@ -424,16 +410,6 @@ def _above(spot: Spot, call: Call, name: str) -> Class | None:
         at = owners.index(spot.owner) if spot.owner in owners else len(owners)
         return next(iter(chain[at + 1 :]), None)
     return next((it for it in chain if f"<{it.name}>" == call.on), None)
-
-
-def _beyond(spot: Spot, call: Call, name: str) -> str:
-    """The base that is not here."""
-    word = name if name != "__init__" else call.on.strip("<>").rpartition(".")[2]
-    if word in spot.made.beyond:
-        return word
-    return next(
-        (it for it in spot.made.beyond if last(it) in NODES), next(iter(spot.made.beyond), "")
-    )
 
 
 def _parameters(names: Names, spot: Spot, call: Call) -> Iterator[Parameter]:
@@ -461,7 +437,13 @@ def _declared(
             api = api._replace(function="advertise", type=IMAGE)  # noqa: PLW2901
         text = api.name.replace(ARGUMENT, others[0] if others else "")
         helper = api.node == HELPER and not nodes
-        type_ = _type(names, spot, api, types) or _type_of_member(names, spot, call.on)
+        type_ = _type(names, spot, api, types)
+        # A member may be told later what to subscribe to.
+        members = (_inner(it.members.get(call.on.strip("<>"), "")) for it in spot.made.chain)
+        rows = ((one, own) for member, own in members for one in apis().get(member, ())[:1])
+        for one, own_types in () if type_ else rows:
+            type_ = _type(names, spot, one, own_types)
+            break
         yield Declared(api, text, type_, helper, spot.asked, call.place, spot)
 
 
@@ -470,15 +452,6 @@ def _type(names: Names, spot: Spot, api: Api, types: tuple[str, ...]) -> str:
         return api.type
     at = int(api.type)
     return type_in(names, spot, types[at]) if at < len(types) else ""
-
-
-def _type_of_member(names: Names, spot: Spot, on: str) -> str:
-    """The type of a member that is told later what to subscribe to."""
-    for it in spot.made.chain:
-        name, types = _inner(it.members.get(on.strip("<>"), ""))
-        for api in apis().get(name, ())[:1]:
-            return _type(names, spot, api, types)
-    return ""
 
 
 def _followed(walk: _Walk, spot: Spot, call: Call, name: str, on: str) -> list[Spot]:
@@ -504,24 +477,18 @@ def _followed(walk: _Walk, spot: Spot, call: Call, name: str, on: str) -> list[S
                 given = _taken(names, owner, function, words, named)
                 return [Spot(made, owner, function, given, spot.asked, near[0].path, spot.trail)]
         return []
-    return [
-        spot._replace(
-            made=it, owner=own, function=name, given=_taken(names, own, name, words, named),
-            path=_path(names, own, name, spot.path),
-        )
-        for it in _objects(walk, spot, call.on, on)
-        for own in [one for one in it.owners if (one, name) in names.takers][:1]
-    ]  # fmt: skip
+    # The objects that the call is made on.
+    made_of = on[5:-1] if on.startswith("<new ") else ""
+    for it in spot.made.chain:
+        made_of = made_of or _inner(it.members.get(call.on.strip("<>"), ""))[0]
+    found = []
+    for made in walk.objects.get(made_of, ()) if made_of else ():
+        for own in [one for one in made.owners if (one, name) in names.takers][:1]:
+            given, path = _taken(names, own, name, words, named), _path(names, own, name, spot.path)
+            found.append(spot._replace(made=made, owner=own, function=name, given=given, path=path))
+    return found
 
 
 def _path(names: Names, owner: str, function: str, path: str) -> str:
     rows = names.calls.get((owner, function), ())
     return rows[0].place.path if rows else path
-
-
-def _objects(walk: _Walk, spot: Spot, raw: str, on: str) -> list[Made]:
-    """The objects that a call is made on."""
-    made = on[5:-1] if on.startswith("<new ") else ""
-    for it in spot.made.chain:
-        made = made or _inner(it.members.get(raw.strip("<>"), ""))[0]
-    return walk.objects.get(made, []) if made else []

@@ -73,6 +73,11 @@ def read_header_frame(data: bytes) -> str | None:
     return _read(data, lambda it: _texts(it, 1)[0], None)
 
 
+def read_text(data: bytes) -> str | None:
+    """The text of a ``std_msgs/msg/String``, or None as above."""
+    return _read(data, lambda it: it.text(), None)
+
+
 def read_child_frame(data: bytes) -> str | None:
     """The ``child_frame_id`` of an Odometry, which comes after its header, or None as above."""
     return _read(data, lambda it: _texts(it, 2)[1], None)

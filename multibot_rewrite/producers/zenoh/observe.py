@@ -205,7 +205,9 @@ def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Cav
     nodes = tuple(tokens.nodes(seen.tokens))
     ends = tuple(tokens.endpoints(seen.tokens))
     tf = seen.tf
-    heard = frames(tf.transforms(), ends, tf.of_several(), tf.last, tf.rates()) if tf else ()
+    heard = (
+        frames(tf.transforms(), ends, tf.of_several(), tf.last, tf.rates(), tf.ages) if tf else ()
+    )
     around = Environment(
         router.domain,
         "",

@@ -39,9 +39,8 @@ def space_in_name(subject: Subject) -> Iterator[Problem]:
         if name.strip() and BLANK.search(name):
             where = "" if name == name.strip() else " around it"
             near = "_".join(name.split())
-            yield Problem(
-                element, f"{kind} {name!r} contains white space{where}", "name", f"use {near!r}"
-            )
+            hint = f"use {near!r}"
+            yield Problem(element, f"{kind} {name!r} contains white space{where}", "name", hint)
 
 
 @rule("MB305", "double-colon", ERROR)
@@ -50,13 +49,11 @@ def double_colon(subject: Subject) -> Iterator[Problem]:
     for kind, name, element in named(subject):
         if "::" in name:
             hint = f"use {name.replace('::', '_')!r}"
-            yield Problem(
-                element, f"{kind} {name!r} contains '::', which SDF reserves", "name", hint
-            )
+            message = f"{kind} {name!r} contains '::', which SDF reserves"
+            yield Problem(element, message, "name", hint)
     if "::" in (name_of_robot(subject) or ""):
-        yield Problem(
-            subject.document.root, "the robot's name contains '::', which SDF reserves", "name"
-        )
+        message = "the robot's name contains '::', which SDF reserves"
+        yield Problem(subject.document.root, message, "name")
 
 
 @rule("MB306", "reserved-name", ERROR)
@@ -140,11 +137,8 @@ def named(subject: Subject) -> list[tuple[str, str, _Element]]:
         *[("link", it.name, it.element) for it in links],
         *[("joint", it.name, it.element) for it in joints],
     ]
-    return [it for it in every if SUBSTITUTION not in it[1] and _has_name(*it[1:])]
-
-
-def _has_name(name: str, element: _Element) -> bool:
-    return bool(name) or element.get("name") is not None
+    has_name = (it for it in every if it[1] or it[2].get("name") is not None)
+    return [it for it in has_name if SUBSTITUTION not in it[1]]
 
 
 def name_of_robot(subject: Subject) -> str | None:
@@ -204,9 +198,8 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     if name is None or "::" in name or _TOKEN.fullmatch(name):
         return
     hint = f"use {propose_token(name)!r}" if name.strip() else "add one"
-    yield Problem(
-        subject.document.root, f"robot name {name!r} is not a valid ROS name", "name", hint
-    )
+    message = f"robot name {name!r} is not a valid ROS name"
+    yield Problem(subject.document.root, message, "name", hint)
 
 
 @rule("MB312", "invalid-ros-name", WARNING, formats=(URDF, *EVERY))

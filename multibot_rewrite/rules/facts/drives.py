@@ -26,7 +26,7 @@ from multibot_rewrite.description.checks.poses import (
     placed,
     turned,
 )
-from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, shapes_of
+from multibot_rewrite.description.checks.shapes import around, extent_of, shapes_of
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.rules.facts.memo import link_poses, memoized
 from multibot_rewrite.rules.facts.model_wheels import ModelWheels, model_wheels
@@ -270,52 +270,42 @@ def radii(robot: Robot, wheel: Wheel) -> list[float]:
     """The radii of the round shapes that turn with a wheel about its axis: of those that touch the
     ground, else of those that are seen."""
     for tag in ("collision", "visual"):
-        found = [it for at in _parts(robot, wheel) for it in _round(robot, at, tag, wheel.axis)]
+        found = []
+        for shape, pose in _shapes(robot, wheel, tag):
+            along = turned(pose.matrix, (0.0, 0.0, 1.0))
+            is_round = shape.tag == "sphere" or abs(dot(along, wheel.axis)) > ALONG
+            size = number(shape.get("radius")) if is_round else None
+            found += [] if size is None else [size]
         if found:
             return found
     return []
 
 
-def _parts(robot: Robot, wheel: Wheel) -> list[tuple[str, Pose]]:
-    """The links fixed to a wheel, itself first, with their poses in the root."""
+def _shapes(robot: Robot, wheel: Wheel, tag: str) -> Iterator[tuple[_Element, Pose]]:
+    """The shapes of all that turns with a wheel, each at its place."""
+    # The links fixed to a wheel, itself first, with their poses in the root.
     found = [(wheel.joint.child, wheel.pose)]
     for name, pose in found:  # grows
         for joint in robot.below.get(name, ()):
             own = origin_of(joint.element) if joint.type == "fixed" else None
             if own is not None and len(found) < len(robot.links):
                 found.append((joint.child, placed(pose, own)))
-    return found
-
-
-def _round(robot: Robot, part: tuple[str, Pose], tag: str, axis: Vector) -> Iterator[float]:
-    link = robot.link.get(part[0])
-    for element, shape in shapes_of(link.element, tag) if link else ():
-        radius, own = number(shape.get("radius")), origin_of(element)
-        if radius is None or own is None:
-            continue
-        along = turned(placed(part[1], own).matrix, (0.0, 0.0, 1.0))
-        if shape.tag == "sphere" or abs(dot(along, axis)) > ALONG:
-            yield radius
+    for name, pose in found:
+        link = robot.link.get(name)
+        for element, shape in shapes_of(link.element, tag) if link else ():
+            own = origin_of(element)
+            if own is not None:
+                yield shape, placed(pose, own)
 
 
 def middles(robot: Robot, wheel: Wheel) -> list[Vector]:
     """Where a wheel may be said to stand: at its joint, in the middle of its shapes."""
     found = [wheel.pose.at]
     for tag in ("collision", "visual"):
-        shapes = [it for at in _parts(robot, wheel) for it in _extents(robot, at, tag)]
-        box = around(shapes)
+        extents = (extent_of(shape, pose) for shape, pose in _shapes(robot, wheel, tag))
+        box = around(it for it in extents if it is not None)
         found += [] if box is None else [box.middle]
     return found
-
-
-def _extents(robot: Robot, part: tuple[str, Pose], tag: str) -> Iterator[Extent]:
-    link = robot.link.get(part[0])
-    for element, shape in shapes_of(link.element, tag) if link else ():
-        own = origin_of(element)
-        pose = None if own is None else placed(part[1], own)
-        found = None if pose is None else extent_of(shape, pose)
-        if found is not None:
-            yield found
 
 
 def apart(one: Vector, other: Vector, axis: Vector) -> float:

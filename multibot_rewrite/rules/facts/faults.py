@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from lxml.etree import _Element
-
 from multibot_rewrite.base.findings.finding import SRDF, URDF
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.memo import memoized
@@ -63,13 +61,8 @@ def _of_parameters(subject: Subject) -> Iterator[Problem]:
         return
     from multibot_rewrite.rules.schema.plugins import hardware_faults, plugin_faults
 
-    of_ros_1 = _of_ros_1(subject)
+    of_ros_1 = {element for element, section in subject.inventory.served if section.ros == "1"}
     for one in plugins:
         yield from plugin_faults(one, vocabulary, one in of_ros_1)
     for hardware in (it for system in systems for it in system.iterchildren("hardware")):
         yield from hardware_faults(hardware, vocabulary)
-
-
-def _of_ros_1(subject: Subject) -> set[_Element]:
-    """The plugins that are written as ROS 1's: their libraries have the same names in ROS 2."""
-    return {element for element, section in subject.inventory.served if section.ros == "1"}

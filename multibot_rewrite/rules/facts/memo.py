@@ -14,7 +14,6 @@ from typing import NamedTuple, TypeVar
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.description.checks import poses
 from multibot_rewrite.description.checks.links_and_joints import Link, roots
@@ -51,14 +50,9 @@ def link_poses(subject: Subject) -> Mapping[str, Pose]:
 @memoized
 def driven_joints(subject: Subject) -> frozenset[str]:
     """The joints that ``<ros2_control>``, transmissions and plugins name."""
-    claims = subject.inventory.claims
-    return frozenset(
-        it.value for it in claims if it.site.whole_value_kind == "joint" and _drives_a_joint(it)
-    )
-
-
-def _drives_a_joint(claim: Claim) -> bool:
-    return claim.site.role == "uses" and claim.site.section != "element joint"
+    uses = (it for it in subject.inventory.claims if it.site.role == "uses")
+    joints = (it for it in uses if it.site.whole_value_kind == "joint")
+    return frozenset(it.value for it in joints if it.site.section != "element joint")
 
 
 class LinkPart(NamedTuple):
@@ -153,13 +147,11 @@ def sensors(subject: Subject) -> list[Sensor]:
         link = subject.robot.link.get(block.get("reference", ""))
         written = element.find("pose")
         pose = sdf_pose("" if written is None else text_at(element, "pose"))
-        if link is not None and pose is not None and (written is None or not _relative(written)):
+        said = ("relative_to", "frame", "degrees")
+        is_other = written is not None and any(written.get(it) for it in said)
+        if link is not None and pose is not None and not is_other:
             found.append(Sensor(element, element.get("type", ""), link, pose))
     return found
-
-
-def _relative(pose: _Element) -> bool:
-    return bool(pose.get("relative_to") or pose.get("frame") or pose.get("degrees"))
 
 
 def number_at(element: _Element, path: str) -> float | None:

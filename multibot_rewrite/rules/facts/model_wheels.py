@@ -7,7 +7,6 @@ the one that it is ``expressed_in``; up to SDF 1.6 in that of the model if it sa
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 from lxml import etree
@@ -20,7 +19,6 @@ from multibot_rewrite.description.checks.poses import Pose, turned
 from multibot_rewrite.description.checks.sdf_frames import Frames, Named, ends_of, named_in
 
 _Z: Vector = (0.0, 0.0, 1.0)
-_SIZES = ("size", "radius", "length")
 
 
 class ModelWheels(NamedTuple):
@@ -35,23 +33,21 @@ def model_wheels(model: _Element) -> ModelWheels | None:
     """None where the poses of a model are in a circle."""
     frames = Frames({it.name: it for it in named_in(model, "")}, "")
     root = etree.Element("robot")
+    wheels = {}
     try:
-        wheels = dict(_wheels(frames))
+        for ends in ends_of(frames).values():
+            it = frames.named[ends.joint]
+            type_ = it.element.get("type", "")
+            joint = Joint(it.name, type_, ends.parent, ends.child, it.element, {})
+            axis = _axis(frames, it)
+            if axis is not None:
+                wheels[it.name] = (joint, frames.pose(ends.child), axis)
     except InputError:
         return None
     for it in frames.named.values():
         if it.tag == "link":
             root.append(_link(it))
     return ModelWheels(read_robot(root), wheels)
-
-
-def _wheels(frames: Frames) -> Iterator[tuple[str, tuple[Joint, Pose, Vector]]]:
-    for ends in ends_of(frames).values():
-        it = frames.named[ends.joint]
-        joint = Joint(it.name, it.element.get("type", ""), ends.parent, ends.child, it.element, {})
-        axis = _axis(frames, it)
-        if axis is not None:
-            yield it.name, (joint, frames.pose(ends.child), axis)
 
 
 def _axis(frames: Frames, joint: Named) -> Vector | None:
@@ -75,6 +71,6 @@ def _link(link: Named) -> _Element:
         etree.SubElement(element, "origin", xyz=at, rpy=turn)
         geometry = etree.SubElement(element, "geometry")
         for shape in written.iterfind("geometry/*"):
-            sizes = {it: (shape.findtext(it) or "").strip() for it in _SIZES}
+            sizes = {it: (shape.findtext(it) or "").strip() for it in ("size", "radius", "length")}
             etree.SubElement(geometry, str(shape.tag), {k: v for k, v in sizes.items() if v})
     return made

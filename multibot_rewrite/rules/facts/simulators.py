@@ -136,8 +136,7 @@ def needed_systems(models: Iterable[tuple[str, _Element]]) -> Iterator[tuple[str
         for name, root in every
         for one in root.iter("plugin")
     ]
-    moved = next((name for name, it in libraries if it in DRIVES), "")
-    if moved:
+    if moved := next((name for name, it in libraries if it in DRIVES), ""):
         yield _PHYSICS, f"{moved} does not move"
     first: dict[str, str] = {}
     for name, root in every:

@@ -44,10 +44,6 @@ def beyond(check: str, arguments: str, value: Any) -> str:
         name = name.removesuffix(_OR_NAN)
         if isinstance(value, float) and math.isnan(value):
             return ""
-    return _said(name, given, value)
-
-
-def _said(name: str, given: list[Any], value: Any) -> str:
     first: Any = given[0] if given else None
     if name in _NUMBERS and is_number(value) and is_number(first):
         holds, words = _NUMBERS[name]
@@ -55,14 +51,12 @@ def _said(name: str, given: list[Any], value: Any) -> str:
     if name in _SIZES and isinstance(value, str | list) and is_number(first):
         holds, words = _SIZES[name]
         return "" if holds(len(value), first) else f"{words} {first}"
-    if name in _SHAPES:
-        return _SHAPES[name](first, value)
-    return _of_many(name, given, value)
+    return _SHAPES[name](first, value) if name in _SHAPES else _of_many(name, given, value)
 
 
 def _of_many(name: str, given: list[Any], value: Any) -> str:
     first: Any = given[0] if given else None
-    if name in _EACH and isinstance(value, list) and is_number(first):
+    if name in ("lower_bounds", "upper_bounds") and isinstance(value, list) and is_number(first):
         holds, words = _NUMBERS[name]
         every = all(holds(it, first) for it in value if is_number(it))
         return "" if every else f"{words} {first} in each place"
@@ -140,7 +134,6 @@ def _stem(endings: Any, value: Any) -> str:
     return f"without {' or '.join(endings)}, which its reader adds" if ended else ""
 
 
-_EACH = ("lower_bounds", "upper_bounds")
 _SHAPES: dict[str, Callable[[Any, Any], str]] = {
     "limits": _limits,
     "square": _square,

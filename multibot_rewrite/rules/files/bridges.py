@@ -42,9 +42,8 @@ def bridge_row(file: NamedFile) -> Iterator[Finding]:
     be a YAML sequence')."""
     root = file.document.root if file.document else None
     if isinstance(root, yaml.MappingNode):
-        yield remark_at(
-            root, "the file is no list of rows: none is bridged", "write '- ' before it"
-        )
+        hint = "write '- ' before it"
+        yield remark_at(root, "the file is no list of rows: none is bridged", hint)
     for node in _rows(file):
         yield from (remark_at(*fault) for fault in faults(node))
 

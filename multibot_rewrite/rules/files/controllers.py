@@ -9,7 +9,7 @@ ros2_control controller_manager.cpp (a controller is what ``NAME.type`` of the m
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 import yaml
 
@@ -35,21 +35,17 @@ def undeclared_controller(file: NamedFile) -> Iterator[Finding]:
     given = beside(file).given if found else ()
     declared = {it.node.rpartition("/")[2]: it for it in given if it.host_name}
     for manager in found if declared else ():
-        yield from _without_body(file, manager)
+        # Listed controllers that have no parameters, which may be in another file.
+        keys = {str(key.value): key for key, _ in pairs(manager) if key.value != NAMES}
+        names = listed(manager, NAMES)
+        left = keys.keys() - {it.value for it in names}
+        for it in names:
+            near = nearest(str(it.value), left) if it.value not in keys else ""
+            if near:
+                place = Place(file.file, keys[near].start_mark.line + 1)
+                yield from _lacks(it, f"controller {it.value}", did_you_mean_at(near, place))
         for key, body in controllers_of(manager):
             yield from _of_one(file, key, body, declared)
-
-
-def _without_body(file: NamedFile, manager: yaml.Node) -> Iterator[Finding]:
-    """Listed controllers that have no parameters, which may be in another file."""
-    keys = {str(key.value): key for key, _ in pairs(manager) if key.value != NAMES}
-    names = listed(manager, NAMES)
-    left = keys.keys() - {it.value for it in names}
-    for it in names:
-        near = nearest(str(it.value), left) if it.value not in keys else ""
-        if near:
-            place = Place(file.file, keys[near].start_mark.line + 1)
-            yield from _lacks(it, f"controller {it.value}", did_you_mean_at(near, place))
 
 
 def _of_one(
@@ -62,7 +58,11 @@ def _of_one(
         hint = did_you_mean_at(near, declared[near].place) if near else ""
         yield from _lacks(key, f"controller {name}", hint)
         return
-    own = _own_joints(controller)
+    # The joints of a controller; none where its parameters do not list any.
+    own: dict[str, Place] = {}
+    for given in filter(None, map(controller.values.get, ("joints", "joint"))):
+        words = given.value if isinstance(given.value, list) else [given.value]
+        own |= {str(it): given.place for it in words}
     for joint in listed(body, JOINTS) if own else ():
         if joint.value not in own:
             near = nearest(joint.value, own)
@@ -98,22 +98,15 @@ def _lacks(node: yaml.Node, name: str, hint: str) -> Iterator[Finding]:
         yield remark_at(node, f"MoveIt uses {name}, which no parameter file of the robot has", hint)
 
 
-def _own_joints(controller: Run) -> dict[str, Place]:
-    """The joints of a controller; none where its parameters do not list any."""
-    found: dict[str, Place] = {}
-    for given in filter(None, map(controller.values.get, ("joints", "joint"))):
-        words = given.value if isinstance(given.value, list) else [given.value]
-        found |= {str(it): given.place for it in words}
-    return found
-
-
 @rule("MB878", "section-of-no-controller", WARNING, formats=(PARAMS,))
 def section_of_no_controller(file: NamedFile) -> Iterator[Finding]:
     """Nothing is said where no parameter file of the robot declares a controller."""
     given, known = beside(file)
     declared = {it.node: it for it in given if it.host_name}
     bare = [name for name, it in declared.items() if not it.values]
-    loose = [*_undeclared((it for it in given if is_in(file, it.place)), known)]
+    here = (it for it in given if is_in(file, it.place) and not it.host_name)
+    nodes = ((it, known.get(it.fact.known)) for it in here if TYPE not in it.values)
+    loose = [it for it, node in nodes if node and node.host == MANAGER]
     for it in loose:
         alike = [one for one in loose if one.fact.known == it.fact.known]
         same = [name for name in bare if declared[name].fact.known == it.fact.known]
@@ -126,10 +119,3 @@ def section_of_no_controller(file: NamedFile) -> Iterator[Finding]:
         hint = did_you_mean_at(near, place) if near else hint
         message = f"{it.node} has parameters of a controller that nothing declares"
         yield remark(it.place._replace(column=1), message, hint, WARNING if near else NOTE)
-
-
-def _undeclared(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> Iterator[Run]:
-    for it in given:
-        node = known.get(it.fact.known)
-        if not it.host_name and TYPE not in it.values and node and node.host == MANAGER:
-            yield it

@@ -35,14 +35,18 @@ _CAPITALS = lazy_compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
 ID = "<id>."
 _NUMBERS = frozenset(("double", "int", "bool"))
 _SURE = frozenset((YAML, DEMANDED))
-_COSTMAPS = "nav2_costmap_2d"
 _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
 def unknown_parameters(file: NamedFile) -> Iterator[Finding]:
     """Parameters that no release of their node declares, with a name nearly that of one."""
     for section in sections(file):
-        unknown = [it for it, found in section.known if all(map(_is_any_name, found))]
+        # What is asked for by whatever name there is counts for none.
+        unknown = [
+            it
+            for it, found in section.known
+            if all(fact.how == READ and fact.path.endswith(">") for fact in found)
+        ]
         for it, near in _meant_by(section, unknown, file.context.distro):
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
@@ -61,12 +65,21 @@ def _meant_by(
     facts = [it for it in section.facts if it.how != READ]
     paths = [it.path for it in of_release(facts, release)]
     there = [it for it in paths if "<" not in it]
-    there += _in_blocks(section, paths) if section.node is None else ()
+    if section.node is None:
+        # Parameters of a plugin in the blocks that the file gives it: ``scan`` of a layer's sources.
+        blocks = sorted({it.name.partition(".")[0] for it in section.given if "." in it.name})
+        inner = [it.removeprefix(ID) for it in paths if it.startswith(ID)]
+        there += (f"{block}.{it}" for block in blocks for it in inner if "<" not in it)
     above = sorted({it.name.rpartition(".")[0] for it in unknown})
     there += dict.fromkeys(name for group in above for name in _beside(group, paths))
     said = {it.name for it in section.given}
     free = [it for it in there if it not in said]
-    groups, guesses = _by_group(free), Guesses()
+    # Group -> last word -> parameter.
+    groups: dict[str, dict[str, str]] = defaultdict(dict)
+    for name in free:
+        group, _, last = name.rpartition(".")
+        groups[group][last] = name
+    guesses = Guesses()
     for it in unknown:
         yield it, "" if _renamed(it.name) in said else _meant(it.name, free, groups, guesses)
 
@@ -75,11 +88,6 @@ def _renamed(name: str) -> str:
     """Today's name of a parameter that has another one elsewhere; empty for none."""
     *above, last = name.split(".")
     return ".".join((*above, RENAMED[last])) if last in RENAMED else ""
-
-
-def _is_any_name(fact: Declared) -> bool:
-    """Is it asked for by whatever name there is?"""
-    return fact.how == READ and fact.path.endswith(">")
 
 
 def _beside(above: str, paths: Sequence[str]) -> Iterator[str]:
@@ -91,26 +99,10 @@ def _beside(above: str, paths: Sequence[str]) -> Iterator[str]:
             yield f"{above}.{last}"
 
 
-def _in_blocks(section: Section, paths: Sequence[str]) -> Iterator[str]:
-    """Parameters of a plugin in the blocks that the file gives it: ``scan`` of a layer's sources."""
-    blocks = {it.name.partition(".")[0] for it in section.given if "." in it.name}
-    inner = [it.removeprefix(ID) for it in paths if it.startswith(ID)]
-    yield from (f"{block}.{it}" for block in sorted(blocks) for it in inner if "<" not in it)
-
-
 def _is_known(section: Section, it: Setting) -> bool:
     """Has every node such a parameter, or does it hold names?"""
     of_node = section.node is not None and bool(params_at(section.node, it.name, it.key))
     return of_node or _EVERYWHERE.fullmatch(it.name) is not None
-
-
-def _by_group(names: Iterable[str]) -> Mapping[str, Mapping[str, str]]:
-    """Group -> last word -> parameter."""
-    found: dict[str, dict[str, str]] = defaultdict(dict)
-    for name in names:
-        above, _, last = name.rpartition(".")
-        found[above][last] = name
-    return found
 
 
 def _meant(
@@ -136,8 +128,7 @@ def wrong_types(file: NamedFile) -> Iterator[Finding]:
     where no release takes the value."""
     for section in sections(file):
         for it, known in section.known:
-            type_ = _wrong_type(it, of_parameter(known, file.context.distro))
-            if type_:
+            if type_ := _wrong_type(it, of_parameter(known, file.context.distro)):
                 given = _type_of(it.value) if it.value is not None else ""
                 message = f"{section.title}: {it.name} is {_article(given)}, not {_article(type_)}"
                 level = ERROR if _is_refused(file, section, it, known) else ""
@@ -149,7 +140,7 @@ def _is_refused(file: NamedFile, section: Section, it: Setting, known: Sequence[
     is for a release before Humble is another matter, and what no node gets: a costmap's parameters
     without the namespace that its code gives it."""
     package, around = section.node.package if section.node else "", sources_around(file.file)
-    reached = package != _COSTMAPS or "/" in section.title.partition(":")[0]
+    reached = package != "nav2_costmap_2d" or "/" in section.title.partition(":")[0]
     if any(older_nodes(file)) or not reached:
         return False
     if package and around and package in packages_below((around,)):

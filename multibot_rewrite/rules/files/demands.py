@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Set
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, rule
@@ -80,35 +80,26 @@ def value_of(section: Section, name: str) -> Value | None:
 def contradictions(file: NamedFile) -> Iterator[Finding]:
     """Every demand of one parameter on another that is no order."""
     for it in demands(file, *_PAIRS):
-        said = _PAIRS[it.check](it)
-        if said:
+        if said := _PAIRS[it.check](it):
             message = f"{it.section.title}: {it.given.name} {said}"
             # What is 0 is mostly the default that was written down.
             level = "" if it.given.value != 0 or it.check != "with" else NOTE
-            level = ERROR if _stops(it) else level
+            known = it.check != "period" or it.words[0] in it.section.whole
+            level = ERROR if (it.check in _STOPS and not it.releases and known) else level
             yield remark_at(it.given.node, message, f"see {it.source}", level)
     for section in sections(file):
         node = load_nodes(file.context.distro).get(section.node.name) if section.node else None
         yield from _to_itself(section, node) if node else ()
     for it in demands(file, "managed"):
-        yield from _managed(it, {section.title for section in sections(file)})
-
-
-def _stops(it: Demand) -> bool:
-    """Does a node not come up, whatever another file says?"""
-    known = it.check != "period" or it.words[0] in it.section.whole
-    return it.check in _STOPS and not it.releases and known
-
-
-def _managed(it: Demand, nodes: Set[str]) -> Iterator[Finding]:
-    """Names in a list that are no node of the file, but nearly one that the list lacks."""
-    listed = it.given.value if isinstance(it.given.value, list) else []
-    for word in map(str, listed):
-        left = [name for name in nodes - {*listed} if not differ_in_numbers(word, name)]
-        meant = "" if word in nodes else slip_of(word, sorted(left))
-        if meant:
-            message = f"{it.section.title}: {it.given.name} has {word!r}, and lacks {meant!r}"
-            yield remark_at(it.given.node, message, f"it waits for that node; see {it.source}")
+        # Names in a list that are no node of the file, but nearly one that the list lacks.
+        nodes = {section.title for section in sections(file)}
+        listed = it.given.value if isinstance(it.given.value, list) else []
+        for word in map(str, listed):
+            left = [name for name in nodes - {*listed} if not differ_in_numbers(word, name)]
+            meant = "" if word in nodes else slip_of(word, sorted(left))
+            if meant:
+                message = f"{it.section.title}: {it.given.name} has {word!r}, and lacks {meant!r}"
+                yield remark_at(it.given.node, message, f"it waits for that node; see {it.source}")
 
 
 def _to_itself(section: Section, node: NodeFacts) -> Iterator[Finding]:
@@ -120,13 +111,9 @@ def _to_itself(section: Section, node: NodeFacts) -> Iterator[Finding]:
         frame = values.get(parent)
         if given and frame and frame == values.get(child) and holds(condition, values.get):
             message = f"{section.title}: {parent} and {child} are both {frame!r}"
-            hint = f"tf2 refuses a transform from a frame to itself; {_usual(node, parent, child)}"
+            usual = f"by default they are {defaults[parent]} and {defaults[child]}"
+            hint = f"tf2 refuses a transform from a frame to itself; {usual}"
             yield remark_at(given.node, message, hint)
-
-
-def _usual(node: NodeFacts, *parameters: str) -> str:
-    usual = {it.parameter: it.default for it in node.frames}
-    return "by default they are " + " and ".join(usual[it] for it in parameters)
 
 
 def _with(it: Demand) -> str:

@@ -92,7 +92,10 @@ def judged(file: NamedFile, rules: Iterable[Rule]) -> Iterator[Finding]:
     lines = file.text.split("\n")
     for rule in rules:
         for it in rule.check(file) if rule.check else ():
-            if rule.code not in _silenced(lines[it.line - 1]):
+            # The codes in a comment at the end of a line.
+            line = lines[it.line - 1]
+            found = _COMMENT.search(line) if "urdf-lint" in line else None
+            if rule.code not in (found[1].replace(",", " ").split() if found else []):
                 said = it.hint or rule.advice
                 level = it.level or rule.level
                 yield it._replace(code=rule.code, level=level, hint=said, file=file.file)
@@ -104,9 +107,3 @@ def judged_once(file: NamedFile) -> list[Finding]:
     for it in sorted(judged(file, rules_for(file.kind)), key=lambda it: (it.line, it.column)):
         first.setdefault((it.code, it.message), it)
     return list(first.values())
-
-
-def _silenced(line: str) -> list[str]:
-    """The codes in a comment at the end of a line."""
-    found = _COMMENT.search(line) if "urdf-lint" in line else None
-    return found[1].replace(",", " ").split() if found else []

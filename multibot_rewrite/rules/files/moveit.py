@@ -38,7 +38,6 @@ _OF_URDF = {
 }
 _ROUNDED = 1e-3
 _JOINT = lazy_compile(r"robot_description_planning\.joint_limits\.(?P<joint>[^.]+)\.")
-_SRDF = ".srdf"
 _ROBOT = lazy_compile(rb"<robot\s[^<>]*?name\s*=\s*[\"']([^\"'$<]*)[\"']")
 _GROUP = lazy_compile(rb"<group\s[^<>]*?name\s*=\s*[\"']([^\"'<]*)[\"']")
 
@@ -138,7 +137,7 @@ def _groups(file: str) -> frozenset[str]:
 def _srdfs(file: str) -> list[bytes]:
     """The SRDFs in the folder of a file, as they are."""
     folder = os.path.dirname(os.path.abspath(file))
-    names = sorted(it for it in entries(folder) if _SRDF in it)
+    names = sorted(it for it in entries(folder) if ".srdf" in it)
     return [read_file(os.path.join(folder, name)) for name in names]
 
 
@@ -174,6 +173,5 @@ def one_controller_manager(file: NamedFile) -> Iterator[Finding]:
     slots = [slot_of(key)] if key else []
     for slot in (*slots, *(it.slot for it in file.names if it.kind == "namespace")):
         message = "MoveIt looks for /controller_manager, but each robot's has a different name"
-        yield remark(
-            slot, message, "use moveit_simple_controller_manager or a layout with namespaces"
-        )
+        hint = "use moveit_simple_controller_manager or a layout with namespaces"
+        yield remark(slot, message, hint)

@@ -64,7 +64,8 @@ def undeclared_joint(file: NamedFile) -> Iterator[Finding]:
 
 
 def _undeclared(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Finding]:
-    there = {it.together for it in file.names if _is_there(file, it)}
+    joints = (it for it in file.names if it.kind == "joint")
+    there = {it.together for it in joints if it.text in file.declared.get("joint", ())}
     foreign = set(_foreign(file)[0])
     hinted: dict[str, str] = {}
     for site in (it for it in file.names if it.kind in kinds):
@@ -99,10 +100,6 @@ def _near(file: NamedFile, site: Site, name: str, known: Iterable[str]) -> str:
     return did_you_mean(name, known, *(() if _is_sure(file, site) else (MISTYPED,)))
 
 
-def _is_there(file: NamedFile, site: Site) -> bool:
-    return site.kind == "joint" and site.text in file.declared.get("joint", ())
-
-
 def _missing(file: NamedFile, site: Site) -> str:
     """The name that the description should have and has not; empty for any other."""
     if " " in site.text or not is_plain(site.text) or site.own:
@@ -111,9 +108,18 @@ def _missing(file: NamedFile, site: Site) -> str:
     if (site.in_key and file.kind == RVIZ) or not (site.is_sure or file.is_certain):
         return ""
     if site.kind in _FRAMES:
-        return _missing_frame(file, site)
+        links, bare = file.declared.get("link", {}), site.text.strip("/")
+        if not file.is_certain:
+            bare = bare.rpartition("/")[2]
+        declared = any(is_declared(file.context.names, it, bare) for it in (site.kind, "frame"))
+        sent = bare in file.sent | built_in_nodes(file.context.distro).sent
+        free = not links or declared or sent or is_shared_frame(file.context, bare)
+        return "" if free else bare
     if site.kind == "interface":
-        return _missing_owner(file, site)
+        # ``joint1/position`` of an unknown controller: other ones may be another controller's.
+        owner, slash, _ = site.text.rpartition("/")
+        free = site.is_sure or not slash or "/" in owner or not file.declared.get("joint")
+        return "" if free or is_component(file.context, owner) else owner
     name = site.text.lstrip("/")
     known = file.declared.get(site.kind, {})
     # A joint of another controller: controller/joint.
@@ -122,23 +128,6 @@ def _missing(file: NamedFile, site: Site) -> str:
     sensors = site.kind != "joint" and not file.is_certain
     none = not known and not (file.is_certain and file.kind == BRIDGE)
     return "" if none or name in known or chained or guessed or sensors else name
-
-
-def _missing_frame(file: NamedFile, site: Site) -> str:
-    links, bare = file.declared.get("link", {}), site.text.strip("/")
-    if not file.is_certain:
-        bare = bare.rpartition("/")[2]
-    known = any(is_declared(file.context.names, it, bare) for it in (site.kind, "frame"))
-    sent = bare in file.sent | built_in_nodes(file.context.distro).sent
-    free = not links or known or sent or is_shared_frame(file.context, bare)
-    return "" if free else bare
-
-
-def _missing_owner(file: NamedFile, site: Site) -> str:
-    """``joint1/position`` of an unknown controller: other ones may be another controller's."""
-    owner, slash, _ = site.text.rpartition("/")
-    free = site.is_sure or not slash or "/" in owner or not file.declared.get("joint")
-    return "" if free or is_component(file.context, owner) else owner
 
 
 @rule("MB875", "file-of-another-robot", ERROR, formats=(MOVEIT,), options={"build": True})
@@ -189,8 +178,7 @@ def _guessed(file: NamedFile) -> Iterator[Finding]:
         taken = [it for it in names.sites if _is_taken(file, it)]
         doubt = in_doubt(file.context, section, names)
         left = [it for it in taken if it.kind in doubt]
-        guessed = [it for it in taken if not it.is_sure and it not in left]
-        if guessed:
+        if guessed := [it for it in taken if not it.is_sure and it not in left]:
             told = f"parameters that hold names are guessed: {_keys(guessed)}"
             yield _unknown(guessed[0], section.path, told)
         if left:
@@ -246,12 +234,9 @@ def _said(file: NamedFile, site: Site, known: Mapping[str, str], renamed: frozen
 def _begins_all(file: NamedFile, text: str) -> bool:
     """Do most links begin so? Code that puts it before names makes other ones than the description."""
     links = [it for it in file.declared.get("link", ()) if it != WORLD]
-    return len(links) >= _FEWEST and 2 * len(_begun(text, links)) > len(links)
-
-
-def _begun(text: str, names: Iterable[str]) -> list[str]:
     starts = tuple(f"{text.rstrip('_/')}{it}" for it in "_/")
-    return [it for it in names if text and it.startswith(starts)]
+    begun = [it for it in links if text and it.startswith(starts)]
+    return len(links) >= _FEWEST and 2 * len(begun) > len(links)
 
 
 def _robots_names(file: NamedFile) -> dict[str, str]:

@@ -68,42 +68,25 @@ def file_parameters(text: str) -> tuple[FileParameter, ...]:
 
 def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[FileParameter]:
     keys = {key.value: value for key, value in pairs(node)}
-    if _is_type(keys.get("type")):
-        yield _parameter(owner, node, path, keys)
+    type_ = keys.get("type")
+    if isinstance(type_, yaml.ScalarNode) and type_.value.partition("_")[0] in _TYPES:
+        made = yaml.SafeLoader("").construct_object
+        given = {key: made(value, deep=True) for key, value in keys.items()}
+        yield FileParameter(
+            owner,
+            ".".join(path),
+            str(given["type"]),
+            text_of(given.get("default_value")),
+            _bounds(given.get("validation")),
+            "read_only" if given.get("read_only") is True else "",
+            node.start_mark.line + 1,
+        )
         return
     for key, below in pairs(node):
-        yield from _parameters(owner, below, (*path, _segment(key.value)))
-
-
-def _is_type(node: yaml.Node | None) -> bool:
-    if not isinstance(node, yaml.ScalarNode):
-        return False
-    return node.value.partition("_")[0] in _TYPES
-
-
-def _segment(word: str) -> str:
-    """``__map_joints`` stands for each of the names in the parameter ``joints``."""
-    return f"<{word.removeprefix(_MAP)}>" if word.startswith(_MAP) else word
-
-
-def _parameter(
-    owner: str, node: yaml.Node, path: tuple[str, ...], keys: dict[str, yaml.Node]
-) -> FileParameter:
-    given = {key: _value(value) for key, value in keys.items()}
-    return FileParameter(
-        owner,
-        ".".join(path),
-        str(given["type"]),
-        text_of(given.get("default_value")),
-        _bounds(given.get("validation")),
-        "read_only" if given.get("read_only") is True else "",
-        node.start_mark.line + 1,
-    )
-
-
-def _value(node: yaml.Node) -> object:
-    loader = yaml.SafeLoader("")
-    return loader.construct_object(node, deep=True)
+        word = key.value
+        # ``__map_joints`` stands for each of the names in the parameter ``joints``.
+        step = f"<{word.removeprefix(_MAP)}>" if word.startswith(_MAP) else word
+        yield from _parameters(owner, below, (*path, step))
 
 
 def _bounds(validation: object) -> str:
@@ -150,14 +133,11 @@ def facts_of_node(
     shared = (it for it in node.declared_in if not named or it not in others)
     owners = (node.package, *shared, *one)
     known = (it for owner in owners for it in declared_by(owner))
-    return (*_in_nodl(node), *known)
-
-
-def _in_nodl(node: NodeParameters) -> Iterator[Declared]:
-    """What the installed NoDL document of a node declares."""
-    for path, type_ in nodl_parameters(node.package, node.name):
-        if says_something(path):
-            yield Declared(path, type_, "", "", NODL, f"NoDL of {node.package}/{node.name}")
+    # What the installed NoDL document of the node declares.
+    given = nodl_parameters(node.package, node.name)
+    source = f"NoDL of {node.package}/{node.name}"
+    said = (Declared(*it, "", "", NODL, source) for it in given if says_something(it[0]))
+    return (*said, *known)
 
 
 @outside

@@ -116,8 +116,7 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
     """What is wrong with a class that the release has not, what is to do, and how bad it is; nothing
     where a package that is not known may have it."""
     there = [it for it, words in known.classes.items() if has_release(words, release)]
-    alike = next((it for it in there if canonical(it) == canonical(name)), "")
-    if alike:
+    if alike := next((it for it in there if canonical(it) == canonical(name)), ""):
         return f"which is written with other signs in {release}", f"write {alike}", WARNING
     if name in known.older:
         level = WARNING if name in known.ended else ERROR
@@ -132,7 +131,9 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
     package, _, last = canonical(name).partition("::")
     if package in packages():
         # Whoever writes a class of his own may put it into the namespace of a package.
-        slip = _slip(last, [it for it in there if canonical(it).startswith(f"{package}::")])
+        own = [it for it in there if canonical(it).startswith(f"{package}::")]
+        by_last = {canonical(it).rpartition("::")[2]: it for it in own}
+        slip = by_last.get(slip_of(last.rpartition("::")[2], by_last), "")
         hint = f"did you mean {slip}?" if slip else "see the plugins of its package"
         return "which its package does not have", hint, ERROR if slip else NOTE
     slip = nearest(package, packages(), MISTYPED)
@@ -140,12 +141,6 @@ def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, st
     # A package that is not known may have it, whatever its name is like.
     unknown = f"a class of {package}, which is not known"
     return (unknown, f"did you mean {alike}?", NOTE) if alike else ("", "", "")
-
-
-def _slip(last: str, known: Sequence[str]) -> str:
-    """The class whose own name differs by a letter or two."""
-    by_last = {canonical(it).rpartition("::")[2]: it for it in known}
-    return by_last.get(slip_of(last.rpartition("::")[2], by_last), "")
 
 
 def _near(name: str, there: Sequence[str]) -> str:
@@ -196,17 +191,13 @@ def without_plugin(file: NamedFile) -> Iterator[Finding]:
             )
             elsewhere = not found and is_set_beside(file, it.section.title, f"{below}plugin")
             if not found and not elsewhere and not _is_misspelt(it, word, words):
-                yield _without(it, word, below)
+                what = "plugin" if it.check == "classes" else "parameters"
+                message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
+                name = below + "plugin" if what == "plugin" else below.rstrip(".")
+                # Another parameter file, or the launch file, may have it.
+                hint = f"add {name}, or take {word} off the list"
+                yield remark_at(it.given.node, message, hint, WARNING)
     yield from _without_type(file)
-
-
-def _without(it: Demand, word: str, below: str) -> Finding:
-    what = "plugin" if it.check == "classes" else "parameters"
-    message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
-    name = below + "plugin" if what == "plugin" else below.rstrip(".")
-    # Another parameter file, or the launch file, may have it.
-    hint = f"add {name}, or take {word} off the list"
-    return remark_at(it.given.node, message, hint, WARNING)
 
 
 def _is_misspelt(it: Demand, word: str, words: Sequence[str]) -> bool:
@@ -256,27 +247,23 @@ def older_nodes(file: NamedFile) -> Iterator[tuple[str, ParamSection]]:
 def missing_parameters(file: NamedFile) -> Iterator[Finding]:
     """What a node asks for and has no default: by itself, in a block, or with another parameter."""
     for section in sections(file):
-        yield from _missing(file, section)
+        facts = of_release(section.facts, file.context.distro)
+        needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]
+        found = [it for fact, words in needed for it in _required(file, section, fact, words)]
+        # What a controller has under another name is misspelt, or it is of another class that is called
+        # the same; a section with nothing of it adds to one of another file.
+        unknown = [it for it, known in section.known if not known and it.name != TYPE]
+        is_whole = len(unknown) < len(found) < len(needed)
+        controller = section.node is not None and bool(section.node.types)
+        yield from found if is_whole or not controller else ()
+        for fact in facts:
+            for words in (words for check, words in fact.checks if check == "required_or"):
+                yield from _required_or(file, section, fact, words.split())
     for it in demands(file, "needs"):
         # A value that only a launch file fills in is there, too.
         if it.given.value is True and it.section.at + it.words[0] not in it.section.whole:
             message = f"{it.section.title}: {it.given.name} is true without {it.words[0]}"
             yield remark_at(it.given.key, message, f"add it, or set this to false; see {it.source}")
-
-
-def _missing(file: NamedFile, section: Section) -> Iterator[Finding]:
-    facts = of_release(section.facts, file.context.distro)
-    needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]
-    found = [it for fact, words in needed for it in _required(file, section, fact, words)]
-    # What a controller has under another name is misspelt, or it is of another class that is called the
-    # same; a section with nothing of it adds to one of another file.
-    unknown = [it for it, known in section.known if not known and it.name != TYPE]
-    is_whole = len(unknown) < len(found) < len(needed)
-    controller = section.node is not None and bool(section.node.types)
-    yield from found if is_whole or not controller else ()
-    for fact in facts:
-        for words in (words for check, words in fact.checks if check == "required_or"):
-            yield from _required_or(file, section, fact, words.split())
 
 
 def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:

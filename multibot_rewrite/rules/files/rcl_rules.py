@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import yaml
 
@@ -141,9 +141,8 @@ def mixed_clocks(file: NamedFile) -> Iterator[Finding]:
     first = next(path for path, _, value in found if value == most)
     names = shorten(path for path, _ in others)
     message = f"{_TIME} is {_word(not most)} for {names}, and {_word(most)} for {first}"
-    yield remark_at(
-        others[0][1], message, "set it alike in all nodes of a robot: tf compares times"
-    )
+    hint = "set it alike in all nodes of a robot: tf compares times"
+    yield remark_at(others[0][1], message, hint)
 
 
 def _is_left_out(section: ParamSection) -> bool:
@@ -211,7 +210,13 @@ _DIGITS = str.maketrans("", "", "0123456789")
 def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
     """Each list of each node."""
     for node in given_in(file):
-        bodies = _bodies(node.values)
+        # Below each parameter the names with parameters of their own, each at its first place.
+        bodies: dict[str, dict[str, Place]] = {}
+        for name, given in node.values.items():
+            parts = name.split(".")
+            for depth in range(len(parts) - 1):
+                above = ".".join(parts[:depth])
+                bodies.setdefault(above, {}).setdefault(parts[depth], given.place)
         used = {word for it in node.values.values() for word in _words(it)}
         for parameter, value in node.values.items() if bodies else ():
             own = bodies.get(parameter.rpartition(".")[0], {}) if _is_list(parameter, value) else {}
@@ -228,17 +233,6 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
 def _is_list(parameter: str, given: Given) -> bool:
     """Are these names? A text is a list in ``observation_sources``, a joint of a controller is not."""
     return isinstance(given.value, list) or parameter.endswith(("s", "plugin"))
-
-
-def _bodies(values: Mapping[str, Given]) -> dict[str, dict[str, Place]]:
-    """Below each parameter the names that have parameters of their own, with the place of the first."""
-    found: dict[str, dict[str, Place]] = {}
-    for name, given in values.items():
-        parts = name.split(".")
-        for depth in range(len(parts) - 1):
-            above = ".".join(parts[:depth])
-            found.setdefault(above, {}).setdefault(parts[depth], given.place)
-    return found
 
 
 def _words(given: Given) -> list[str]:

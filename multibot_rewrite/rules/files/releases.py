@@ -11,9 +11,8 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.companions.named_file import PARAMS, NamedFile
 from multibot_rewrite.companions.params.name_sites import params_at
-from multibot_rewrite.companions.params.sections import ParamSection, flattened, scalars
+from multibot_rewrite.companions.params.sections import flattened, scalars
 from multibot_rewrite.companions.yaml_text import items, pairs
-from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters, Param
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.declared import of_other_releases
@@ -22,16 +21,29 @@ _FORWARD = "forward_command_controller/ForwardCommandController"
 _BROADCASTER = "joint_state_broadcaster"
 # What sensor_msgs/JointState has a field for.
 _IN_JOINT_STATES = frozenset(("position", "velocity", "effort"))
-_GONE_SINCE = "lyrical+"
 
 
 @rule("MB869", "deprecated-in-release", NOTE, formats=(PARAMS,), options={"distro": "lyrical"})
 def deprecated(file: NamedFile) -> Iterator[Finding]:
     """Parameters of known nodes, and types of controllers."""
-    release = file.context.distro
+    release, nodes = file.context.distro, file.known.nodes.values() if file.known else ()
+    types = {name: it for node in nodes for name, it in node.deprecated_types.items()}
     for section, _ in file.pages:
-        yield from _deprecated_parameters(section, release)
-        yield from _deprecated_types(section.body, file.known, release)
+        for name, key in flattened(section.body):
+            param = section.node.params.get(name) if section.node else None
+            if param and param.deprecated and has_release(param.deprecated, release):
+                there = has_release(param.releases, release)
+                state = "is deprecated" if there else "is gone and has no effect"
+                message = f"{name} {state} in {release}"
+                instead = f"use {' or '.join(param.instead)}" if param.instead else "delete it"
+                yield remark_at(key, message, f"{instead}{_source(param.source)}")
+        for key, value in scalars(section.body):
+            words = types.get(value.value, "") if key.value.rpartition(".")[2] == "type" else ""
+            if words and has_release(words, release):
+                message = f"{value.value} is deprecated in {release}"
+                interface = value.value.partition("_")[0]
+                hint = f"use {_FORWARD} with interface_name: {interface}"
+                yield remark_at(value, message, hint)
 
 
 @rule(
@@ -39,10 +51,19 @@ def deprecated(file: NamedFile) -> Iterator[Finding]:
 )
 def not_sent(file: NamedFile) -> Iterator[Finding]:
     """Interfaces of joint_state_broadcaster that no topic holds."""
-    if has_release(_GONE_SINCE, file.context.distro):
-        for section, _ in file.pages:
-            if section.node is not None and section.node.name == _BROADCASTER:
-                yield from _not_sent(section.body)
+    if not has_release("lyrical+", file.context.distro):
+        return
+    nodes = ((section.node, section.body) for section, _ in file.pages)
+    for body in (it for node, it in nodes if node is not None and node.name == _BROADCASTER):
+        given = {key.value: value for key, value in pairs(body)}
+        words = scalars(given.get("map_interface_to_joint_state"))
+        mapped = {getattr(it, "value", "") for _, it in words}
+        for item in items(given.get("interfaces")):
+            name = getattr(item, "value", "")
+            if name not in _IN_JOINT_STATES | mapped:
+                message = f"no node publishes {name}: joint_states has no field for it"
+                hint = "use a state_interfaces_broadcaster for it"
+                yield remark_at(item, message, hint)
 
 
 @rule(
@@ -55,35 +76,20 @@ def of_another_release(file: NamedFile) -> Iterator[Finding]:
 
 def elsewhere(file: NamedFile) -> Iterator[Finding]:
     """The nodes and parameters of a file that its release does not have and another one has."""
-    for section, _ in file.pages:
-        yield from _of_another_release(section, file.context.distro)
+    release = file.context.distro
+    for section, node in ((it, it.node) for it, _ in file.pages if not it.wild):
+        if node is None:
+            continue
+        if not has_release(node.releases, release):
+            yield _elsewhere(section.keys[-1], f"node {node.name}", node, release)
+            continue
+        for name, key in flattened(section.body):
+            found = params_at(node, name, key)
+            # What is called deprecated is told there.
+            told = any(it.deprecated and has_release(it.deprecated, release) for it in found)
+            if found and not told and not any(has_release(it.releases, release) for it in found):
+                yield _elsewhere(key, name, found[0], release)
     yield from of_other_releases(file)
-
-
-def _deprecated_parameters(section: ParamSection, release: str) -> Iterator[Finding]:
-    for name, key in flattened(section.body):
-        param = section.node.params.get(name) if section.node else None
-        if param and param.deprecated and has_release(param.deprecated, release):
-            there = has_release(param.releases, release)
-            state = "is deprecated" if there else "is gone and has no effect"
-            message = f"{name} {state} in {release}"
-            instead = f"use {' or '.join(param.instead)}" if param.instead else "delete it"
-            yield remark_at(key, message, f"{instead}{_source(param.source)}")
-
-
-def _of_another_release(section: ParamSection, release: str) -> Iterator[Finding]:
-    """Nodes and parameters that only other releases have; what is called deprecated is told there."""
-    node = section.node
-    if node is None or section.wild:
-        return
-    if not has_release(node.releases, release):
-        yield _elsewhere(section.keys[-1], f"node {node.name}", node, release)
-        return
-    for name, key in flattened(section.body):
-        found = params_at(node, name, key)
-        told = any(it.deprecated and has_release(it.deprecated, release) for it in found)
-        if found and not told and not any(has_release(it.releases, release) for it in found):
-            yield _elsewhere(key, name, found[0], release)
 
 
 def _source(places: Sequence[str]) -> str:
@@ -100,32 +106,3 @@ def _elsewhere(
         "delete it, or name the release that the file is for: distro: in the fleet file, --distro"
     )
     return remark_at(key, message, f"{hint}{_source(known.source)}")
-
-
-def _deprecated_types(body: yaml.Node, known: KnownNodes | None, release: str) -> Iterator[Finding]:
-    types = {
-        type_: it
-        for node in (known.nodes.values() if known else ())
-        for type_, it in node.deprecated_types.items()
-    }
-    for key, value in scalars(body):
-        words = types.get(value.value, "") if key.value.rpartition(".")[2] == "type" else ""
-        if words and has_release(words, release):
-            message = f"{value.value} is deprecated in {release}"
-            interface = value.value.partition("_")[0]
-            hint = f"use {_FORWARD} with interface_name: {interface}"
-            yield remark_at(value, message, hint)
-
-
-def _not_sent(body: yaml.MappingNode) -> Iterator[Finding]:
-    """Interfaces that no topic holds."""
-    given = {key.value: value for key, value in pairs(body)}
-    mapped = {
-        getattr(it, "value", "") for _, it in scalars(given.get("map_interface_to_joint_state"))
-    }
-    for item in items(given.get("interfaces")):
-        name = getattr(item, "value", "")
-        if name not in _IN_JOINT_STATES | mapped:
-            message = f"no node publishes {name}: joint_states has no field for it"
-            hint = "use a state_interfaces_broadcaster for it"
-            yield remark_at(item, message, hint)

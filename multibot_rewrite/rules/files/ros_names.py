@@ -75,18 +75,12 @@ def placeholders(file: NamedFile) -> Iterator[Finding]:
     """The first placeholder of each name."""
     level = "" if file.is_certain else NOTE
     for site in file.names:
-        found = _placeholder(site)
-        if found:
-            message = f"the placeholder {found} stays; a launch file must replace it"
+        if is_plain(site.text) or is_robot(site.text) or site.text == _FIXED:
+            continue
+        if found := _IN_VALUE.search(site.text):
+            message = f"the placeholder {found[0]} stays; a launch file must replace it"
             hint = "if it stands for the robot's name, write the value without it"
             yield remark(site, message, hint, level)
-
-
-def _placeholder(site: Site) -> str:
-    if is_plain(site.text) or is_robot(site.text) or site.text == _FIXED:
-        return ""
-    found = _IN_VALUE.search(site.text)
-    return found[0] if found else ""
 
 
 def slashes(file: NamedFile) -> Iterator[Finding]:
@@ -150,8 +144,7 @@ def in_description(
     known = declared_names(declared)
     for element in root.iter("*") if words else ():
         for attribute, text in (*element.items(), ("", (element.text or "").strip())):
-            found = in_value(str(text), words, known)
-            if found:
+            if found := in_value(str(text), words, known):
                 message, hint = of_one_robot(*found)
                 yield Problem(element, message, str(attribute), hint, (), robot_in_name.code)
                 return

@@ -27,7 +27,6 @@ from multibot_rewrite.system.records import COMPUTER
 
 # Patterns that match everything or nothing hold no robot's name.
 _OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})
-_OFF = ("false", "no", "off")
 _OWN_VALUE = "set it for each robot, in a parameter file that is loaded after this one"
 
 
@@ -39,7 +38,7 @@ def _exclusive(file: NamedFile) -> Iterator[Finding]:
     # Of a fleet each robot gets a number of its own.
     kinds = ("exclusive",) if file.is_certain else ("exclusive", PORT)
     for site in file.names:
-        if site.kind in kinds and site.text and site.text.lower() not in _OFF:
+        if site.kind in kinds and site.text and site.text.lower() not in ("false", "no", "off"):
             yield remark(site, _same(site.key, site.text), _OWN_VALUE)
     known = {site.slot.start for site in file.names if site.kind in OWN_KINDS}
     for section, _ in file.pages:
@@ -50,9 +49,8 @@ def _exclusive(file: NamedFile) -> Iterator[Finding]:
                 hint = f"fine if each robot has a computer of its own; else {_OWN_VALUE}"
                 yield remark_at(value, _same(key.value, text), hint, NOTE)
             elif kind:
-                yield remark_at(
-                    value, _same(key.value, text), f"one device has one driver: {_OWN_VALUE}"
-                )
+                hint = f"one device has one driver: {_OWN_VALUE}"
+                yield remark_at(value, _same(key.value, text), hint)
 
 
 def _same(key: str, text: str) -> str:
@@ -68,20 +66,16 @@ def not_renamed(file: NamedFile) -> Iterator[Finding]:
         if sure and site.text not in _OPEN_PATTERNS:
             message = f"names in {site.key} {site.text!r} are not rewritten"
             yield remark(site, message, "check that it works for each robot")
-    for one in file.shown:
-        yield from (it for place in one.places for it in _in_display(file, one, place))
+    for one, place in ((item, site) for item in file.shown for site in item.places):
+        why = _why_not(file.context, one, place) if place.slot.value else None
+        if why:
+            message, hint = why
+            yield remark(place, f"{place.key.rstrip('.*')} {place.slot.value!r} {message}", hint)
 
 
 def _mentions(context: Context, value: str) -> bool:
     words = "".join(c if c.isalnum() or c in "_-/" else " " for c in value).split()
     return any(is_declared(context.names, kind, it) for it in words for kind in ("link", "joint"))
-
-
-def _in_display(file: NamedFile, one: RvizItem, place: Site) -> Iterator[Finding]:
-    there = _why_not(file.context, one, place) if place.slot.value else None
-    if there:
-        message, hint = there
-        yield remark(place, f"{place.key.rstrip('.*')} {place.slot.value!r} {message}", hint)
 
 
 def _why_not(context: Context, one: RvizItem, place: Site) -> tuple[str, str] | None:
@@ -152,19 +146,19 @@ def _prefix_only(name: str, at: Finding) -> Finding:
 
 # The second one: camera_aravis, spinnaker_camera_driver.
 _URLS = frozenset({"camera_info_url", "camerainfo_url"})
-_OF_THE_COMPUTER = "${ROS_HOME}"
 _SCHEMES = ("file://", "package://")
 
 
-@of_robots
-def _calibrations(file: NamedFile) -> Iterator[Finding]:
-    """Each calibration that all robots of a file read; a file for one robot has its own."""
+def one_device(file: NamedFile) -> Iterator[Finding]:
+    """What only one node can have, and calibrations of cameras."""
+    yield from _exclusive(file)
+    # Each calibration that all robots of a file read; a file for one robot has its own.
     # Source: image_common, camera_info_manager.cpp (humble to rolling). A camera_info_url is file:///,
     # package:// or flash:///, with ${NAME} and ${ROS_HOME} filled in; the file has no robot's name.
     sections = () if file.is_for_one else (it for it, _ in file.pages if not it.shared)
     for key, url in (it for section in sections for it in scalars(section.body)):
         text = str(url.value)
-        own = filled(text, "") != text or _OF_THE_COMPUTER in text
+        own = filled(text, "") != text or "${ROS_HOME}" in text
         is_url = key.value.rpartition(".")[2] in _URLS and text.lower().startswith(_SCHEMES)
         if is_url and not own:
             message = f"every robot reads the calibration {text!r}; real cameras have one each"
@@ -172,39 +166,27 @@ def _calibrations(file: NamedFile) -> Iterator[Finding]:
             yield remark_at(url, message, hint, NOTE)
 
 
-def one_device(file: NamedFile) -> Iterator[Finding]:
-    """What only one node can have, and calibrations of cameras."""
-    yield from _exclusive(file)
-    yield from _calibrations(file)
-
-
 @robots_rule("MB883", "section-of-one-robot", ERROR, PARAMS)
 def section_of_one_robot(file: NamedFile) -> Iterator[Finding]:
     """A namespace in a section's name: that of one robot, or one below each robot's."""
-    for section, _ in file.pages:
-        if not section.shared:
-            yield from _namespace(section, file.context)
-
-
-def _namespace(section: ParamSection, context: Context) -> Iterator[Finding]:
-    tokens = section.path.split("/")
-    key = section.keys[0]
-    if section.path in context.nodes or tokens[0] == "**" or section.full == section.path:
-        return
-    if section.path != "/".join(it.value.strip("/") for it in section.keys):
-        return  # what is below the robot's own namespace is meant to be there
-    tails = ["/".join(tokens[at:]) for at in range(1, len(tokens))]
-    stack = next((tail for tail in tails if tail in context.nodes), "")
-    if stack or (tokens[-1] in ANY and tokens[0] not in ANY):
-        message = f"section {section.path} is for one robot only: its name includes a namespace"
-        hint = f"write {stack or '/**'}: instead; the build adds each robot's namespace"
-        yield remark_at(key, message, hint)
-    elif tails and not section.wild and not tokens[-1].startswith(tokens[0]):
-        message = (
-            f"section {section.path} has a namespace; it is placed below each robot's namespace"
-        )
-        hint = f"if {tokens[0]} is the name of a robot, write {tails[0]}: instead"
-        yield remark_at(key, message, hint, WARNING)
+    context = file.context
+    for section in (it for it, _ in file.pages if not it.shared):
+        tokens = section.path.split("/")
+        key = section.keys[0]
+        if section.path in context.nodes or tokens[0] == "**" or section.full == section.path:
+            continue
+        if section.path != "/".join(it.value.strip("/") for it in section.keys):
+            continue  # what is below the robot's own namespace is meant to be there
+        tails = ["/".join(tokens[at:]) for at in range(1, len(tokens))]
+        stack = next((tail for tail in tails if tail in context.nodes), "")
+        if stack or (tokens[-1] in ANY and tokens[0] not in ANY):
+            message = f"section {section.path} is for one robot only: its name includes a namespace"
+            hint = f"write {stack or '/**'}: instead; the build adds each robot's namespace"
+            yield remark_at(key, message, hint)
+        elif tails and not section.wild and not tokens[-1].startswith(tokens[0]):
+            what = "has a namespace; it is placed below each robot's namespace"
+            hint = f"if {tokens[0]} is the name of a robot, write {tails[0]}: instead"
+            yield remark_at(key, f"section {section.path} {what}", hint, WARNING)
 
 
 @rule(
@@ -232,9 +214,17 @@ def shared_section(file: NamedFile) -> Iterator[Finding]:
 )
 def source_without_topic(file: NamedFile) -> Iterator[Finding]:
     """Observation sources of a costmap layer without a topic: their id is the topic."""
-    for section, _ in file.pages:
-        if not section.shared and _resolves_below(section, file.context):
-            yield from _without_topic(section)
+    pages = (it for it, _ in file.pages if not it.shared and _resolves_below(it, file.context))
+    for section in pages:
+        names = dict(flattened(section.body))
+        values = {id(key): str(value.value) for key, value in scalars(section.body)}
+        for name, key in names.items():
+            layer, _, last = name.rpartition(".")
+            words = values.get(id(key), "") if last == "observation_sources" and layer else ""
+            for source in (it for it in words.split() if f"{layer}.{it}.topic" not in names):
+                message = f"source {source} of {layer} has no topic, so it subscribes to {source!r}"
+                hint = f"add {layer}.{source}.topic: /{source}; it is renamed for each robot"
+                yield remark_at(key, message, hint)
 
 
 def _resolves_below(section: ParamSection, context: Context) -> bool:
@@ -242,17 +232,3 @@ def _resolves_below(section: ParamSection, context: Context) -> bool:
     param = section.node.params.get("<id>.<id>.topic") if section.node else None
     namespaced = context.topics.naming.topics == NAMESPACE
     return param is not None and (not namespaced or is_absolute(param, context.distro))
-
-
-def _without_topic(section: ParamSection) -> Iterator[Finding]:
-    names = dict(flattened(section.body))
-    values = {id(key): str(value.value) for key, value in scalars(section.body)}
-    for name, key in names.items():
-        layer, _, last = name.rpartition(".")
-        if last != "observation_sources" or not layer:
-            continue
-        for source in values.get(id(key), "").split():
-            if f"{layer}.{source}.topic" not in names:
-                message = f"source {source} of {layer} has no topic, so it subscribes to {source!r}"
-                hint = f"add {layer}.{source}.topic: /{source}; it is renamed for each robot"
-                yield remark_at(key, message, hint)

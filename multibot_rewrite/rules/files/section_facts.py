@@ -191,15 +191,11 @@ def _section(
         else:
             exact.setdefault(fact.path, []).append(fact)
     known = tuple((it, (*exact.get(it.name, ()), *_matching(wild, it.name))) for it in given)
-    return Section(title, node, given, facts, tuple(_asked(known, whole, at)), whole, at)
-
-
-def _asked(
-    known: Sequence[tuple[Setting, tuple[Declared, ...]]], whole: Mapping[str, Setting], at: str
-) -> Iterator[tuple[Setting, tuple[Declared, ...]]]:
-    """Without what is not read with the value of another parameter."""
-    for it, facts in known:
-        yield it, tuple(fact for fact in facts if _is_read(fact, it.name, whole, at))
+    # Without what is not read with the value of another parameter.
+    asked = tuple(
+        (it, tuple(fact for fact in its if _is_read(fact, it.name, whole, at))) for it, its in known
+    )
+    return Section(title, node, given, facts, asked, whole, at)
 
 
 def _is_read(fact: Declared, name: str, whole: Mapping[str, Setting], at: str) -> bool:

@@ -19,7 +19,6 @@ from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.plugins import FILTER
 from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
 
-_NODE = "joy_teleop"
 # Type of a command -> the middle of its interface's type, what names it, and what starts it.
 _TYPES = {
     "topic": ("msg", "topic_name", ("deadman_buttons", "deadman_axes", "deadman_axes_negative")),
@@ -27,7 +26,6 @@ _TYPES = {
     "action": ("action", "action_name", ("buttons", "axes", "axes_negative")),
 }
 _MAPPINGS, _VALUE = "axis_mappings", "message_value"
-_INPUTS = ("axis", "button", "value")
 # The first fields of messages that are driven with.
 _FIELDS = {
     "geometry_msgs/msg/Twist": ("linear", "angular"),
@@ -42,7 +40,7 @@ _Values = Mapping[str, Setting]
 def broken_commands(file: NamedFile) -> Iterator[Finding]:
     """Of each command, at its first parameter."""
     for section in sections(file):
-        if section.node is None or section.node.name != _NODE:
+        if section.node is None or section.node.name != "joy_teleop":
             continue
         commands: dict[str, dict[str, Setting]] = {}
         for it in section.given:
@@ -70,7 +68,7 @@ def _faults(values: _Values) -> Iterator[tuple[str, str]]:
     parts = kind.split("/")
     if kind and (len(parts) != 3 or parts[1] != middle):
         yield f"has the interface_type {kind!r}", f"write PACKAGE/{middle}/{parts[-1]}"
-    if not any(_is_filled(values, it) for it in starts):
+    if not any(it in values and values[it].value not in (None, []) for it in starts):
         yield "is started by nothing", f"add {starts[0]}, or {' or '.join(starts[1:])}"
     if type_ == "topic":
         yield from _of_topic(values, kind)
@@ -86,7 +84,7 @@ def _of_topic(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
     below = [it.removeprefix(f"{_MAPPINGS}.") for it in values if it.startswith(f"{_MAPPINGS}.")]
     for field in dict.fromkeys(it.rpartition(".")[0] for it in below):
         words = {it.rpartition(".")[2] for it in below if it.rpartition(".")[0] == field}
-        if words.isdisjoint(_INPUTS):
+        if words.isdisjoint(("axis", "button", "value")):
             yield f"has no axis, button or value for {field}", "add one of them"
         missing = [it for it in ("scale", "offset") if it not in words] if "axis" in words else []
         if missing:
@@ -104,12 +102,6 @@ def _text(values: _Values, name: str) -> str:
     return value if isinstance(value, str) else ""
 
 
-def _is_filled(values: _Values, name: str) -> bool:
-    return name in values and values[name].value not in (None, [])
-
-
-_PACKAGE = "laser_filters"
-_NEEDED = ("name", "type")
 # The number of a filter, or none, with its parts.
 _Filters = Mapping[str, Mapping[str, Setting]]
 
@@ -117,11 +109,16 @@ _Filters = Mapping[str, Mapping[str, Setting]]
 @rule("MB896", "filter-chain", WARNING, formats=(PARAMS,))
 def broken_chains(file: NamedFile) -> Iterator[Finding]:
     """Of every chain of a node of laser_filters."""
-    for section in sections(file):
-        if section.node and section.node.package == _PACKAGE:
-            for filters in _chains(section).values():
-                yield from _not_loaded(section, filters)
-                yield from _incomplete(section, filters)
+    own = (it for it in sections(file) if it.node and it.node.package == "laser_filters")
+    for section, filters in ((it, chain) for it in own for chain in _chains(it).values()):
+        last = next(at for at in range(1, len(filters) + 2) if str(at) not in filters) - 1
+        for number, parts in filters.items():
+            if not number or int(number) > last:
+                there = f"there is no filter{last + 1}"
+                message = f"{section.title}: filter{number} is not loaded: {there}"
+                hint = "filters are called filter1, filter2 and so on, without a gap"
+                yield remark_at(next(iter(parts.values())).key, message, hint)
+        yield from _incomplete(section, filters)
 
 
 def _chains(section: Section) -> Mapping[str, _Filters]:
@@ -133,20 +130,11 @@ def _chains(section: Section) -> Mapping[str, _Filters]:
     return found
 
 
-def _not_loaded(section: Section, filters: _Filters) -> Iterator[Finding]:
-    last = next(at for at in range(1, len(filters) + 2) if str(at) not in filters) - 1
-    for number, parts in filters.items():
-        if not number or int(number) > last:
-            message = f"{section.title}: filter{number} is not loaded: there is no filter{last + 1}"
-            hint = "filters are called filter1, filter2 and so on, without a gap"
-            yield remark_at(next(iter(parts.values())).key, message, hint)
-
-
 def _incomplete(section: Section, filters: _Filters) -> Iterator[Finding]:
     names: dict[str, str] = {}
     for number, parts in filters.items():
         first = next(iter(parts.values()))
-        for word in (it for it in _NEEDED if it not in parts):
+        for word in (it for it in ("name", "type") if it not in parts):
             message = f"{section.title}: filter{number} has no {word}"
             yield remark_at(first.key, message, "the chain is not configured without", ERROR)
         name = str(parts["name"].value) if "name" in parts else ""

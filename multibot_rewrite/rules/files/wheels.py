@@ -41,14 +41,13 @@ from multibot_rewrite.rules.subject import Robots, Subject, subject_of
 
 CONTROLLER = "diff_drive_controller"
 LEFT, _RIGHT = "left_wheel_names", "right_wheel_names"
-_LIMITS = "joint_limits"
 _SEPARATION, _RADIUS = "wheel_separation", "wheel_radius"
 _Values = Mapping[str, Setting]
 
 
 def with_description(file: NamedFile, description: Document) -> NamedFile:
     """The file beside the one description that it is for, which is read for wheels and limits."""
-    if LEFT not in file.text and not (file.kind == MOVEIT and _LIMITS in file.text):
+    if LEFT not in file.text and not (file.kind == MOVEIT and "joint_limits" in file.text):
         return file
     release = file.context.distro
     tree = builtin_tree((), release)
@@ -126,17 +125,14 @@ def _ways(node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]) -> Ite
     if are_opposite(one, other):
         message = f"the axes of wheels {names} point in opposite directions"
         yield remark_at(node, message, "turn one of them around: the robot would turn on the spot")
-    way = are_swapped(one, other)
-    if way:
+    if way := are_swapped(one, other):
         message = f"left wheel {one.joint.name!r} is {way:.3g} m right of {other.joint.name!r}"
-        yield remark_at(
-            node, message, "swap left and right, or turn the axes of both joints around"
-        )
+        hint = "swap left and right, or turn the axes of both joints around"
+        yield remark_at(node, message, hint)
 
 
 _INFLATION = "nav2_costmap_2d::InflationLayer"
 _ROBOT_RADIUS, _FOOTPRINT = "robot_radius", "footprint"
-_COSTMAP = "nav2_costmap_2d"
 # A radius that is so many times the robot's reach is in other units, or of another robot.
 _FAR = 3.0
 # An arm may reach as many times as far as its base.
@@ -155,7 +151,7 @@ class Size(NamedTuple):
 def robot_size(file: NamedFile) -> Iterator[Finding]:
     """Each costmap of a file."""
     for section in sections(file):
-        if section.node is not None and section.node.package == _COSTMAP:
+        if section.node is not None and section.node.package == "nav2_costmap_2d":
             yield from _of_costmap(file, section)
 
 
@@ -169,7 +165,13 @@ def _of_costmap(file: NamedFile, section: Section) -> Iterator[Finding]:
         message = f"{section.title}: {what}"
         yield remark_at(radius.given.node, message, f"leave out {_ROBOT_RADIUS}")
     yield from _inflation(section, size)
-    reach = _reach(file)
+    # How far the one description of the package reaches; 0 where that is not known.
+    robots = file.memo.get(Robots)
+    reach = (
+        0.0
+        if not isinstance(robots, Robots) or len(robots.subjects) != 1
+        else reach_of(robots.subjects[0].document.root)
+    )
     if reach and size.inscribed > _FAR * reach:
         message = f"{section.title}: {size.given.name} reaches {size.inscribed:g} m from the middle"
         hint = f"the description reaches {reach:.3g} m; write metres"
@@ -225,11 +227,3 @@ def _inflation(section: Section, size: Size) -> Iterator[Finding]:
             message = f"{section.title}: {name} is {value:g} m, {least}"
             hint = f"the robot is as large as {size.given.name} says; inflate further than that"
             yield remark_at(given.node, message, hint)
-
-
-def _reach(file: NamedFile) -> float:
-    """How far the one description of the package reaches; 0 where that is not known."""
-    robots = file.memo.get(Robots)
-    if not isinstance(robots, Robots) or len(robots.subjects) != 1:
-        return 0.0
-    return reach_of(robots.subjects[0].document.root)

@@ -23,12 +23,8 @@ _LEFT = "no node of its stack or file is started here: name the launch file that
 MODULES = (models, started, rules_of_words)
 
 
-def _rules() -> Iterator[Rule]:
-    for module in MODULES:
-        yield from (it for it in vars(module).values() if isinstance(it, Rule))
-
-
-RULES = tuple(sorted(_rules(), key=lambda it: it.code))
+_DECLARED = (it for module in MODULES for it in vars(module).values() if isinstance(it, Rule))
+RULES = tuple(sorted(_DECLARED, key=lambda it: it.code))
 
 
 def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
@@ -91,9 +87,12 @@ def _source(node: str, sources: Mapping[str, str]) -> str:
 
 def placed(findings: Iterable[Finding], launched: Launched) -> Iterator[Finding]:
     """Yield findings about a system where the launch file starts the nodes that they are about."""
-    nodes = {node.full_name: node.place for node in launched.nodes}
+    system, nodes = launched.system, {it.full_name: it.place for it in launched.nodes}
     for it in findings:
-        about = chain((it.node,), _ends(it, launched.system), _of_robot(it.robot, nodes))
+        robots = [name for name in nodes if it.robot and it.robot in name.split("/")]
+        ends = (end.node for end in system.ends if end.name in it.names)
+        edges = (edge.publishers for edge in system.edges if edge.child in it.names)
+        about = chain((it.node,), ends, *edges, robots)
         place = None if it.file else next((nodes[name] for name in about if name in nodes), None)
         if place is None or not place.file:
             yield it
@@ -101,17 +100,6 @@ def placed(findings: Iterable[Finding], launched: Launched) -> Iterator[Finding]
         hint = f"{it.hint}; started at {place}" if it.hint else f"started at {place}"
         line, column = place.line, place.column or 1
         yield it._replace(file=place.file, line=line, column=column, hint=hint)
-
-
-def _ends(it: Finding, system: System) -> Iterator[str]:
-    """The nodes that have a name of the finding."""
-    yield from (end.node for end in system.ends if end.name in it.names)
-    edges = (edge for edge in system.edges if edge.child in it.names)
-    yield from (node for edge in edges for node in edge.publishers)
-
-
-def _of_robot(robot: str, nodes: Iterable[str]) -> Iterator[str]:
-    yield from (name for name in nodes if robot and robot in name.split("/"))
 
 
 def judge_launch(launched: Launched) -> list[Finding]:

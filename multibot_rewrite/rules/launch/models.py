@@ -26,7 +26,7 @@ from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.knowledge.worlds import DEFAULTS
 from multibot_rewrite.producers.launch.bridges import bridged_by
-from multibot_rewrite.producers.launch.launched import InSimulator, Launched, World, worlds
+from multibot_rewrite.producers.launch.launched import InSimulator, Launched, worlds
 from multibot_rewrite.producers.launch.running import bound_of
 from multibot_rewrite.rules.declaration import at, launch_rule
 from multibot_rewrite.rules.facts.simulators import needed_systems
@@ -37,7 +37,6 @@ from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 _POSE = ("-x", "-y", "-z")
 # Two that stand nearer than this are in each other, whatever they are.
 _NEAR = 0.01
-_RENAMES = "-allow_renaming"
 _INTO_GAZEBO = DIRECTIONS["out"]
 
 
@@ -47,11 +46,10 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
     first: dict[str, InSimulator] = {}
     for it in launched.simulated:
         other = first.setdefault(it.name, it)
-        if other is not it and it.words.get(_RENAMES) not in ("true", "1"):
+        if other is not it and it.words.get("-allow_renaming") not in ("true", "1"):
             message = f"spawns a second model {it.name}"
-            yield at(
-                name_twice, it.place, message, f"give it a -name of its own; see {other.place}"
-            )
+            hint = f"give it a -name of its own; see {other.place}"
+            yield at(name_twice, it.place, message, hint)
 
 
 @launch_rule("MG702", "robots-in-each-other")
@@ -81,7 +79,9 @@ def shared_topic(launched: Launched) -> Iterator[Finding]:
     having: dict[str, list[int]] = defaultdict(list)
     shared: dict[tuple[int, int], list[str]] = defaultdict(list)
     for number, model in enumerate(models):
-        for name in dict.fromkeys(_names(model)):
+        for name in dict.fromkeys(
+            f"/{it.gz.lstrip('/')}" for it in model.topics if it.ros_type != TF_TYPE
+        ):
             for before in having[name]:
                 shared[before, number].append(name)
             having[name].append(number)
@@ -91,12 +91,6 @@ def shared_topic(launched: Launched) -> Iterator[Finding]:
             message = f"{other.name} and {one.name} both have gz topic {shorten(both)}"
             hint = f"give each description topics of its own; see {one.place}"
             yield at(shared_topic, other.place, message, hint, names=tuple(both))
-
-
-def _names(model: InSimulator) -> Iterator[str]:
-    for it in model.topics:
-        if it.ros_type != TF_TYPE:
-            yield f"/{it.gz.lstrip('/')}"
 
 
 @launch_rule("MG704", "command-not-bridged")
@@ -120,17 +114,16 @@ def not_brought(launched: Launched) -> Iterator[Finding]:
 def _lacking(launched: Launched, inwards: bool) -> Iterator[tuple[InSimulator, str]]:
     """Yield the topics of models that no bridge has, where one has that of another model."""
     told = {it.gz for it in _rows(launched) if it.inwards is inwards}
-    every = [(model, one) for model in launched.simulated for one in _topics(model, inwards)]
+    every = [
+        (model, (it.ros_type, f"/{it.gz.lstrip('/')}"))
+        for model in launched.simulated
+        for it in model.topics
+        if (it.direction == _INTO_GAZEBO) is inwards
+    ]
     alike = {_plain(model, one) for model, one in every if one[1] in told}
     for model, one in every:
         if one[1] not in told and _plain(model, one) in alike:
             yield model, one[1]
-
-
-def _topics(model: InSimulator, inwards: bool) -> Iterator[tuple[str, str]]:
-    for it in model.topics:
-        if (it.direction == _INTO_GAZEBO) is inwards:
-            yield it.ros_type, f"/{it.gz.lstrip('/')}"
 
 
 def _plain(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:
@@ -147,17 +140,13 @@ def without_system(launched: Launched) -> Iterator[Finding]:
     roots = [it.root for it in models]
     brought = {_system(it.get("filename", "")) for root in roots for it in root.iter("plugin")}
     for world in worlds(launched):
-        there = _systems(world)
+        found = list(world.root.iterfind("world/plugin"))
+        there = {_system(it.get("filename", "")) for it in found} if found else set(DEFAULTS)
         for system, why in needed_systems((it.name, it.root) for it in models):
             if system not in {*there, *brought}:
                 message = f"world {world.file} does not load the system {system}: {why}"
                 hint = f'add <plugin filename="gz-sim-{system}-system" .../> to the world'
                 yield at(without_system, world.place, message, hint)
-
-
-def _systems(world: World) -> set[str]:
-    found = list(world.root.iterfind("world/plugin"))
-    return {_system(it.get("filename", "")) for it in found} if found else set(DEFAULTS)
 
 
 def _system(library: str) -> str:

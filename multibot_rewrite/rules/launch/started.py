@@ -179,7 +179,8 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
     started = {it.full_name: it for it in launched.nodes}
     for it in launched.nodes if managers and known else ():
         kind = it.fact.kind
-        if is_managed(kind) and not _activates_itself(it) and it.full_name not in listed:
+        activates_itself = it.value("autostart_node") is True
+        if is_managed(kind) and not activates_itself and it.full_name not in listed:
             message = f"{it.full_name} is in the list of no lifecycle manager"
             hint = f"add it to node_names of {managers[0].full_name}"
             yield at(not_listed, it.place, message, hint)
@@ -216,10 +217,6 @@ _SELF = (LIFECYCLE_MANAGER, "slam_toolbox", "map_saver", "costmap_filter_info_se
 def is_managed(kind: str) -> bool:
     """Does it come up by a lifecycle manager of Nav2 alone?"""
     return kind in NAV2 and kind not in _SELF
-
-
-def _activates_itself(it: Run) -> bool:
-    return it.value("autostart_node") is True
 
 
 def _listed(it: Run) -> Iterator[str]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 from math import isclose, pi
 
@@ -47,7 +47,10 @@ def _faults(it: Run) -> Iterator[tuple[str, str]]:
     if parent and parent == child:
         yield f"sends a transform from {parent} to itself", "name two different frames"
     flags = {old: new for old, new in pairwise(it.arguments) if old.startswith("--")}
-    named = flags or _by_order(it.arguments)
+    # Without flags they go by their order: with yaw, pitch and roll, or with a quaternion.
+    turn = {8: ("--yaw", "--pitch", "--roll"), 9: _QUATERNION}.get(len(it.arguments), ())
+    places = ("--x", "--y", "--z", *turn) if turn else ()
+    named = flags or dict(zip(places, it.arguments, strict=False))
     for flag, word in named.items():
         value = _number(word)
         if flag in _ANGLES and value is not None and abs(value) > _TURN + 0.01:
@@ -56,23 +59,12 @@ def _faults(it: Run) -> Iterator[tuple[str, str]]:
         elif not flags and value is None:
             hint = "numbers come first, then the two frames; or use flags, as --frame-id"
             yield f"{word} is in the place of {flag}", hint
-    yield from _no_rotation(named)
-
-
-def _no_rotation(named: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     found = [_number(named[it]) for it in _QUATERNION if it in named]
     if len(found) == len(_QUATERNION) and None not in found:
         length = sum(it * it for it in found if it is not None) ** 0.5
         if not isclose(length, 1, abs_tol=0.1):
             words = " ".join(named[it] for it in _QUATERNION)
             yield f"the quaternion {words} is no rotation", "without a rotation write 0 0 0 1"
-
-
-def _by_order(words: Sequence[str]) -> dict[str, str]:
-    """The words of the form without flags: yaw, pitch and roll, or a quaternion."""
-    places = ("--x", "--y", "--z")
-    rest = {8: ("--yaw", "--pitch", "--roll"), 9: _QUATERNION}.get(len(words), ())
-    return dict(zip((*places, *rest), words, strict=False)) if rest else {}
 
 
 def _number(word: str) -> float | None:
@@ -113,12 +105,20 @@ def not_there(launched: Launched) -> Iterator[Finding]:
         if note.parameters and note.file:
             told.add((note.place.file, note.place.line, note.file))
             yield at(not_there, note.place, note.message, _PATH)
-    named = [(it.full_name, it.place, path) for it in launched.nodes for path in _files(it)]
+    named = [
+        (it.full_name, it.place, str(it.values[parameter].value))
+        for it in launched.nodes
+        for parameter in ("config_file", "yaml_filename")
+        if parameter in it.values
+    ]
     for node in launched.graph.nodes:
-        named += [(node.name or node.executable, node.place, path) for path in _named_files(node)]
+        words = [word for flag, word in pairwise(node.arguments) if flag in ("-d", "-file")]
+        who = node.name or node.executable
+        named += [(who, node.place, path) for path in (*words, *world_files(node))]
     for who, place, path in named:
         key = (place.file, place.line, path)
-        if not os.path.exists(path) and key not in told:
+        is_meant = os.path.isabs(path) and _is_ours(path)
+        if is_meant and not os.path.exists(path) and key not in told:
             told.add(key)
             yield at(not_there, place, f"{who} is given {path}, which is not there", _PATH)
 
@@ -134,7 +134,6 @@ def argument_not_read(launched: Launched) -> Iterator[Finding]:
 
 
 _PATH = "correct the path, or install the file"
-_NAMED = ("config_file", "yaml_filename")
 # Programs write there what others read.
 _TEMPORARY = ("/tmp", "/var/tmp", "/dev/shm")
 
@@ -145,23 +144,16 @@ def _is_ours(path: str) -> bool:
     return os.path.isdir(folder) and folder not in _TEMPORARY
 
 
-def _files(it: Run) -> Iterator[str]:
-    values = (str(it.values[name].value) for name in _NAMED if name in it.values)
-    yield from (path for path in values if os.path.isabs(path) and _is_ours(path))
-
-
-def _named_files(it: LaunchedNode) -> Iterator[str]:
-    """The files that the words of a program name."""
-    words = [word for flag, word in pairwise(it.arguments) if flag in ("-d", "-file")]
-    for path in (*words, *world_files(it)):
-        if os.path.isabs(path) and _is_ours(path):
-            yield path
-
-
 @launch_rule("MG714", "program-misspelt")
 def misspelt(launched: Launched) -> Iterator[Finding]:
     """By what is known of a package's programs."""
-    known = _programs(launched.release)
+    known: dict[str, set[str]] = defaultdict(set)
+    for node in built_in(launched.release).nodes.values():
+        for path in node.programs or (node.kind,):
+            package, slash, program = path.rpartition("/")
+            known[package if slash else node.package].add(program)
+    for package, _, program in (path.partition("/") for path in programs().passing):
+        known[package].add(program)
     for it in launched.graph.nodes:
         every = known.get(it.package, ())
         if not it.executable or "::" in it.executable or it.executable in every:
@@ -183,18 +175,6 @@ def _package_meant(it: LaunchedNode, known: Mapping[str, Collection[str]]) -> st
         return ""
     around = sources_around(it.place.file)
     return "" if around and it.package in packages_below((around,)) else near
-
-
-def _programs(release: str) -> dict[str, set[str]]:
-    """The programs of each package that are known."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for node in built_in(release).nodes.values():
-        for it in node.programs or (node.kind,):
-            package, slash, program = it.rpartition("/")
-            found[package if slash else node.package].add(program)
-    for package, _, program in (it.partition("/") for it in programs().passing):
-        found[package].add(program)
-    return found
 
 
 def _differ(program: str, near: str) -> bool:

@@ -7,7 +7,7 @@ It is made from the sources by ``tools.interfaces``; its first lines have its gr
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -64,20 +64,14 @@ def described(name: str) -> SdfPart | None:
         return None
     head, *lines = text.splitlines()
     rows: dict[str, tuple[SdfRow, ...]] = {}
-    for row in _rows(lines):
-        rows[row.name] = (*rows.get(row.name, ()), row)
+    for words in filter(None, (line.partition(" =")[0].split() for line in lines)):
+        tag, type_, *rest = words
+        row = SdfRow(tag, type_, rest[0] if rest else type_)
+        for word in rest[1:]:
+            row = _with(row, word)
+        rows[tag] = (*rows.get(tag, ()), row)
     needed = tuple(it for it, its in rows.items() if any(row.required for row in its))
     return SdfPart(name, tuple(head.partition("]")[2].split()), rows, needed)
-
-
-def _rows(lines: Iterable[str]) -> Iterator[SdfRow]:
-    for words in (line.partition(" =")[0].split() for line in lines):
-        if words:
-            name, type_, *rest = words
-            row = SdfRow(name, type_, rest[0] if rest else type_)
-            for word in rest[1:]:
-                row = _with(row, word)
-            yield row
 
 
 def _with(row: SdfRow, word: str) -> SdfRow:

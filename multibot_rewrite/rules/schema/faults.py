@@ -6,6 +6,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import chain
 
 from lxml import etree
 
@@ -118,8 +119,7 @@ def _with_odd_values(
     found: dict[etree._Element, None] = {}
     for at, kind in typed:
         values = set(columns[at]).difference(kind.choices)
-        odd = {value for value in values if not is_fine(kind.type, value)}
-        if odd:
+        if odd := {value for value in values if not is_fine(kind.type, value)}:
             pairs = zip(alike, columns[at], strict=True)
             found |= {element: None for element, value in pairs if value in odd}
     return found
@@ -191,8 +191,21 @@ def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Ite
             yield from _unknown_child(element, child, section, schema, meant)
     for tag in missing:
         yield fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
-    yield from _repeated(element, section, count)
-    yield from _shapes(element, section)
+    # Children that are read once and come again with other content.
+    for tag, times in count.items():
+        declared = section.children.get(tag)
+        if times < 2 or declared is None or declared.times not in ("once", "required"):
+            continue
+        first, *others = element.findall(tag)
+        other = next((it for it in others if canonical(it) != canonical(first)), None)
+        if other is not None:
+            message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
+            yield fault("repeated", other, None, message)
+    either = [tag for tag, child in section.children.items() if child.times == "either"]
+    shapes = list(element.iterchildren(*either)) if either else []
+    if len(shapes) > 1:
+        message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads only the first"
+        yield fault("repeated", shapes[1], None, message)
 
 
 def _unknown_child(
@@ -221,31 +234,9 @@ def _unknown_child(
         yield fault("not-read", child, None, message)
 
 
-def _repeated(element: etree._Element, section: UrdfPart, count: Counter[str]) -> Iterator[Problem]:
-    """Children that are read once and come again with other content."""
-    for tag, times in count.items():
-        child = section.children.get(tag)
-        if times < 2 or child is None or child.times not in ("once", "required"):
-            continue
-        first, *others = element.findall(tag)
-        other = next((it for it in others if canonical(it) != canonical(first)), None)
-        if other is not None:
-            message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
-            yield fault("repeated", other, None, message)
-
-
 def canonical(element: etree._Element) -> bytes:
     """An element as all that mean the same are written."""
     return etree.tostring(element, method="c14n", with_tail=False)
-
-
-def _shapes(element: etree._Element, section: UrdfPart) -> Iterator[Problem]:
-    """Shapes after the first one of a geometry."""
-    known = [tag for tag, child in section.children.items() if child.times == "either"]
-    shapes = list(element.iterchildren(*known)) if known else []
-    if len(shapes) > 1:
-        message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads only the first"
-        yield fault("repeated", shapes[1], None, message)
 
 
 def _near(name: str, known: Collection[str]) -> str:
@@ -276,19 +267,12 @@ def _value(
         if not value:
             yield fault("missing", element, attribute, f"{attribute} of <{element.tag}> is empty")
     elif not _is_unread(element):
-        yield from _numbers(element, kind, attribute, version)
-
-
-def _numbers(
-    element: etree._Element, kind: Kind, attribute: str, version: Version
-) -> Iterator[Problem]:
-    value = element.get(attribute, "")
-    named, problem, hint = wrong_numbers(value, kind.type)
-    if named:
-        # Readers go on without a colour, and take a number out of range before it is refused.
-        mild = kind.type == "rgba" or (named == "range" and kind.refused > version)
-        message = f"{element.tag}@{attribute} is {shortened(value)!r}{problem}"
-        yield fault(named, element, attribute, message, hint, WARNING if mild else "")
+        named, problem, hint = wrong_numbers(value, kind.type)
+        if named:
+            # Readers go on without a colour, and take a number out of range before it is refused.
+            mild = kind.type == "rgba" or (named == "range" and kind.refused > version)
+            level = WARNING if mild else ""
+            yield fault(named, element, attribute, f"{where}{problem}", hint, level)
 
 
 def _is_unread(element: etree._Element) -> bool:
@@ -299,19 +283,17 @@ def _is_unread(element: etree._Element) -> bool:
 
 def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Problem]:
     """Text where no parser expects any, mostly a stray ``>``."""
-    for element in (it for top in _found(_TOPS, root) for it in _elements_with_text(top)):
+    tops = _found(_TOPS, root)
+    inside = ([top] if top.tag == ROBOT else _found(_TEXTS, top) for top in tops)
+    for element in chain.from_iterable(inside):
         section = section_of(element, known)
         if section is None or section.text:
             continue
         pieces = [element.text, *(child.tail for child in element)]
         found = next(" ".join(it.split()) for it in pieces if it and it.strip())
-        inside = "" if element.text and element.text.strip() else None
+        at = "" if element.text and element.text.strip() else None
         message = f"text {shortened(found)!r} in <{element.tag}>, which no parser reads"
-        yield fault("not-read", element, inside, message)
-
-
-def _elements_with_text(top: etree._Element) -> list[etree._Element]:
-    return [top] if top.tag == ROBOT else _found(_TEXTS, top)
+        yield fault("not-read", element, at, message)
 
 
 def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:

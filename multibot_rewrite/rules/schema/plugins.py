@@ -79,22 +79,18 @@ def _parameter(
         hint = f"that of {', '.join(releases_with(row.releases))} does"
         yield fault("later", child, None, message, hint)
     elif text and "$" not in text:
-        yield from _value(child, row, text, section)
-
-
-def _value(child: _Element, row: Value, text: str, section: Values) -> Iterator[Problem]:
-    where = f"{row.name} {shortened(text)!r}"
-    wrong = misread(row.type, text)
-    if not wrong:
-        yield from _measure(child, row, text, where)
-    if wrong:
-        instead = f", and counts as {'false' if row.type == 'boolean' else 0}" * wrong.fails
-        yield fault("value", child, "", f"{where} {wrong.problem}{instead}", "", WARNING)
-    elif row.words and text not in row.words:
-        near = nearest(text, row.words)
-        if near:
-            message = f"{where} is not a word that {title(section)} knows"
-            yield fault("word", child, "", message, f"did you mean {near!r}?", WARNING)
+        where = f"{row.name} {shortened(text)!r}"
+        wrong = misread(row.type, text)
+        if not wrong:
+            yield from _measure(child, row, text, where)
+        if wrong:
+            instead = f", and counts as {'false' if row.type == 'boolean' else 0}" * wrong.fails
+            yield fault("value", child, "", f"{where} {wrong.problem}{instead}", "", WARNING)
+        elif row.words and text not in row.words:
+            near = nearest(text, row.words)
+            if near:
+                message = f"{where} is not a word that {title(section)} knows"
+                yield fault("word", child, "", message, f"did you mean {near!r}?", WARNING)
 
 
 def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Problem]:
@@ -124,8 +120,7 @@ def _unread(
         return
     parent = child.getparent()
     there = (it for it in blocks if it and parent is not None and parent.find(it) is not None)
-    beside = next(there, "")
-    if beside:
+    if beside := next(there, ""):
         message = f"{title(section)} reads {name!r} in <{beside}>, not beside it"
         yield fault("misplaced", child, None, message, f"move it into <{beside}>")
 
@@ -189,9 +184,8 @@ def _missing(
     for name, row in section.rows.items():
         if row.required and name not in given and has_release(row.releases, release):
             message = f"{title(section)} needs {name!r}"
-            yield fault(
-                "missing", element, None, message, f"without it, it is not loaded{_in(row.place)}"
-            )
+            hint = f"without it, it is not loaded{_in(row.place)}"
+            yield fault("missing", element, None, message, hint)
 
 
 def _in(place: str) -> str:

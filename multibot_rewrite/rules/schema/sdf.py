@@ -49,13 +49,11 @@ READ_BESIDES = frozenset({"gz_frame_id", "ignition_frame_id"})
 ANGLES = frozenset({"min_angle", "max_angle"})
 # What Gazebo Classic takes besides: gazebo-classic gazebo/rendering/Camera.cc, GetOgrePixelFormat.
 OGRE_FORMATS = frozenset({"FLOAT32", "FLOAT16"})
-_CLASSICS = "gazebo_ros_"
 Version = tuple[int, ...]
 # How bad is for Gazebo Classic what its successor refuses.
 _MILD = {"range": NOTE, "value": WARNING, "word": WARNING}
 # What the last release with Gazebo Classic reads.
 CLASSIC = (1, 9)
-SENSOR_TYPE = "sensor/@type"
 
 
 def version_of_release(release: str) -> Version:
@@ -69,8 +67,7 @@ def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tupl
     """Every fault in these ``<gazebo>`` elements."""
     version, taken = version_of_release(release), described("urdf")
     assert taken
-    filled = (it for it in blocks if len(it))
-    found = tuple(it for block in filled for it in _block(block, robot, version, taken))
+    found = tuple(it for block in blocks for it in _block(block, robot, version, taken))
     return _by_reader(found, blocks[0].getroottree().getroot(), release)
 
 
@@ -116,8 +113,7 @@ def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
         hint = f"it is read in that of a {' or '.join(belongs)}: name it with reference="
         yield fault("misplaced", child, None, message, hint)
         return
-    wrong = misread(row.type, text)
-    if wrong:
+    if wrong := misread(row.type, text):
         level = ERROR if row.type == "double" and wrong.fails else WARNING
         message = f"{row.name} {shortened(text)!r} {wrong.problem}"
         yield fault("value", child, at, message, "", level)
@@ -164,21 +160,20 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Prob
             row = _of_version(rows, version)
             yield from _value(element, key, row, text, known, version)
         elif is_own(key):
-            yield from _unknown_attribute(element, key, known)
-    yield from _missing(element, known, version)
-    if "*" in known.rows or not len(element):
-        return
-    for child in element.iterchildren("*"):
-        yield from _child(child, str(element.tag), known, version, {})
-
-
-def _missing(element: _Element, known: SdfPart, version: Version) -> Iterator[Problem]:
-    """Attributes without which sdformat refuses the model; those of plugins depend on the release."""
+            free = [it[1:] for it in known.rows if it[0] == "@" and it[1:] not in element.attrib]
+            if near := nearest(key, free):
+                message = f"Gazebo reads no attribute {key!r} of <{element.tag}>"
+                yield fault("misspelt", element, key, message, f"did you mean {near!r}?")
+    # Attributes without which sdformat refuses the model; those of plugins depend on the release.
     for name in known.needed:
         if name[0] == "@" and not element.get(name[1:], "").strip():
             row = _of_version(known.rows[name], version)
             if row.required and row.first <= version and element.tag != "plugin":
                 yield fault("missing", element, None, f"<{element.tag}> has no {name[1:]!r}")
+    if "*" in known.rows or not len(element):
+        return
+    for child in element.iterchildren("*"):
+        yield from _child(child, str(element.tag), known, version, {})
 
 
 def _of_version(rows: tuple[SdfRow, ...], version: Version) -> SdfRow:
@@ -200,8 +195,7 @@ def _value(
         yield from _word(element, at, f"{known.name}/{row.name}", text, version)
         return
     turned = row.type == "pose" and element.get("rotation_format") == QUATERNION
-    wrong = misread(QUATERNION if turned else row.type, text)
-    if wrong:
+    if wrong := misread(QUATERNION if turned else row.type, text):
         level = ERROR if wrong.fails else WARNING
         yield fault("value", element, at, f"{_where(element, at, text)} {wrong.problem}", "", level)
     elif row.low is not None or row.high is not None:
@@ -239,14 +233,10 @@ def _range(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Probl
         yield fault("range", element, at, f"{_where(element, at, text)} {message}")
     elif row.high is not None and value > row.high:
         message = f"is above {row.high:.10g}, the most that SDF allows"
-        hint = _in_radians(row, value)
+        # The hint for an angle that was written in degrees.
+        is_angle = ("fov" in row.name or "angle" in row.name) and value > tau
+        hint = f"{value:g} degrees are {radians(value):.4g} radians" if is_angle else ""
         yield fault("range", element, at, f"{_where(element, at, text)} {message}", hint)
-
-
-def _in_radians(row: SdfRow, value: float) -> str:
-    """The hint for an angle that was written in degrees."""
-    is_angle = ("fov" in row.name or "angle" in row.name) and value > tau
-    return f"{value:g} degrees are {radians(value):.4g} radians" if is_angle else ""
 
 
 def _word(element: _Element, at: str, name: str, text: str, version: Version) -> Iterator[Problem]:
@@ -257,7 +247,7 @@ def _word(element: _Element, at: str, name: str, text: str, version: Version) ->
     if text in OGRE_FORMATS and _is_for_classic(element):
         return
     near = nearest(text, known)
-    if not near and version <= CLASSIC and name == SENSOR_TYPE:
+    if not near and version <= CLASSIC and name == "sensor/@type":
         return  # Gazebo Classic lets plugins add types of sensors
     hint = f"did you mean {near!r}?" if near else ""
     message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
@@ -268,7 +258,7 @@ def _is_for_classic(element: _Element) -> bool:
     """Has the sensor of a value a plugin of Gazebo Classic?"""
     sensor = next(element.iterancestors("sensor"), None)
     plugins = sensor.iterchildren("plugin") if sensor is not None else ()
-    return any(_CLASSICS in it.get("filename", "") for it in plugins)
+    return any("gazebo_ros_" in it.get("filename", "") for it in plugins)
 
 
 @lru_cache
@@ -321,14 +311,6 @@ def _homes(tag: str) -> tuple[str, ...]:
         if f"\n{tag} " in part and not part.startswith((WORDS, "urdf"))
     }
     return tuple(sorted(found)) if 0 < len(found) <= 3 else ()
-
-
-def _unknown_attribute(element: _Element, key: str, known: SdfPart) -> Iterator[Problem]:
-    free = [it[1:] for it in known.rows if it[0] == "@" and it[1:] not in element.attrib]
-    near = nearest(key, free)
-    if near:
-        message = f"Gazebo reads no attribute {key!r} of <{element.tag}>"
-        yield fault("misspelt", element, key, message, f"did you mean {near!r}?")
 
 
 def _text(version: Version) -> str:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import isfinite
 from typing import NamedTuple
@@ -81,41 +81,18 @@ def schema(version: Version) -> Schema:
     """The schema of a version."""
     sections = {name: _of_version(it, version) for name, it in _all_sections().items()}
     tags = frozenset(tag for it in sections.values() for tag in it.children)
-    parents = frozenset(name for name, it in sections.items() if _needs_a_child(it))
+    kinds = ((name, child.times) for name, it in sections.items() for child in it.children.values())
+    parents = frozenset(name for name, times in kinds if times == "required")
     return Schema(version, sections, tags, parents)
 
 
 @lru_cache
 def _all_sections() -> Mapping[str, UrdfPart]:
-    return _sections(table_text(_FILE).splitlines())
-
-
-def _of_version(section: UrdfPart, version: Version) -> UrdfPart:
-    """A section as a version has it: what comes later has no type, nothing in it is checked."""
-    attributes = {key: _kind_of_version(it, version) for key, it in section.attributes.items()}
-    children = {
-        tag: it if it.since <= version else it._replace(section="")
-        for tag, it in section.children.items()
-    }
-    later = {f"@{key}": it.since for key, it in attributes.items() if it.since > version}
-    later |= {tag: it.since for tag, it in children.items() if it.since > version}
-    return section._replace(attributes=attributes, children=children, later=later)
-
-
-def _kind_of_version(kind: Kind, version: Version) -> Kind:
-    return kind._replace(type="", instead_of="") if kind.since > version else kind
-
-
-def _needs_a_child(section: UrdfPart) -> bool:
-    return any(it.times == "required" for it in section.children.values())
-
-
-def _sections(lines: Iterable[str]) -> Mapping[str, UrdfPart]:
     found: dict[str, UrdfPart] = {}
     attributes: dict[str, Kind] = {}
     children: dict[str, Child] = {}
     name = ""
-    for line in lines:
+    for line in table_text(_FILE).splitlines():
         head, *words = line.partition("#")[0].split() or [""]
         if head.startswith("["):
             name, attributes, children = head.strip("[]"), {}, {}
@@ -125,8 +102,27 @@ def _sections(lines: Iterable[str]) -> Mapping[str, UrdfPart]:
         elif head.startswith("@"):
             attributes[head[1:]] = _kind(words)
         elif head:
-            children[head] = _child(head, words)
+            section = next((it[1:] for it in words if it.startswith("=")), head)
+            times = next(it for it in words if it in ("required", "once", "many", "either"))
+            children[head] = Child(
+                "" if "open" in words else section, times, _version_behind("since:", words)
+            )
     return found
+
+
+def _of_version(section: UrdfPart, version: Version) -> UrdfPart:
+    """A section as a version has it: what comes later has no type, nothing in it is checked."""
+    attributes = {
+        key: it if it.since <= version else it._replace(type="", instead_of="")
+        for key, it in section.attributes.items()
+    }
+    children = {
+        tag: it if it.since <= version else it._replace(section="")
+        for tag, it in section.children.items()
+    }
+    later = {f"@{key}": it.since for key, it in attributes.items() if it.since > version}
+    later |= {tag: it.since for tag, it in children.items() if it.since > version}
+    return section._replace(attributes=attributes, children=children, later=later)
 
 
 def _kind(words: Sequence[str]) -> Kind:
@@ -151,12 +147,6 @@ def _version(word: str) -> Version:
     found = read_version(word)
     assert found, f"{word} in {_FILE} is a version"
     return found
-
-
-def _child(tag: str, words: Sequence[str]) -> Child:
-    section = next((it[1:] for it in words if it.startswith("=")), tag)
-    times = next(it for it in words if it in ("required", "once", "many", "either"))
-    return Child("" if "open" in words else section, times, _version_behind("since:", words))
 
 
 def is_own(name: object) -> bool:

@@ -59,7 +59,18 @@ def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Problem]:
         yield from _word(it, "property_name", text_of(it, "property_name"), _PROPERTIES, WARNING)
     for it in root.iterchildren("virtual_joint"):
         yield from _word(it, "type", text_of(it, "type").lower(), tuple(_SIZES), ERROR)
-    yield from _values(root, robot)
+    types = {text_of(it): text_of(it, "type").lower() for it in root.iterchildren("virtual_joint")}
+    types |= {name: joint.type for name, joint in robot.joint.items()} if robot else {}
+    for it in root.iterfind("group_state/joint[@value]"):
+        name, text = text_of(it), it.get("value", "")
+        values, size = numbers_in(text), _SIZES.get(types.get(name, ""), 1)
+        if values is None:
+            message = f"the value of {name!r} is {text!r}, not a number"
+            yield fault("value", it, "value", message, "write a number")
+        elif name in types and size and len(values) != size:
+            message = f"{name!r} has {len(values)} values, a {types[name]} joint has {size}"
+            hint = "write one number for each degree of freedom"
+            yield fault("value", it, "value", message, hint)
 
 
 def _elements(root: _Element) -> Iterator[tuple[_Element, str]]:
@@ -95,22 +106,6 @@ def _word(
         hint = f"did you mean {near!r}?" if near else f"use one of {', '.join(known)}"
         message = f"{attribute} {text_of(it, attribute)!r} is not known"
         yield fault("word", it, attribute, message, hint, level)
-
-
-def _values(root: _Element, robot: Robot | None) -> Iterator[Problem]:
-    """Values of joints in states: no numbers, or not as many as the joint has positions."""
-    types = {text_of(it): text_of(it, "type").lower() for it in root.iterchildren("virtual_joint")}
-    types |= {name: joint.type for name, joint in robot.joint.items()} if robot else {}
-    for it in root.iterfind("group_state/joint[@value]"):
-        name, text = text_of(it), it.get("value", "")
-        values, size = numbers_in(text), _SIZES.get(types.get(name, ""), 1)
-        if values is None:
-            message = f"the value of {name!r} is {text!r}, not a number"
-            yield fault("value", it, "value", message, "write a number")
-        elif name in types and size and len(values) != size:
-            message = f"{name!r} has {len(values)} values, a {types[name]} joint has {size}"
-            hint = "write one number for each degree of freedom"
-            yield fault("value", it, "value", message, hint)
 
 
 def numbers_in(text: str) -> list[float] | None:

@@ -72,7 +72,6 @@ def may_be_classics(root: _Element, release: str) -> bool:
     return not any(name in it for it in files for name in _SYSTEMS)
 
 
-_FILE = "readers.schema"
 URDFDOM, RVIZ, SDFORMAT, CAPSULE = "urdfdom", "RViz", "sdformat", "capsule"
 
 
@@ -91,7 +90,7 @@ class Reader(NamedTuple):
 @lru_cache
 def readers() -> tuple[Reader, ...]:
     """All rows of the table."""
-    lines = table_text(_FILE).splitlines()
+    lines = table_text("readers.schema").splitlines()
     rows = [line.split() for line in lines if line and not line.startswith("#")]
     return tuple(Reader(*row) for row in rows)
 

@@ -13,12 +13,13 @@ from math import inf, isinf
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.wording import and_then, only, shorten
+from multibot_rewrite.base.wording import and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.system.tf_pieces import publishes_description
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.parameters import parameter_text
-from multibot_rewrite.system.records import PUBLISHES, RUNS, SIM_TIME, TOPIC, without_clock
+from multibot_rewrite.system.records import PUBLISHES, RUNS, SIM_TIME, TOPIC, Edge, without_clock
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 # They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
@@ -196,6 +197,7 @@ def _real_beside_simulated(robot: str, others: list[str], simulated: str) -> Fin
 
 # A costmap waits a part of a second for a transform, tf2 keeps ten seconds (buffer_core.h).
 _OLD, _AHEAD = 3.0, 1.0
+_FAR_AHEAD = 5.0
 # Simulated time begins at 0: no clock of a machine is so far off.
 _YEAR = 3.0e7
 _MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry")
@@ -212,12 +214,40 @@ def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
         measured = type_.startswith(_MEASURED)
         if senders and measured and not played and (what := _wrong(age, clock)):
             found[senders, what].append(topic)
+    yield from _old_transforms(seen, clock)
     for (senders, what), topics in found.items():
         yield stamp_of_another_time.finding(
             f"the stamps on {shorten(topics)} are {what}",
             f"see the clock of {shorten(senders)}: use_sim_time, or that of its machine",
             level=WARNING if what == _ZERO else ERROR,
             robot=only(robots_of(seen, senders)), node=senders[0], names=tuple(topics),
+        )  # fmt: skip
+
+
+def _old_transforms(seen: Index, clock: bool) -> Iterator[Finding]:
+    """Localizers stamp theirs some time ahead (amcl transform_tolerance). Of the nodes that publish on
+    a tf topic nothing says which sent a transform: those of its robot may have."""
+    found: dict[tuple[str, str], list[Edge]] = defaultdict(list)
+    for tree in seen.trees:
+        for it in tree.edges:
+            played = any(last_word(one).startswith(words.PLAYER) for one in it.publishers)
+            if it.static or it.several or played or -_FAR_AHEAD < it.age < 0:
+                continue
+            if what := _wrong(it.age, clock):
+                found[tree.topic, what].append(it)
+    for (topic, what), edges in found.items():
+        listed = shorten([f"{it.parent} -> {it.child}" for it in edges])
+        robot = seen.frame_robot(edges[0].child) or seen.robot(topic)
+        senders = unique(it for edge in edges for it in edge.publishers)
+        own = [it for it in senders if robot in ("", seen.robot(it))] or [*senders]
+        # A publisher of descriptions stamps as its joints are.
+        likely = [it for it in own if not publishes_description(seen, it)] or own
+        yield stamp_of_another_time.finding(
+            f"the stamps of {listed} on {topic} are {what}",
+            f"see the clock of {shorten(likely) or 'its sender'}: use_sim_time, or that of its machine",
+            level=WARNING if what == _ZERO else ERROR,
+            robot=robot, node=likely[0] if len(likely) == 1 else "",
+            names=unique(it.child for it in edges),
         )  # fmt: skip
 
 

@@ -28,7 +28,10 @@ from multibot_rewrite.system.tool_nodes import is_hidden, is_tool, is_viewer, la
 
 # A person drives with these.
 _BY_HAND = lazy_compile("teleop|joy|keyboard|gamepad")
-_CHOOSE = "put twist_mux before the robot's driver, each sender with a topic of its own"
+_MUX, _EACH = "put twist_mux before", ", each sender with a topic of its own"
+_CHOOSE = f"{_MUX} the robot's driver{_EACH}"
+# Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
+LIMITS = ("velocity_smoother", "collision_monitor")
 _VELOCITY = "geometry_msgs/msg/Twist"
 # The topics of RViz's own tools.
 _OFFERED = ("goal_pose", "initialpose", "clicked_point")
@@ -39,7 +42,7 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
     """Whether or not anybody sends at the moment."""
     orders = seen.orders
     for (kind, name), ends in seen.by_name.items():
-        joystick = ends.type == words.JOYSTICK and not seen.robot(name)
+        joystick = ends.type == words.JOYSTICK
         if kind != TOPIC or not (joystick or name in orders):
             continue
         nodes = nodes_of(at_work(ends.subscribers))
@@ -47,10 +50,11 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
         if len(robots) > 1:
             message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
             cause = own_names(seen, ends, robots)
-            if joystick:
+            nobodys = joystick and not seen.robot(name)
+            if nobodys:
                 cause = cause._replace(hint=f"{cause.hint}; or give each its own enable_button")
             yield command_for_several_robots.finding(
-                message, level=WARNING if joystick else ERROR, node=nodes[0], names=(name,),
+                message, level=WARNING if nobodys else ERROR, node=nodes[0], names=(name,),
                 **cause._asdict(),
             )  # fmt: skip
 
@@ -261,14 +265,17 @@ def _mistaken(seen: Index, node: str, robot: str, ends: Ends) -> bool:
 
 @system_rule("MG312", "several-command-senders", WARNING, meant=(PUBLISHES,))
 def several_command_senders(seen: Index) -> Iterator[Finding]:
-    """The nodes of Nav2, and those of MoveIt, send one after another: they are one sender."""
+    """The nodes of Nav2, and those of MoveIt, send one after another: they are one sender. Past what
+    chooses or limits it is an error."""
     for ends in seen.orders.values():
         if not words.moves(seen.plain(ends.name), ends.type):
             continue
         readers = nodes_of(at_work(ends.subscribers))
         # A program to look with that sends velocities is a joystick.
-        # What sends it and reads it is a bridge in both directions, and orders nothing itself.
-        senders = [it for it in nodes_of(ends.publishers) if it not in nodes_of(ends.subscribers)]
+        # What sends it and reads it is a bridge in both directions, and orders nothing itself, unless
+        # it is such a program.
+        both = {it for it in nodes_of(ends.subscribers) if not is_viewer(it)}
+        senders = [it for it in nodes_of(ends.publishers) if it not in both]
         teams = {team(node): node for node in reversed(senders)}
         played = any(last_word(node).startswith(words.PLAYER) for node in senders)
         if not readers or len(teams) < 2 or played or all(map(chooses, readers)):
@@ -276,14 +283,20 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
         # A sender of another robot is a rule of its own.
         if len(robots_of(seen, senders)) > 1:
             continue
-        tool = next((node for node in teams.values() if is_tool(node)), max(teams.values()))
+        guards = [it for it in senders if chooses(it) or last_word(it) in LIMITS]
+        loose = [it for it in teams.values() if it not in guards]
+        tool = next((node for node in loose if is_tool(node)), max(loose or teams.values()))
         others = [node for node in teams.values() if node != tool]
         message = f"publishes {ends.name} beside {shorten(others)}, and {readers[0]} obeys both"
-        cause = _CHOOSE
+        past = bool(guards) and tool not in guards
+        cause = f"{_MUX} {guards[0]}{_EACH}" if past else _CHOOSE
+        if past and chooses(guards[0]):
+            cause = f"send it to a topic that {guards[0]} reads"
         robot = seen.robot(ends.name) or seen.robot(readers[0])
         yield several_command_senders.finding(
-            message, cause, robot=robot, node=tool, names=(ends.name,)
-        )
+            message, cause, level=ERROR if past else WARNING,
+            robot=robot, node=tool, names=(ends.name,),
+        )  # fmt: skip
 
 
 @system_rule("MG313", "bag-beside-a-robot", ERROR)

@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.likes import (
     alike,
+    driver_missing,
     lacks_what_its_likes_have,
     made_of,
     nodes_of_each,
@@ -55,12 +56,16 @@ def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
         yield from _lost_parts(seen, likes)
 
 
-# What is found of robots held against each other is left to any other finding about it.
+# What is found of robots held against each other is left to any other finding about it, and what a
+# missed driver explains to that.
 COMPARED = (lacks_what_its_likes_have.code, differs_from_its_likes.code)
+BETWEEN_ROBOTS = (*COMPARED, driver_missing.code)
 
 
 def unexplained(found: Sequence[Finding]) -> list[Finding]:
     """The findings without those of robots compared about what another one is about."""
+    told = {it for one in found if one.code not in BETWEEN_ROBOTS for it in one.names}
+    found = [it for it in found if it.code != driver_missing.code or told.isdisjoint(it.names)]
     others = [one for one in found if one.code not in COMPARED]
     about = {it for one in others for it in (one.node, *one.names)} - {""}
     robots = {one.robot for one in others if not one.node and not one.names}
@@ -179,7 +184,7 @@ def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterat
         yield differs_from_its_likes.finding(
             f"{robot} has {shorten([*listed], SEVERAL)} as {like}",
             "has it another description, or an older one?",
-            robot=robot, names=tuple({own.name: None for own, _ in pairs}),
+            robot=robot, names=unique(it.name for pair in pairs for it in pair),
         )  # fmt: skip
 
 

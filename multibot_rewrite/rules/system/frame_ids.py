@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest
-from multibot_rewrite.base.wording import SEVERAL, only, shorten
+from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule, where
-from multibot_rewrite.system.index import Index, Tree, once, robots_of, sent_on
+from multibot_rewrite.system.index import Index, Tree, at_work, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
-from multibot_rewrite.system.records import NOWHERE, Edge, Heard, Place
+from multibot_rewrite.system.records import NOWHERE, TOPIC, Edge, End, Heard, Place
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _ODOMETRY = "nav_msgs/msg/Odometry"
@@ -65,8 +65,9 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
 @system_rule("MG412", "frame-id-unknown", ERROR, absence=True)
 def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     """Where no transform was received at all nothing is known; others say that."""
-    frames = _by_topic(seen)
+    frames, read = _by_topic(seen), partial(_is_placed_by_readers, seen)
     yield from _nameless(seen)
+    yield from _with_slash(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
         heard = [frames[it.topic] for it in trees_of(seen, robot) if it.edges]
         there = not heard or any(frame in it.get(seen.frame_robot(frame), ()) for it in heard)
@@ -84,7 +85,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
             or _remedy(senders, meant or _alike(frame, own) or _of_its_kind(messages, own))
             or _sent_there(seen, frame, robot, elsewhere)
             or f"send a transform for it, or set the frame of {_who(senders)} to one that is in tf",
-            level=ERROR if meant or elsewhere else WARNING,
+            level=ERROR if meant or elsewhere or any(map(read, messages)) else WARNING,
             robot=robot, node=senders[0], names=(frame,), **where(messages[:1]),
         )  # fmt: skip
 
@@ -178,6 +179,40 @@ def _nameless(seen: Index) -> Iterator[Finding]:
                 robot=seen.robot(it.topic) or only(robots_of(seen, senders)),
                 node=senders[0], names=(it.topic,),
             )  # fmt: skip
+
+
+def _with_slash(seen: Index) -> Iterator[Finding]:
+    """tf2 takes the slash of a transform away, and refuses to look up a frame with one (buffer_core.cpp
+    validateFrameId). One finding a sender."""
+    found: dict[tuple[str, ...], dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
+    for it in seen.system.heard:
+        type_, senders = sent_on(seen, it.topic)
+        if senders and type_.startswith(_MEASURED):
+            for frame in (it.frame, it.child):
+                if frame.startswith("/"):
+                    found[senders][it.topic].append(frame)
+    for senders, topics in found.items():
+        named = shorten(unique(frame for own in topics.values() for frame in own))
+        topic = next(iter(topics))
+        yield frame_id_unknown.finding(
+            f"messages on {shorten(topics)} are in {named}: tf2 refuses to look up a frame with a slash"
+            f" in front; sent by {_who(senders)}",
+            f"leave the slash out of the frames of {_who(senders)}",
+            level=ERROR if any(_readers(seen, it) for it in topics) else WARNING,
+            robot=seen.robot(topic) or only(robots_of(seen, senders)),
+            node=senders[0], names=tuple(topics),
+        )  # fmt: skip
+
+
+def _readers(seen: Index, topic: str) -> Sequence[End]:
+    """The ends of nodes that do more than look."""
+    ends = seen.by_name.get((TOPIC, topic))
+    return at_work(ends.subscribers) if ends else ()
+
+
+def _is_placed_by_readers(seen: Index, it: _Message) -> bool:
+    """Do nodes read what is of no use to them without its place?"""
+    return it.type in _PLACED and bool(_readers(seen, it.topic))
 
 
 def _unsaid(it: Heard, type_: str) -> str:

@@ -11,12 +11,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, SENT_FRAMES, chooses
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import TF, Index, at_work, ends_of, nodes_of, once
+from multibot_rewrite.system.index import TF, Ends, Index, at_work, ends_of, nodes_of, once
 from multibot_rewrite.system.records import (
+    ACTION,
     CALLS,
     PUBLISHES,
     RUNS,
@@ -182,6 +183,8 @@ def _is_needy(end: End) -> bool:
 
 # Topics of one robot and of another are as often, unless something is wrong: so many times.
 RATIO = 3.0
+# Of what a body measures, in messages a second.
+_SELDOM = 1.0
 # Where there were too many topics to listen to all.
 _NOT_ALL = "headers-not-read"
 # Fewer messages say nothing of a rate.
@@ -225,7 +228,7 @@ def _slow(seen: Index) -> Iterator[Finding]:
         robot = seen.robot(it.name)
         if robot and it.name in rates and words.kind_of_data(it.name, it.type):
             there[seen.plain(it.name), it.type][robot] = it.name
-    for own in there.values():
+    for (_, type_), own in there.items():
         best = max(own.values(), key=lambda it: rates[it])
         for robot, name in own.items():
             if rates[name] * RATIO <= rates[best]:
@@ -233,8 +236,12 @@ def _slow(seen: Index) -> Iterator[Finding]:
                 message = (
                     f"publishes {name} at {rates[name]:.1f} Hz, {best} comes at {rates[best]:.1f}"
                 )
+                # So seldom a scan is as good as none.
+                read = bool(at_work(seen.by_name[TOPIC, name].subscribers))
+                dead = read and rates[name] < _SELDOM and words.is_of_a_body(type_)
                 yield less_than_another_robot.finding(
                     f"{message} Hz", "see its log, and the processor time that it has",
+                    level=ERROR if dead else WARNING,
                     robot=robot, node=node, names=(name,),
                 )  # fmt: skip
 
@@ -273,12 +280,75 @@ def _silent(seen: Index) -> Iterator[Finding]:
         robot = seen.robot(it.name)
         if robot and words.kind_of_data(it.name, it.type) and at_work(it.publishers):
             there[seen.plain(it.name), it.type][robot] = it.name
-    for own in there.values():
+    for (_, type_), own in there.items():
         loud = next((name for name in own.values() if name in heard), "")
         for robot, name in own.items() if loud else ():
             if name not in heard and robot in there_at_all:
                 node = nodes_of(at_work(seen.by_name[TOPIC, name].publishers))[0]
                 message = f"publishes {name}, on which no message came; {loud} has some"
+                dead = words.is_of_a_body(type_) and at_work(seen.by_name[TOPIC, name].subscribers)
                 yield less_than_another_robot.finding(
-                    message, "see its log", robot=robot, node=node, names=(name,)
-                )
+                    message, "see its log", level=ERROR if dead else WARNING,
+                    robot=robot, node=node, names=(name,),
+                )  # fmt: skip
+
+
+@system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="missing")
+def driver_missing(seen: Index) -> Iterator[Finding]:
+    """By its readers, and by another robot that has it, however much the two differ: all that one node
+    of the other robot does is one finding."""
+    lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
+    actions = [it for it in seen.by_name.values() if it.kind == ACTION]
+    for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
+        robot = seen.robot(ends.name)
+        role = _missed_side(seen, ends) if robot else ""
+        if role and (node := _who_does(seen, ends, role)):
+            lost[robot, node].append(ends)
+    for (robot, node), missed in lost.items():
+        names, plain = tuple(it.name for it in missed), seen.plain(node)
+        using = ((*it.subscribers, *it.publishers, *it.clients) for it in missed)
+        users = nodes_of(end for own in using for end in at_work(own))
+        vain = f"{shorten(users, SEVERAL)} in vain"
+        there = nodes_of_each(seen)[robot].get(plain, "")
+        what = (
+            f"{robot} has no {plain.strip('/')}, as {seen.robot(node)} has ({node});"
+            f" {shorten(names, SEVERAL)} is used by {vain}"
+        )
+        hint = "start it for this robot too"
+        if there:
+            what = f"lacks {shorten(names, SEVERAL)}, which {node} has; it is used by {vain}"
+            hint = "see its log; a remap rule, a parameter or a version of its own?"
+        level = ERROR if seen.is_live else WARNING
+        yield driver_missing.finding(what, hint, level=level, robot=robot, node=there, names=names)
+
+
+def _who_does(seen: Index, ends: Ends, role: str) -> str:
+    """The node of another robot that does this with its own topic of that name; empty for none."""
+    robot, plain = seen.robot(ends.name), seen.plain(ends.name)
+    for other in (it for it in seen.robots if it != robot):
+        there = seen.of_robot(other, ends.kind, plain)
+        if there and there.type == ends.type:
+            sides = {
+                PUBLISHES: there.publishers,
+                SUBSCRIBES: there.subscribers,
+                SERVES: there.servers,
+            }
+            own = at_work(sides[role])
+            if node := next((it.node for it in own if seen.robot(it.node) == other), ""):
+                return node
+    return ""
+
+
+def _missed_side(seen: Index, ends: Ends) -> str:
+    """What nobody does with a name of a robot, and a node of this robot waits for: sends what its body
+    measures, or obeys its velocities; or serves an action, whoever has goals for it; else empty."""
+    if ends.kind == ACTION:
+        return SERVES if at_work(ends.clients) and not ends.servers else ""
+    kind, own = words.kind_of_data(ends.name, ends.type), seen.robot(ends.name)
+    if not kind:
+        return ""
+    if words.moves(seen.plain(ends.name), ends.type):
+        sent = any(seen.robot(it.node) == own for it in at_work(ends.publishers))
+        return SUBSCRIBES if sent and not at_work(ends.subscribers) else ""
+    read = any(seen.robot(it.node) == own and it.sure == RUNS for it in at_work(ends.subscribers))
+    return PUBLISHES if read and not ends.publishers else ""

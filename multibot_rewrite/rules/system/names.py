@@ -20,6 +20,7 @@ from multibot_rewrite.rules.system.instead import (
     listed_in_vain,
     sent_instead,
 )
+from multibot_rewrite.system import words
 from multibot_rewrite.system.index import (
     TF,
     Ends,
@@ -59,13 +60,43 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 yield _missed_topic(seen, end, near, ERROR)
             elif other := sent_instead(seen, end):
                 by_kind.setdefault(other.name, []).append(end)
+            elif mine := _of_robots(seen, end):
+                yield _reads_no_robots(seen, end, mine)
             elif absent := nobody_in(seen, ends.name, published):
                 yield topic_names_miss.finding(
                     f"subscribes to {ends.name}, which no node publishes; {absent}",
                     ABSENT, level=WARNING, node=end.node, names=(ends.name,), **where([end]),
                 )  # fmt: skip
         for other_name, (first, *more) in by_kind.items():
-            yield _missed_topic(seen, first, published[other_name], WARNING, more)
+            # A lone sender and a lone reader of what a sensor measures are made for each other, but for
+            # what another launch file may start.
+            other = published[other_name]
+            lone = other.type == first.type and not at_work(other.subscribers)
+            sensor = words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK
+            sure = seen.is_live and (words.is_of_a_body(first.type) or (lone and sensor))
+            yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
+
+
+def _of_robots(seen: Index, end: End) -> Sequence[str]:
+    """What robots send under the name that a node outside of them reads, whoever else reads it: data of
+    sensors, odometry, a map."""
+    kind = words.kind_of_data(end.name, end.type)
+    outside = not (seen.robot(end.node) or seen.robot(end.name) or seen.is_tool(end.node))
+    if not (outside and kind) or is_from_outside(end.name) or words.moves(end.name, end.type):
+        return ()
+    names = (it for robot in seen.robots for it in _by_plain(seen).get((robot, end.name), ()))
+    return [it for it in names if seen.by_name[TOPIC, it].type == end.type]
+
+
+def _reads_no_robots(seen: Index, end: End, names: Sequence[str]) -> Finding:
+    sender = nodes_of(seen.by_name[TOPIC, names[0]].publishers)[0]
+    several = f" (or that of another of the {len(names)} robots)" if len(names) > 1 else ""
+    return topic_names_miss.finding(
+        f"subscribes to {end.name}, which no node publishes; {sender} publishes {names[0]}{several}",
+        f"start it in its robot's namespace, or pass the rule {end.name}:={names[0]}{several}",
+        node=end.node, names=(end.name, names[0]), **where([end]),
+        remaps=() if several else (Remap(end.node, end.name, names[0]),),
+    )  # fmt: skip
 
 
 def _runs(end: End) -> bool:
@@ -215,7 +246,7 @@ def _missed_topic(
     if _is_doubled(other.name, end.name):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
         remaps = (Remap(sender, other.name, end.name),)
-    elif seen.robot(end.name) and not seen.robot(other.name):
+    elif seen.robot(end.name) and not seen.robot(other.name) and other.name not in EVERYBODYS:
         cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
         remaps = tuple(Remap(it, other.name, end.name) for it in nodes_of(other.publishers))
     elif other.type != end.type:
@@ -276,7 +307,8 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
     listed = "" if near else listed_in_vain(seen, end)
     by_type = None if near or listed else sent_instead(seen, end)
     if other := near or (by_type.name if by_type else ""):
-        yield _missed_server(seen, end, lost, other, ERROR if near else WARNING)
+        sure = near or end.kind == ACTION
+        yield _missed_server(seen, end, lost, other, ERROR if sure else WARNING)
     elif listed and end.name.endswith("/change_state"):
         meant = _node_like(seen, listed)
         instead = f"; {meant} runs" if meant else ""
@@ -306,8 +338,13 @@ def _waits(seen: Index, end: End) -> bool:
     doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
-    # Beside other robots it may be one that is not started yet.
-    others = len(seen.robots) > 1
+    # Beside other robots it may be one that is not started yet, if it is not its own.
+    own = seen.robot(end.node)
+    others = len(seen.robots) > 1 and not (own and own == seen.robot(end.name))
+    # What all robots call in vain is so by their make; goals that another robot takes are MG322.
+    same = [seen.of_robot(it, end.kind, seen.plain(end.name)) for it in seen.robots if it != own]
+    others = others or any(it and it.clients and not it.servers for it in same)
+    others = others or any(it and it.servers and end.kind == ACTION for it in same)
     return not (doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
 
 
@@ -356,7 +393,7 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
     if seen.robot(name):
         return ""
     for at in (at for at in range(2, len(name)) if name[at] == "/"):
-        alike_, space = _of_robots(seen).get(name[at:], ()), name[:at]
+        alike_, space = _named_by_robots(seen).get(name[at:], ()), name[:at]
         other = next((it for it in reversed(alike_) if it in known), "")
         if other and space not in spaces(seen):
             return f"no node is in {space}, and {seen.robot(other)} has {other}"
@@ -364,7 +401,7 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
 
 
 @once
-def _of_robots(seen: Index) -> Mapping[str, Sequence[str]]:
+def _named_by_robots(seen: Index) -> Mapping[str, Sequence[str]]:
     """The names of robots, by their name without a robot's."""
     found: dict[str, list[str]] = defaultdict(list)
     for _, name in seen.by_name:

@@ -17,8 +17,16 @@ from multibot_rewrite.rules.system.causes import DOES, Cause, caused, plugin_of,
 from multibot_rewrite.rules.system.planned_ends import matches, unplanned_nodes
 from multibot_rewrite.spelling.enclaves import enclave_of
 from multibot_rewrite.system.environment import Machines, hidden_from_here, machines, why_not_seen
-from multibot_rewrite.system.index import Index, ends_of, once
-from multibot_rewrite.system.records import SERVES, SERVICE, TOPIC, Robot, Topic, alternatives
+from multibot_rewrite.system.index import Index, at_work, ends_of, once
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    TOPIC,
+    Robot,
+    Topic,
+    alternatives,
+)
 
 
 @planned_rule("MG101", "missing-node", ERROR, absence=True, drawn="missing")
@@ -49,12 +57,17 @@ def _groups(plan: Index) -> Iterator[tuple[tuple[str, ...], str]]:
 
 
 def _waiting(plan: Index, seen: Index, node: str) -> str:
-    """Who calls in vain what the node serves."""
-    served = (it for it in plan.by_node.get(node, ()) if it.role == SERVES)
-    for it in served:
+    """Who calls in vain what the node serves, or reads what it sends."""
+    for it in plan.by_node.get(node, ()):
         ends = seen.by_name.get((it.kind, it.name))
-        if ends and ends.clients and not ends.servers and "lifecycle" not in it.type:
+        if not ends:
+            continue
+        served = it.role == SERVES and not ends.servers and "lifecycle" not in it.type
+        sent = it.role == PUBLISHES and not ends.publishers
+        if served and ends.clients:
             return f"; {ends.clients[0].node} calls {it.name}"
+        if sent and (readers := at_work(ends.subscribers)):
+            return f"; {readers[0].node} reads {it.name}"
     return ""
 
 

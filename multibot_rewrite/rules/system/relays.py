@@ -10,13 +10,12 @@ from multibot_rewrite.base.conventions import chooses
 from multibot_rewrite.base.findings.finding import ERROR, Finding, Remap
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.system.commands import LIMITS
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of, once
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.tool_nodes import last_word
 
-# Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
-_LIMITS = ("velocity_smoother", "collision_monitor")
 _CONTROLLER = "controller_server"
 _BRIDGE = lazy_compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")
 
@@ -63,7 +62,7 @@ def limits_left_out(seen: Index) -> Iterator[Finding]:
     yield from _mux_left_out(seen)
     for ends in _velocities(seen):
         nodes = nodes_of(ends.publishers)
-        limits = [it for it in nodes if last_word(it) in _LIMITS]
+        limits = [it for it in nodes if last_word(it) in LIMITS]
         for node in nodes if limits else ():
             if last_word(node) == _CONTROLLER:
                 yield limits_left_out.finding(
@@ -83,7 +82,7 @@ def _mux_left_out(seen: Index) -> Iterator[Finding]:
         for mux in filter(chooses, nodes_of(ends.publishers)):
             for given in _velocities(seen):
                 readers = nodes_of(at_work(given.subscribers))
-                drivers = [it for it in readers if it != mux and _word(seen, it) not in _LIMITS]
+                drivers = [it for it in readers if it != mux and _word(seen, it) not in LIMITS]
                 if mux in readers and drivers and given.publishers:
                     yield limits_left_out.finding(
                         f"obeys {given.name}, an input of {mux}; no node reads its output {ends.name}",

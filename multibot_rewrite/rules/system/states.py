@@ -55,16 +55,25 @@ def not_active(seen: Index) -> Iterator[Finding]:
         verb = "is" if len(nodes) == 1 else "are"
         message = f"{shorten(sorted(nodes), SEVERAL)} {verb} {state}, not {wanted}"
         is_planned = not states.keys().isdisjoint(nodes)
+        other = next(filter(None, (_active_at_another(seen, it) for it in nodes)), "")
         cause = "no node activates it: is that meant?"
         if manager or is_planned:
             cause = f"see the log of {manager or 'its lifecycle manager'}"
+        elif other:
+            cause = f"no node activates it, and {other} is {ACTIVE}"
         yield not_active.finding(
             message,
             f"{cause}; ros2 lifecycle get {nodes[0]}",
-            level=ERROR if manager or is_planned else WARNING,
+            level=ERROR if manager or is_planned or other else WARNING,
             robot=robot,
             node=nodes[0],
         )
+
+
+def _active_at_another(seen: Index, node: str) -> str:
+    """The node of another robot that is called so and is active; empty for none."""
+    same = (it for it in seen.node.values() if it.lifecycle == ACTIVE and seen.robot(it.name))
+    return next((it.name for it in same if seen.plain(it.name) == seen.plain(node)), "")
 
 
 def _manager(seen: Index, node: str) -> str:

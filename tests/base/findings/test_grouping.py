@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, same_for
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap, same_for
 from multibot_rewrite.base.findings.selection import grouped
 
 ROBOTS = [f"robot{number}" for number in range(1, 21)]
@@ -17,7 +17,8 @@ def lost(robot: str, topic: str = "cmd_vel", **more: str) -> Finding:
     message = f"it should subscribe topic /{robot}/{topic}, and does not"
     cause = f"its rule /{topic}:=/{robot}/{topic} did not reach it"
     node = f"/{robot}/driver"
-    found = Finding("MG102", ERROR, message, cause, robot=robot, node=node)
+    rule = Remap(node, f"/{topic}", f"/{robot}/{topic}")
+    found = Finding("MG102", ERROR, message, cause, robot=robot, node=node, remaps=(rule,))
     return found._replace(names=(f"/{robot}/{topic}",), **more)  # type: ignore[arg-type]
 
 

@@ -27,25 +27,28 @@ def as_junit(findings: Sequence[Finding], report: Report) -> str:
     file without findings."""
     suites = etree.Element("testsuites", {"name": report.tool, **_totals(findings, report)})
     for file, found in by_file(findings, report).items():
-        _add_suite(suites, report._replace(files=(file,)), found)
+        path = one_line(path_below(file)) or "graph"
+        totals = _totals(found, report._replace(files=(file,)))
+        suite = etree.SubElement(suites, "testsuite", {"name": path, **totals})
+        # Jenkins takes what stands before the last dot for a package.
+        home = {"classname": f"{report.tool}.{path.replace('.', '_')}", "time": "0"}
+        if report.coverage:
+            about = {"name": "coverage", "value": str(report.coverage["text"])}
+            etree.SubElement(etree.SubElement(suite, "properties"), "property", about)
+        if not found:
+            etree.SubElement(suite, "testcase", {"name": _PASSED, **home})
+        for it, name in zip(found, _names(found), strict=True):
+            case = etree.SubElement(suite, "testcase", {"name": name, **home})
+            whole = "\n".join(lines_of(it))
+            if it.level == NOTE:
+                etree.SubElement(case, "system-out").text = whole
+            elif it.level == INCONCLUSIVE:
+                etree.SubElement(case, "skipped", {"message": said(it)})
+            else:
+                failure = {"message": said(it), "type": it.level}
+                etree.SubElement(case, "failure", failure).text = whole
     data: bytes = etree.tostring(suites, xml_declaration=True, encoding="utf-8", pretty_print=True)
     return data.decode()
-
-
-def _add_suite(suites: etree._Element, report: Report, found: Sequence[Finding]) -> None:
-    """The suite of the one file that the report is left with."""
-    (file,) = report.files
-    path = one_line(path_below(file)) or "graph"
-    suite = etree.SubElement(suites, "testsuite", {"name": path, **_totals(found, report)})
-    # Jenkins takes what stands before the last dot for a package.
-    home = {"classname": f"{report.tool}.{path.replace('.', '_')}", "time": "0"}
-    if report.coverage:
-        about = {"name": "coverage", "value": str(report.coverage["text"])}
-        etree.SubElement(etree.SubElement(suite, "properties"), "property", about)
-    if not found:
-        etree.SubElement(suite, "testcase", {"name": _PASSED, **home})
-    for finding, name in zip(found, _names(found), strict=True):
-        _tell(etree.SubElement(suite, "testcase", {"name": name, **home}), finding)
 
 
 def _totals(findings: Sequence[Finding], report: Report) -> dict[str, str]:
@@ -68,15 +71,3 @@ def _names(findings: Sequence[Finding]) -> list[str]:
         seen[name] += 1
         names.append(name if seen[name] == 1 else f"{name} #{seen[name]}")
     return names
-
-
-def _tell(case: etree._Element, finding: Finding) -> None:
-    whole = "\n".join(lines_of(finding))
-    if finding.level == NOTE:
-        etree.SubElement(case, "system-out").text = whole
-        return
-    if finding.level == INCONCLUSIVE:
-        etree.SubElement(case, "skipped", {"message": said(finding)})
-        return
-    failure = {"message": said(finding), "type": finding.level}
-    etree.SubElement(case, "failure", failure).text = whole

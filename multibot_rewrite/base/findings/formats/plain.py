@@ -21,7 +21,6 @@ from multibot_rewrite.base.findings.finding import (
 )
 from multibot_rewrite.base.findings.formats import Report
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.wording import in_json, one_line, plural
 
 _SURROGATE = lazy_compile("[\ud800-\udfff]")
@@ -185,7 +184,10 @@ def as_json(findings: Sequence[Finding], report: Report) -> str:
 
 
 def _json_finding(finding: Finding, report: Report) -> dict[str, Any]:
-    it = finding
+    it, edits = finding, []
+    for edit in it.edits:
+        text = (edit.before + (edit.after or b"")).decode("utf-8", "replace")
+        edits.append({"start": edit.start, "end": edit.end, "text": text})
     return {
         "code": it.code,
         "name": report.rules[it.code].name if it.code in report.rules else "",
@@ -201,29 +203,23 @@ def _json_finding(finding: Finding, report: Report) -> dict[str, Any]:
         "robots": list(it.robots or filter(None, (it.robot,))),
         "node": it.node,
         "names": list(it.names),
-        "edits": [_json_edit(edit) for edit in it.edits],
+        "edits": edits,
     }
-
-
-def _json_edit(edit: Edit) -> dict[str, Any]:
-    text = edit.before + (edit.after or b"")
-    return {"start": edit.start, "end": edit.end, "text": text.decode("utf-8", "replace")}
 
 
 def as_github(findings: Sequence[Finding], report: Report) -> str:
     """A workflow command a line, which GitHub shows beside the line; macro calls are further lines of
     its message."""
-    return "".join(f"{_command(it, report)}\n" for it in findings)
-
-
-def _command(finding: Finding, report: Report) -> str:
-    it = finding
-    file = one_line(path_below(file_of(it, report)))
-    place = {"file": file, "line": str(it.line or 1), "col": str(it.column or 1)} if file else {}
-    properties = {**place, "title": title(it, report)}
-    pairs = ",".join(f"{key}={value.translate(_PROPERTY)}" for key, value in properties.items())
-    message = [f"{said_of(it)}{circumstances(it)}", *via(it, path_below)]
-    return f"::{_COMMANDS[it.level]} {pairs}::{chr(10).join(message).translate(_DATA)}"
+    text = ""
+    for it in findings:
+        file = one_line(path_below(file_of(it, report)))
+        line, column = str(it.line or 1), str(it.column or 1)
+        place = {"file": file, "line": line, "col": column} if file else {}
+        properties = {**place, "title": title(it, report)}.items()
+        pairs = ",".join(f"{key}={value.translate(_PROPERTY)}" for key, value in properties)
+        message = "\n".join((f"{said_of(it)}{circumstances(it)}", *via(it, path_below)))
+        text += f"::{_COMMANDS[it.level]} {pairs}::{message.translate(_DATA)}\n"
+    return text
 
 
 def as_gitlab(findings: Sequence[Finding], report: Report) -> str:
@@ -263,14 +259,10 @@ def _markdown_parts(findings: Sequence[Finding], report: Report) -> Iterator[tup
             continue
         head = "| line | level | code | finding |\n| ---: | --- | --- | --- |\n"
         yield False, f"\n#### {_escaped(path_below(file))}\n\n{head}"
-        yield from ((True, _markdown_row(it, report)) for it in found)
-
-
-def _markdown_row(finding: Finding, report: Report) -> str:
-    it = finding
-    calls = "".join(f"<br>{_escaped(line)}" for line in via(it, path_below))
-    what = f"{_escaped(said_of(it) + circumstances(it))}{calls}"
-    return f"| {it.line or ''} | {it.level} | {title(it, report)} | {what} |\n"
+        for it in found:
+            calls_of = "".join(f"<br>{_escaped(line)}" for line in via(it, path_below))
+            what = f"{_escaped(said_of(it) + circumstances(it))}{calls_of}"
+            yield True, f"| {it.line or ''} | {it.level} | {title(it, report)} | {what} |\n"
 
 
 def _escaped(text: str) -> str:
@@ -279,22 +271,18 @@ def _escaped(text: str) -> str:
 
 def as_statistics(findings: Sequence[Finding], report: Report) -> str:
     """How often each rule found something, and in how many files, the most frequent first."""
-    rows = sorted(_statistics(findings, report), key=lambda it: (-int(it[0]), it[3:]))
-    columns = [list(cells) for cells in zip(COLUMNS, *rows, strict=True)] if rows else []
-    widths = [max(map(len, cells)) for cells in columns]
-    lines = ("  ".join(map(_cell, row, COLUMNS, widths)) for row in zip(*columns, strict=True))
-    return "".join(f"{line.rstrip()}\n" for line in lines)
-
-
-def _statistics(findings: Sequence[Finding], report: Report) -> Iterator[tuple[str, ...]]:
     alike: dict[tuple[str, str], list[Finding]] = {}
     for it in findings:
         alike.setdefault((it.code, it.level), []).append(it)
+    rows = []
     for (code, level), its in alike.items():
         files, fixable = len({it.file for it in its}), sum(bool(it.edits) for it in its)
         name = title(its[0], report).removeprefix(code).lstrip()
-        yield str(len(its)), str(files), str(fixable or ""), code, level, name
-
-
-def _cell(text: str, column: str, width: int) -> str:
-    return text.rjust(width) if column in _NUMBERS else text.ljust(width)
+        rows.append((str(len(its)), str(files), str(fixable or ""), code, level, name))
+    rows.sort(key=lambda it: (-int(it[0]), it[3:]))
+    columns = []
+    for name, *cells in zip(COLUMNS, *rows, strict=True) if rows else ():
+        width = max(map(len, (name, *cells)))
+        adjust = str.rjust if name in _NUMBERS else str.ljust
+        columns.append([adjust(it, width) for it in (name, *cells)])
+    return "".join(f"{'  '.join(row).rstrip()}\n" for row in zip(*columns, strict=True))

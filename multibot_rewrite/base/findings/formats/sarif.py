@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
@@ -21,7 +21,6 @@ from multibot_rewrite.base.findings.formats.plain import (
     json_text,
     said_of,
 )
-from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.wording import one_line
 from multibot_rewrite.version import __version__
 
@@ -76,9 +75,32 @@ def _rule(rule: Rule) -> Json:
 
 def _result(finding: Finding, report: Report, numbers: Mapping[str, int], fingerprint: str) -> Json:
     it = finding
-    via = ", ".join(f"[{_escaped(call.macro)}]({at})" for at, call in enumerate(calls(it), 1))
+    # Text inside a link of a message.
+    macros = (re.sub(r"([\\\[\]])", r"\\\1", one_line(call.macro)) for call in calls(it))
+    via = ", ".join(f"[{macro}]({at})" for at, macro in enumerate(macros, 1))
     message = f"{said_of(it)}{circumstances(it)}"
-    fixes = _fixes(it)
+    related = [
+        {
+            "id": at,
+            **_location(call.file, {"startLine": call.line}),
+            "message": {"text": f"call of {one_line(call.macro)}"},
+        }
+        for at, call in enumerate(calls(it), 1)
+    ]
+    # No fix where the file is not the one that was linted any more.
+    source = bytes_if_read(it.file) if it.edits else b""
+    fixes = []
+    if source and all(edit.end <= len(source) for edit in it.edits):
+        names = ("startLine", "startColumn", "endLine", "endColumn")
+        replacements = []
+        for edit in it.edits:
+            ends = (*locate(source, edit.start), *locate(source, edit.end))
+            text = (edit.before + (edit.after or b"")).decode("utf-8", "replace")
+            region = dict(zip(names, ends, strict=True))
+            replacements.append({"deletedRegion": region, "insertedContent": {"text": text}})
+        change = {"artifactLocation": _file(it.file), "replacements": replacements}
+        description = {"text": one_line(it.hint or it.message)}
+        fixes = [{"description": description, "artifactChanges": [change]}]
     return {
         "ruleId": it.code,
         **({"ruleIndex": numbers[it.code]} if it.code in numbers else {}),
@@ -88,7 +110,7 @@ def _result(finding: Finding, report: Report, numbers: Mapping[str, int], finger
         # GitHub's upload adds its own, made from the line's text, and complains of another one
         # that has its name.
         "partialFingerprints": {"urdfLint/v1": fingerprint},
-        **({"relatedLocations": list(_related(it))} if via else {}),
+        **({"relatedLocations": related} if via else {}),
         **({"fixes": fixes} if fixes else {}),
     }
 
@@ -104,12 +126,6 @@ def _locations(finding: Finding, report: Report) -> list[Json]:
     return [{**_location(file, region), **({"logicalLocations": [node]} if node else {})}]
 
 
-def _related(finding: Finding) -> Iterator[Json]:
-    for at, call in enumerate(calls(finding), 1):
-        place = _location(call.file, {"startLine": call.line})
-        yield {"id": at, **place, "message": {"text": f"call of {one_line(call.macro)}"}}
-
-
 def _location(path: str, region: Json) -> Json:
     return {"physicalLocation": {"artifactLocation": _file(path), "region": region}}
 
@@ -119,29 +135,3 @@ def _file(path: str) -> Json:
     if below is not None:
         return {"uri": quote(os.fsencode(below)), "uriBaseId": _ROOT}
     return {"uri": f"file://{quote(os.fsencode(os.path.abspath(path)))}"}
-
-
-def _escaped(text: str) -> str:
-    """Text inside a link of a message."""
-    return re.sub(r"([\\\[\]])", r"\\\1", one_line(text))
-
-
-def _fixes(finding: Finding) -> list[Json]:
-    """The fix, unless the file is not the one that was linted any more."""
-    source = bytes_if_read(finding.file) if finding.edits else b""
-    if not source or any(edit.end > len(source) for edit in finding.edits):
-        return []
-    replacements = [_replacement(source, edit) for edit in finding.edits]
-    change = {"artifactLocation": _file(finding.file), "replacements": replacements}
-    description = one_line(finding.hint or finding.message)
-    return [{"description": {"text": description}, "artifactChanges": [change]}]
-
-
-def _replacement(source: bytes, edit: Edit) -> Json:
-    start, end = locate(source, edit.start), locate(source, edit.end)
-    names = ("startLine", "startColumn", "endLine", "endColumn")
-    text = (edit.before + (edit.after or b"")).decode("utf-8", "replace")
-    return {
-        "deletedRegion": dict(zip(names, (*start, *end), strict=True)),
-        "insertedContent": {"text": text},
-    }

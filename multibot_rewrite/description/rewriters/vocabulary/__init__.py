@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from functools import lru_cache
 
 from multibot_rewrite.base.bounded import read_text
@@ -51,7 +50,14 @@ def load_vocabulary(extra: tuple[str, ...], release: str, *, packages: bool = Tr
     else in a section that is used.
     """
     builtin = sorted(name for name in os.listdir(HERE) if name.endswith(".vocab"))
-    more = _more(extra, packages, builtin)
+    named = {file.name: file.path for file in (installed() if packages else ())}
+    # A user's file may be called like a built-in one.
+    named |= {os.path.join(".", path) if path in builtin else path: path for path in extra}
+    # Name in messages -> path of the files beyond the built-in ones, each file once.
+    first: dict[str, str] = {}
+    for name, path in named.items():
+        first.setdefault(os.path.realpath(path), name)
+    more = {name: named[name] for name in first.values()}
     texts = {name: _text(name, f"{HERE}/{name}") for name in builtin}
     try:
         texts |= {name: _text(name, path) for name, path in more.items()}
@@ -60,17 +66,6 @@ def load_vocabulary(extra: tuple[str, ...], release: str, *, packages: bool = Tr
     except VocabularyError as error:
         raise VocabularyError(f"{error}{advice(str(error)) if packages else ''}") from None
     return vocabulary
-
-
-def _more(extra: tuple[str, ...], packages: bool, builtin: Sequence[str]) -> dict[str, str]:
-    """Name in messages -> path of the files beside the built-in ones, each file once."""
-    named = {file.name: file.path for file in (installed() if packages else ())}
-    # A user's file may be called like a built-in one.
-    named |= {os.path.join(".", path) if path in builtin else path: path for path in extra}
-    first: dict[str, str] = {}
-    for name, path in named.items():
-        first.setdefault(os.path.realpath(path), name)
-    return {name: named[name] for name in first.values()}
 
 
 def _text(name: str, path: str) -> str:

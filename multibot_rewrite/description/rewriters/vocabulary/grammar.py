@@ -246,8 +246,8 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     wrong = [word for word in words[1:] if key == "switches" and not _SWITCH.fullmatch(word)]
     if wrong:
         raise VocabularyError(f"{place}: switches: {wrong[0]!r} is not PARAMETER=TOPIC[=on]")
-    wrong = [word for word in words[1:] if key == "opens" and not _opens(word)]
-    if wrong:
+    opened = [word for word in words[1:] if key == "opens" and word not in _BARE_OPENS]
+    if wrong := [word for word in opened if not _OPENS.fullmatch(word)]:
         raise VocabularyError(
             f"{place}: opens: {wrong[0]!r} is not nothing, model, namespace, world, unknown, "
             "address:PATH=DEFAULT, address+STEP:PATH=DEFAULT or file:PATH"
@@ -320,10 +320,6 @@ def split_opens(word: str) -> tuple[str, ...]:
     """Kind, step, conditions, path and default of a word of ``opens:``; empty without a path."""
     found = None if word in _BARE_OPENS else _OPENS.fullmatch(word)
     return found.groups(default="") if found else ("", "", "", "", "")
-
-
-def _opens(word: str) -> bool:
-    return word in _BARE_OPENS or _OPENS.fullmatch(word) is not None
 
 
 @lru_cache(maxsize=PATHS)

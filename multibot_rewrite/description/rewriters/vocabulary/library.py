@@ -40,20 +40,17 @@ class Vocabulary:
         self._found: dict[tuple[str, str], tuple[VocabularySection, ...]] = {}
         self._values: dict[tuple[str, bool], Values | None] = {}
         for file, text in texts.items():
-            self._index(file, text)
-
-    def _index(self, file: str, text: str) -> None:
-        preamble, *chunks = ("\n" + text).split("\n[")
-        line = 0
-        for line, row in enumerate(preamble.split("\n")):
-            if row.strip() and not row.startswith("#"):
-                raise VocabularyError(f"{file}:{line}: text before the first [section]")
-        for chunk in chunks:
-            line += 1
-            type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
-            for name in names:
-                self._raw.setdefault((type_, name), []).append((file, line, chunk))
-            line += chunk.count("\n")
+            preamble, *chunks = ("\n" + text).split("\n[")
+            line = 0
+            for line, row in enumerate(preamble.split("\n")):
+                if row.strip() and not row.startswith("#"):
+                    raise VocabularyError(f"{file}:{line}: text before the first [section]")
+            for chunk in chunks:
+                line += 1
+                type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
+                for name in names:
+                    self._raw.setdefault((type_, name), []).append((file, line, chunk))
+                line += chunk.count("\n")
 
     def find(self, type_: str, name: str) -> tuple[VocabularySection, ...]:
         """The rewriters of that type under that name: more than one where ROS 1 and 2 differ.
@@ -69,21 +66,20 @@ class Vocabulary:
         made: list[VocabularySection] = []
         for raw in self._raw[key]:
             section = self._read(*raw, within)
-            if self._is_here(section.releases):
-                self._add(made, section)
+            if not self._is_here(section.releases):
+                continue
+            here = [
+                at
+                for at, old in enumerate(made)
+                if section.ros in ("", old.ros)
+                and (self.release or section.releases == old.releases)
+            ]
+            for at in here:
+                made[at] = merge(made[at], section)
+            if not here:
+                made.append(section)
         # Whole when others see it; two threads that make it at once both get the first one's.
         return self._found.setdefault(key, tuple(made))
-
-    def _add(self, found: list[VocabularySection], new: VocabularySection) -> None:
-        same = [
-            at
-            for at, old in enumerate(found)
-            if new.ros in ("", old.ros) and (self.release or new.releases == old.releases)
-        ]
-        for at in same:
-            found[at] = merge(found[at], new)
-        if not same:
-            found.append(new)
 
     def _is_here(self, words: str) -> bool:
         return not self.release or has_release(words, self.release)
@@ -176,7 +172,13 @@ class Vocabulary:
         settings, own = read_section(file, line, rows)
         sites: dict[str, SiteRow] = {}
         for name in settings.get("with", "").split():
-            sites |= {site.path: site for site in self._block(f"{file}:{line}", name, within)}
+            place = f"{file}:{line}"
+            if name in within:
+                raise VocabularyError(f"{place}: with: {name}: [block {name}] includes itself")
+            if not self.has("block", name):
+                raise VocabularyError(f"{place}: with: {name}: there is no [block {name}]")
+            found = self._find(("block", name), (*within, name))
+            sites |= {site.path: site for site in (found[0].sites if found else ())}
         header = read_header(f"{file}:{line}", rows[0])
         sites |= {
             site.path if self.release else key: site
@@ -184,14 +186,6 @@ class Vocabulary:
             if self._is_here(site.releases)
         }
         return assemble(file, line, header, settings, list(sites.values()))
-
-    def _block(self, place: str, name: str, within: tuple[str, ...]) -> tuple[SiteRow, ...]:
-        if name in within:
-            raise VocabularyError(f"{place}: with: {name}: [block {name}] includes itself")
-        if not self.has("block", name):
-            raise VocabularyError(f"{place}: with: {name}: there is no [block {name}]")
-        found = self._find(("block", name), (*within, name))
-        return found[0].sites if found else ()
 
 
 def _released(chunk: str) -> str:

@@ -94,7 +94,10 @@ def _value(place: str, path: str, words: list[str]) -> Iterator[Value]:
     role, *rest = words
     options = dict(it.split("=", 1) for it in rest if is_typed(it) or it.startswith(_RELEASES))
     if role == VALUE:
-        _check(place, path, [it for it in rest[1:] if it.partition("=")[0] not in options])
+        strange = [it for it in rest[1:] if it.partition("=")[0] not in options]
+        if strange:
+            known = f"use one of {', '.join((*OPTIONS, 'releases'))}"
+            raise VocabularyError(f"{place}: {path}: unknown option {strange[0]!r}, {known}")
         options["type"] = rest[0] if rest else ""
     elif options.keys() <= {"releases"}:
         return
@@ -110,12 +113,6 @@ def _value(place: str, path: str, words: list[str]) -> Iterator[Value]:
     checked = options.get("checked", read)
     own = (name, "any" if is_attribute else type_, read, releases, "required" in options)
     yield Value(*own, tuple(choices), options.get("unit", ""), *limits, checked)
-
-
-def _check(place: str, path: str, strange: list[str]) -> None:
-    if strange:
-        known = ", ".join((*OPTIONS, "releases"))
-        raise VocabularyError(f"{place}: {path}: unknown option {strange[0]!r}, use one of {known}")
 
 
 def _name(path: str) -> tuple[str, bool]:

@@ -72,7 +72,8 @@ def expand(
         text = document.toprettyxml(indent="  ").encode()
         origins = marks.origins(document) if traced else origins
         pieces = numbers(document, words) if in_pieces else pieces
-        _check_length(text)
+        if len(text) > MOST_TEXT:
+            raise ValueError(f"the result is over the limit of {MOST_TEXT // 2**20} MB")
     except Exception as error:  # an expression of the file may raise anything
         failed = _failure(error, (xacro.filestack or [path])[-1], marks)
     said = notes.getvalue()[:MOST_NOTES]
@@ -80,11 +81,6 @@ def expand(
     result = {"error": failed} if failed else {"root": root}
     rows = (origins.tobytes(), marks.calls.tobytes(), pieces.tobytes())
     return Expanded({**report, **result}, text, *rows)
-
-
-def _check_length(text: bytes) -> None:
-    if len(text) > MOST_TEXT:
-        raise ValueError(f"the result is over the limit of {MOST_TEXT // 2**20} MB")
 
 
 def _failure(error: Exception, file: str, marks: Marks) -> dict[str, object]:

@@ -33,22 +33,20 @@ def driving(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeFa
     drives = topics_of(controllers(nodes), SUBSCRIBES, COMMANDS)
     if len(drives) != 1:
         return nodes
-    return [
-        _sending(it, topics_of((one for one in nodes if one is not it), SUBSCRIBES), drives[0])
-        if it.name in own
-        else it
-        for it in nodes
-    ]
-
-
-def _sending(node: NodeFacts, heard: Collection[str], drive: str) -> NodeFacts:
-    ends = (
-        it._replace(remapped=drive)
-        if it.role == PUBLISHES and it.type in COMMANDS and topic_of(node, it) not in heard
-        else it
-        for it in node.endpoints
-    )
-    return node if node.host else node._replace(endpoints=tuple(ends))
+    made = []
+    for node in nodes:
+        if node.name not in own or node.host:
+            made.append(node)
+            continue
+        heard = topics_of((it for it in nodes if it is not node), SUBSCRIBES)
+        ends = (
+            it._replace(remapped=drives[0])
+            if it.role == PUBLISHES and it.type in COMMANDS and topic_of(node, it) not in heard
+            else it
+            for it in node.endpoints
+        )
+        made.append(node._replace(endpoints=tuple(ends)))
+    return made
 
 
 def by_way_of_relays(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeFacts]:
@@ -60,22 +58,20 @@ def by_way_of_relays(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequen
         for it in node.endpoints
         if it.type in COMMANDS and not it.when
     ]
-    return [
-        _at_entry(it, ends) if it.name in own and not it.host and is_tool_word(it.kind) else it
-        for it in nodes
-    ]
-
-
-def _at_entry(node: NodeFacts, ends: Sequence[CommandEnd]) -> NodeFacts:
-    moved = (
-        it._replace(remapped=entry)
-        if it.role == PUBLISHES
-        and it.type in COMMANDS
-        and (entry := entry_of(topic := topic_of(node, it), ends)) != topic
-        else it
-        for it in node.endpoints
-    )
-    return node._replace(endpoints=tuple(moved))
+    made = []
+    for node in nodes:
+        is_tool = node.name in own and not node.host and is_tool_word(node.kind)
+        moved = (
+            it._replace(remapped=entry)
+            if is_tool
+            and it.role == PUBLISHES
+            and it.type in COMMANDS
+            and (entry := entry_of(topic := topic_of(node, it), ends)) != topic
+            else it
+            for it in node.endpoints
+        )
+        made.append(node._replace(endpoints=tuple(moved)))
+    return made
 
 
 def of_one_type(
@@ -89,7 +85,22 @@ def of_one_type(
     """Return the nodes, with commands of one type as far as the build may choose it."""
     choices = {it.node.name: it for it in _choices(nodes, own, free, given, known)}
     wanted = _wanted(tuple(choices.values()), free, nodes, spec)
-    return [_typed(it, choices.get(it.name), wanted) for it in nodes]
+    made = []
+    for node in nodes:
+        choice = choices.get(node.name)
+        # The parameter for the type, where that is not the default.
+        switch = _switch(choice, wanted) if choice and choice.type != wanted else ()
+        if choice and choice.is_free and switch is not None:
+            ends = (
+                it._replace(type=wanted, also=(), types=())
+                if it.type in COMMANDS and not it.when
+                else it
+                for it in node.endpoints
+            )
+            made.append(node._replace(endpoints=tuple(ends), usual=(*node.usual, *switch)))
+        else:
+            made.append(node)
+    return made
 
 
 class _Choice(NamedTuple):
@@ -161,18 +172,6 @@ def _wanted(
     return next(iter((*fixed, *of_files, *(usual if len(usual) == 1 else ()))), PLAIN)
 
 
-def _typed(node: NodeFacts, choice: _Choice | None, wanted: str) -> NodeFacts:
-    """Return the node with ends of the wanted type, and the parameter for it where that is not the
-    default."""
-    if choice is None or not choice.is_free:
-        return node
-    switch = () if choice.type == wanted else _switch(choice, wanted)
-    if switch is None:
-        return node
-    ends = tuple(_of_type(it, wanted) for it in node.endpoints)
-    return node._replace(endpoints=ends, usual=(*node.usual, *switch))
-
-
 def _switch(choice: _Choice, wanted: str) -> tuple[tuple[str, bool]] | None:
     """Return the parameter that gives all ends of the node the wanted type; None for no such one."""
     for name in sorted(_switches(choice.ends)):
@@ -181,8 +180,3 @@ def _switch(choice: _Choice, wanted: str) -> tuple[tuple[str, bool]] | None:
             if all((chosen_type(it.types, value_of) or it.type) == wanted for it in choice.ends):
                 return ((name, value),)
     return None
-
-
-def _of_type(end: Endpoint, wanted: str) -> Endpoint:
-    is_command = end.type in COMMANDS and not end.when
-    return end._replace(type=wanted, also=(), types=()) if is_command else end

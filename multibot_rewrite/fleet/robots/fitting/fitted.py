@@ -73,12 +73,13 @@ def fitted(
     """Return the nodes, those that are ``free`` with the settings that fit the others. ``own`` are
     those that the build starts: what no file sets of them is the build's to set, too."""
     offered = with_odometry(has.offered, nodes)
-    settled = [
-        _with_sensors(it, nodes, offered, has.root, spec)
-        if it.name in free
-        else it._replace(usual=())
-        for it in nodes
-    ]
+    settled = []
+    for it in nodes:
+        if it.name in free:
+            hears = hearing_sensors(by_sensor(it, offered), nodes, offered)
+            settled.append(_settled(with_root(_as_listed(hears, spec), has.root)))
+        else:
+            settled.append(it._replace(usual=()))
     muxes = own_mux(settled, own)
     settled = [to_the_drive(it) if it.name in muxes else it for it in settled]
     usual = dict(one for it in nodes if it.name in muxes for one in it.usual)
@@ -89,23 +90,6 @@ def fitted(
     return tuple(without_second_senders(typed, free, has.sent))
 
 
-def _with_sensors(
-    node: NodeFacts,
-    nodes: Sequence[NodeFacts],
-    offered: Mapping[str, Sequence[str]],
-    root: str,
-    spec: RobotSpec,
-) -> NodeFacts:
-    """Return the node with the sensors, the root link and the parameters that its stack sets."""
-    hears = hearing_sensors(by_sensor(node, offered), nodes, offered)
-    return _settled(with_root(_as_listed(hears, spec), root))
-
-
-def _is_made_below(name: str) -> bool:
-    """Is it made at run time, in the namespace of its robot? An absolute one all robots would share."""
-    return "<" in name and not name.startswith("/")
-
-
 def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
     """Return the node without the names that it makes of a list which no file gives it: they may come,
     if a file is added. So may those of the panels and displays that RViz has in its usual file, where
@@ -113,12 +97,12 @@ def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
     if node.kind == MOVE_GROUP and spec.companions.get("moveit"):
         return node
     shows = node.kind == RVIZ and bool(spec.companions.get("rviz"))
-    ends = (
-        it._replace(when=_BY_FILE)
-        if not it.when and (_is_made_below(it.name) or (shows and it.type != TF_TYPE))
-        else it
-        for it in node.endpoints
-    )
+    ends = []
+    for it in node.endpoints:
+        # It is made at run time, in the namespace of its robot; an absolute one all would share.
+        is_made_below = "<" in it.name and not it.name.startswith("/")
+        may_come = is_made_below or (shows and it.type != TF_TYPE)
+        ends.append(it._replace(when=_BY_FILE) if may_come and not it.when else it)
     return node._replace(endpoints=tuple(ends))
 
 

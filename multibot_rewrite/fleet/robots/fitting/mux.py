@@ -7,7 +7,6 @@ The inputs are those of the user's file, where one has the node; then what a sta
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from multibot_rewrite.fleet.robots.fitting.node_topics import COMMANDS, topic_of, topics_of
 from multibot_rewrite.knowledge.records import TWIST_MUX, Endpoint, NodeFacts
@@ -20,14 +19,6 @@ _DRIVE = "cmd_vel"
 # What an input gets behind its name where the mux would hear itself.
 _APART = "_in"
 Usual = Mapping[str, str | float]
-
-
-class _Mux(NamedTuple):
-    """The topics of a twist_mux's inputs by their ids, and those of them that the file calls as what
-    the drive or another node obeys."""
-
-    inputs: Mapping[str, str]
-    apart: Sequence[str]
 
 
 def own_mux(nodes: Iterable[NodeFacts], added: Collection[str]) -> tuple[str, ...]:
@@ -62,8 +53,10 @@ def through_a_mux(
     others = [it for it in nodes if it.name != node.name]
     obeyed = {topic_of(it, end) for it in others for end in _commands(it, SUBSCRIBES)}
     node, apart = _with_own_inputs(node, outputs | obeyed)
-    mux = _Mux(_inputs(node, usual), apart)
-    heard = {*mux.inputs.values(), *topics_of(others, SUBSCRIBES)}
+    # A file has the ids of the inputs, or the stack.
+    ids = ((_id(it.parameter), topic_of(node, it)) for it in _commands(node, SUBSCRIBES))
+    inputs = {id_ if id_ != "*" else _role(topic, usual): topic for id_, topic in ids}
+    heard = {*inputs.values(), *topics_of(others, SUBSCRIBES)}
     lost = [
         (it.name, topic)
         for it in others
@@ -73,7 +66,16 @@ def through_a_mux(
     ]
     sent = {topic_of(it, end) for it in others for end in _commands(it, PUBLISHES)}
     wanted = {(name, topic): _role(topic, usual) for name, topic in lost}
-    places = _places(dict.fromkeys(wanted.values()), mux, sent)
+    places: dict[str, str] = {}
+    # The topic of the input for each role: by its id, or by a word in its id or topic. A planner's,
+    # the last, was called as what the drive obeys, or it is any that nobody has.
+    for role in sorted(dict.fromkeys(wanted.values()), key=lambda it: it == _OF_PLANNER):
+        own, word = [inputs[role]] if role in inputs else [], role[:3]
+        named = [it for id_, it in inputs.items() if word in id_.lower() or word in it.lower()]
+        if role == _OF_PLANNER:
+            free = (it for it in inputs.values() if it not in {*sent, *places.values()})
+            named = [*apart, *named, *free]
+        places[role] = next(iter((*own, *named)), "")
     lacking = [it for it, topic in places.items() if not topic and _name_of_topic(it) in usual]
     node = _with_inputs(node, lacking, usual, of_package)
     places |= {it: str(usual[_name_of_topic(it)]) for it in lacking}
@@ -85,12 +87,6 @@ def _commands(node: NodeFacts, role: str) -> Iterator[Endpoint]:
     """Yield the ends with velocities that a node has for certain."""
     ends = (it for it in node.endpoints if it.role == role and not it.when)
     yield from (it for it in ends if it.type in COMMANDS)
-
-
-def _inputs(node: NodeFacts, usual: Usual) -> dict[str, str]:
-    """Return the topics of the inputs by their ids, which a file has, or the stack."""
-    ends = ((_id(it.parameter), topic_of(node, it)) for it in _commands(node, SUBSCRIBES))
-    return {id_ if id_ != "*" else _role(topic, usual): topic for id_, topic in ends}
 
 
 def _id(parameter: str) -> str:
@@ -115,27 +111,6 @@ def _role(topic: str, usual: Usual) -> str:
     """Return the id of the input that the stack has for a topic; that of a planner for any other."""
     ids = (_id(name) for name, value in usual.items() if value == topic)
     return next(ids, _OF_PLANNER)
-
-
-def _places(roles: Iterable[str], mux: _Mux, sent: Collection[str]) -> dict[str, str]:
-    """Return the topic of the input for each role, empty for none; that of a planner is chosen last."""
-    places: dict[str, str] = {}
-    for role in sorted(roles, key=lambda it: it == _OF_PLANNER):
-        places[role] = _fitting_input(role, mux, {*sent, *places.values()})
-    return places
-
-
-def _fitting_input(role: str, mux: _Mux, sent: Collection[str]) -> str:
-    """Return the topic of the input that is for a role: by its id, or by a word in its id or topic. A
-    planner's is that which was called as what the drive obeys, or any that nobody has."""
-    if role in mux.inputs:
-        return mux.inputs[role]
-    word = role[:3]
-    named = [it for id_, it in mux.inputs.items() if word in id_.lower() or word in it.lower()]
-    if role != _OF_PLANNER:
-        return next(iter(named), "")
-    free = (it for it in mux.inputs.values() if it not in sent)
-    return next(iter((*mux.apart, *named, *free)), "")
 
 
 def _name_of_topic(role: str) -> str:

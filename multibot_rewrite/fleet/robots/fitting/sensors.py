@@ -52,14 +52,10 @@ def offered_topics(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str
             for end in node.endpoints:
                 if end.role == PUBLISHES and end.type in SENSED and not end.when:
                     found.setdefault(end.type, []).append(topic_of(node, end))
-    return {**found, **_images(found)}
-
-
-def _images(found: Mapping[str, Sequence[str]]) -> Mapping[str, Sequence[str]]:
-    """Return the images of colours and those of depths: beside these is a cloud of points in Gazebo."""
-    given, clouds = found.get(IMAGE, ()), found.get(CLOUD, ())
-    depths = [it for it in given if _DEPTH in it or f"{it}/points" in clouds]
-    return {IMAGE: [it for it in given if it not in depths], DEPTHS: depths}
+    # Beside images of depths is a cloud of points in Gazebo.
+    images, clouds = found.get(IMAGE, ()), found.get(CLOUD, ())
+    depths = [it for it in images if _DEPTH in it or f"{it}/points" in clouds]
+    return {**found, IMAGE: [it for it in images if it not in depths], DEPTHS: depths}
 
 
 def wanted(node: NodeFacts, end: Endpoint) -> str:

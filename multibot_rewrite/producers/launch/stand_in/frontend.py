@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.bounded import A_VALUE, load_yaml, read_bytes
-from multibot_rewrite.producers.launch.entities import Entity, root_of
+from multibot_rewrite.producers.launch.entities import LINE, Entity, root_of
 from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
 from multibot_rewrite.producers.launch.stand_in.values import TextSubstitution
@@ -71,7 +71,9 @@ def _built(entity: Entity, form: Form) -> Any:
         given[form.actions] = [_made(it) for it in entity.below]
         entity.below = []
     entity.check()
-    return getattr(import_module(form.module), form.name)(**given)
+    made = getattr(import_module(form.module), form.name)(**given)
+    setattr(made, LINE, entity.line)
+    return made
 
 
 def _unread(tag: str) -> Any:

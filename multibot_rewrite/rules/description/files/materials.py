@@ -24,7 +24,9 @@ def undefined_material(subject: Subject) -> Iterator[Problem]:
     """Read in urdfdom's order: the robot's own materials first, then those of visuals."""
     tops = _materials(subject.elements)
     bare = [it for it in tops if not _defines(it)]
-    misspelled = _misspelled(subject) if bare else set()
+    # Elements that another rule reports, for themselves or for a child.
+    elements = [it.element for it in urdf_faults(subject)] if bare else []
+    misspelled = {*elements, *(it.getparent() for it in elements)}
     for material in bare:
         if material not in misspelled:
             name = material.get("name", "")
@@ -55,12 +57,6 @@ def _looks(subject: Subject) -> list[etree._Element]:
     visuals = {it for it in subject.elements.every("visual") if it.getparent() in links}
     materials = subject.elements.every("material")
     return [it for it in materials if it.getparent() in visuals and it.get("name") is not None]
-
-
-def _misspelled(subject: Subject) -> set[etree._Element | None]:
-    """Elements that another rule reports, for themselves or for a child."""
-    elements = [it.element for it in urdf_faults(subject)]
-    return {*elements, *(it.getparent() for it in elements)}
 
 
 def _defines(material: etree._Element) -> bool:

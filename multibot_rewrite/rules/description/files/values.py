@@ -67,7 +67,16 @@ def missing(subject: Subject) -> Iterator[Problem]:
     for it in faults("missing", subject):
         # What includes a part of a robot may have its name.
         yield from lacking(subject, [it]) if it.element is root else [it]
-    yield from plugins_without_library(subject)
+    for system in subject.elements.tops("ros2_control"):
+        for empty in (it for it in system.iterfind("hardware/plugin") if not text_of(it)):
+            yield Problem(empty, "<plugin> of the hardware is empty", None, "write its class")
+    named = subject.settings.distro in NAMED
+    for plugin in simulator_plugins(subject):
+        if not plugin.get("filename", "").strip():
+            hint = "name the library that it loads"
+            yield Problem(plugin, "<plugin> has no 'filename'", None, hint)
+        elif named and "name" not in plugin.attrib:
+            yield Problem(plugin, "<plugin> has no 'name'", None, "SDF requires one before 1.10")
 
 
 repeated_element = rule("MB116", "repeated-element", WARNING)(partial(faults, "repeated"))
@@ -110,7 +119,6 @@ def angle_in_degrees(subject: Subject) -> Iterator[Problem]:
     yield from limits_in_degrees(subject)
 
 
-_LIDAR = ("lidar", "ray")
 # No lidar sees as far, in metres, and none is blind for as long.
 FAR, BLIND = 2000.0, 20.0
 _ABOVE_0 = {
@@ -128,9 +136,12 @@ def sees_nothing(subject: Subject) -> Iterator[Problem]:
             yield _problem(sensor, "update_rate", "is below 0")
         for inner in sensor.iterchildren("camera") if type_ in CAMERAS else ():
             yield from _none_of(inner, _ABOVE_0["camera"])
-        for inner in sensor.iterchildren(*_LIDAR) if type_ in LIDARS else ():
+        for inner in sensor.iterchildren("lidar", "ray") if type_ in LIDARS else ():
             yield from _none_of(inner, _ABOVE_0["lidar"])
-            yield from _in_millimetres(inner)
+            near, far = number_at(inner, "range/min"), number_at(inner, "range/max")
+            if near is not None and far is not None and near >= BLIND and far >= FAR:
+                hint = "divide by 1000: are these millimetres?"
+                yield _problem(inner, "range/max", "is a length in metres", hint)
 
 
 def unusable_numbers(subject: Subject) -> Iterator[Problem]:
@@ -140,24 +151,19 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
         above = physics.getparent()
         if above is not None and above.tag == "world":
             yield from _none_of(physics, ("max_step_size",))
-    for element in (it for tag in _REDUCTIONS for it in every(tag)):
+    for element in (
+        it for tag in ("mechanicalReduction", "mechanical_reduction") for it in every(tag)
+    ):
         if number(text_of(element)) == 0:
             yield Problem(element, f"{element.tag} is 0, by which is divided", level=WARNING)
     for plugin in every("plugin"):
-        yield from _inverted(plugin)
-
-
-_REDUCTIONS = ("mechanicalReduction", "mechanical_reduction")
-
-
-def _inverted(plugin: _Element) -> Iterator[Problem]:
-    for least in plugin.iterchildren("*"):
-        tag = str(least.tag)
-        low = number(text_of(least)) if tag.startswith("min_") else None
-        high = number_at(plugin, f"max_{tag.removeprefix('min_')}") if low is not None else None
-        if low is not None and high is not None and low > high:
-            message = f"{tag} is {low:g}, above max_{tag.removeprefix('min_')} ({high:g})"
-            yield Problem(least, message, "", "swap the two, or correct one", level=WARNING)
+        for least in plugin.iterchildren("*"):
+            tag = str(least.tag)
+            low = number(text_of(least)) if tag.startswith("min_") else None
+            high = number_at(plugin, f"max_{tag.removeprefix('min_')}") if low is not None else None
+            if low is not None and high is not None and low > high:
+                message = f"{tag} is {low:g}, above max_{tag.removeprefix('min_')} ({high:g})"
+                yield Problem(least, message, "", "swap the two, or correct one", level=WARNING)
 
 
 def _none_of(inner: _Element, paths: tuple[str, ...]) -> Iterator[Problem]:
@@ -165,14 +171,6 @@ def _none_of(inner: _Element, paths: tuple[str, ...]) -> Iterator[Problem]:
         value = number_at(inner, path)
         if value is not None and value <= 0:
             yield _problem(inner, path, "has to be above 0")
-
-
-def _in_millimetres(lidar: _Element) -> Iterator[Problem]:
-    near, far = number_at(lidar, "range/min"), number_at(lidar, "range/max")
-    if near is not None and far is not None and near >= BLIND and far >= FAR:
-        yield _problem(
-            lidar, "range/max", "is a length in metres", "divide by 1000: are these millimetres?"
-        )
 
 
 def _problem(above: _Element, path: str, words: str, hint: str = "") -> Problem:
@@ -184,25 +182,10 @@ def _problem(above: _Element, path: str, words: str, hint: str = "") -> Problem:
 
 # gz-sim10_10.4.0 src/SystemLoader.cc no longer takes ignition-gazebo for gz-sim; 9_9.5.0:125 does.
 WITHOUT_IGNITION = ("lyrical", "rolling")
-_IGNITION = "ignition-gazebo"
 # Where SDF requires the name: before 1.10 (plugin.sdf).
 NAMED = ("humble",)
 # How the libraries of a family begin and end.
 FAMILIES = (("gz-sim-", "-system"), ("gazebo_ros_", ""))
-
-
-def plugins_without_library(subject: Subject) -> Iterator[Problem]:
-    """Plugins below ``<gazebo>`` or in an SDF; the attribute that SDF requires in this release;
-    hardware without a class, for which ros2_control throws."""
-    for system in subject.elements.tops("ros2_control"):
-        for empty in (it for it in system.iterfind("hardware/plugin") if not text_of(it)):
-            yield Problem(empty, "<plugin> of the hardware is empty", None, "write its class")
-    named = subject.settings.distro in NAMED
-    for it in simulator_plugins(subject):
-        if not it.get("filename", "").strip():
-            yield Problem(it, "<plugin> has no 'filename'", None, "name the library that it loads")
-        elif named and "name" not in it.attrib:
-            yield Problem(it, "<plugin> has no 'name'", None, "SDF requires one before 1.10")
 
 
 @rule("MB160", "class-not-in-library", ERROR)
@@ -222,9 +205,8 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
         classes = [known for known in section.names if "::" in known] if section else []
         if classes and name not in classes:
             message = f"{it.get('name', '').strip()!r} is no class of {library}"
-            yield Problem(
-                it, message, "name", f"did you mean {nearest(name, classes, 0) or classes[0]!r}?"
-            )
+            hint = f"did you mean {nearest(name, classes, 0) or classes[0]!r}?"
+            yield Problem(it, message, "name", hint)
 
 
 def _misspelt_library(
@@ -250,8 +232,7 @@ def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
         if host.element.tag != "plugin" or not section or not is_unknown(section) or not name:
             continue
         key = library_key(name.rpartition("/")[2])
-        near = _slip_of_library(key, subject.tree.vocabulary.names("plugin"))
-        if near:
+        if near := _slip_of_library(key, subject.tree.vocabulary.names("plugin")):
             message = f"no known plugin is called {name!r}"
             level = "" if key.startswith(tuple(start for start, _ in FAMILIES)) else NOTE
             yield Problem(host.element, message, "filename", f"did you mean {near!r}?", level=level)
@@ -284,7 +265,7 @@ def library_of_ignition(subject: Subject) -> Iterator[Problem]:
     release = subject.settings.distro
     if release not in WITHOUT_IGNITION:
         return
-    found = [it for it in simulator_plugins(subject) if _IGNITION in it.get("filename", "")]
+    found = [it for it in simulator_plugins(subject) if "ignition-gazebo" in it.get("filename", "")]
     if found:
         first = library_of(found[0])
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
@@ -309,12 +290,10 @@ def _slip(name: str, known: Iterable[str]) -> str:
     """The known name that was meant; one that is a part of the other is a name of its own."""
     near = slip_of(name, known)
     part = near in name or name in near
-    own = _has_own_word(name, near) or (part and near.casefold() != name.casefold())
-    return "" if own else near
-
-
-def _has_own_word(name: str, other: str) -> bool:
-    """Is a word in place of another one without a letter of it, as ``my`` of ``uuv``?"""
-    words, others = name.casefold().split("_"), other.casefold().split("_")
+    # Is a word in place of another one without a letter of it, as ``my`` of ``uuv``?
+    words, others = name.casefold().split("_"), near.casefold().split("_")
     pairs = zip(words, others, strict=False) if len(words) == len(others) else ()
-    return any(one and two and not set(one) & set(two) for one, two in pairs)
+    own = any(one and two and not set(one) & set(two) for one, two in pairs) or (
+        part and near.casefold() != name.casefold()
+    )
+    return "" if own else near

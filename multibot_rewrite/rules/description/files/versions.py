@@ -64,12 +64,9 @@ def no_rotation(subject: Subject) -> Iterator[Problem]:
 @rule("MB128", "needs-later-version", WARNING)
 def needs_later_version(subject: Subject) -> Iterator[Problem]:
     """With a fix that keeps the pose that is written."""
+    hint = 'write version="1.1" in <robot>' if _reads(subject) >= QUATERNIONS else ""
     for it in faults("needs-later-version", subject):
-        yield it._replace(edits=_read_now(subject, it.element), hint=_hint(subject))
-
-
-def _hint(subject: Subject) -> str:
-    return 'write version="1.1" in <robot>' if _reads(subject) >= QUATERNIONS else ""
+        yield it._replace(edits=_read_now(subject, it.element), hint=hint)
 
 
 def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:

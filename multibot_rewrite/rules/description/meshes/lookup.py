@@ -108,13 +108,13 @@ def _unquoted(path: str) -> str:
 
 def _packages(name: str, first: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
     """The folders that may be a package; ``first`` is the first folder of a path below it."""
+    found = ((it, entries(it)) for it in package_folders(name, file, roots))
     # A folder without a manifest must at least have that.
-    found = package_folders(name, file, roots)
-    return tuple(it for it in found if _may_be_the_package(entries(it), first))
-
-
-def _may_be_the_package(names: frozenset[str], first: str) -> bool:
-    return "package.xml" in names or any(name.lower() == first for name in names)
+    return tuple(
+        folder
+        for folder, names in found
+        if "package.xml" in names or any(name.lower() == first for name in names)
+    )
 
 
 @rule("MB701", "mesh-missing", ERROR)
@@ -160,18 +160,15 @@ def _elsewhere(subject: Subject, it: MeshFile) -> str:
     package, root = own
     tail = os.path.normpath(it.path).replace("../", "")
     here = os.path.dirname(file)
-    above = [here[: len(here) - len(rest)] for rest in _ends(here[len(root) :])]
+    within = here[len(root) :]
+    # The folders from its own up to the package's.
+    steps = (at for at in range(len(within) - 1, -1, -1) if within[at] == os.sep)
+    above = [here, *(here[: len(root) + at] for at in steps)]
     places = [*((folder, tail) for folder in above), (root, f"meshes/{os.path.basename(tail)}")]
     for folder, path in places:
-        found = find_in(folder, path)
-        if found:
+        if found := find_in(folder, path):
             return f"package://{package}/{os.path.relpath(os.path.join(folder, found), root)}"
     return ""
-
-
-def _ends(path: str) -> list[str]:
-    """The ends of a path that start with a slash, the shortest first, and with it the empty one."""
-    return ["", *(path[at:] for at in range(len(path) - 1, -1, -1) if path[at] == os.sep)]
 
 
 def _nearest(it: MeshFile) -> str:
@@ -185,12 +182,8 @@ def _nearest(it: MeshFile) -> str:
 def package_not_found(subject: Subject) -> Iterator[Problem]:
     """Once for each package."""
     lost = [it for it in lookups(subject) if it.path and not it.folders]
-    for package, it in {_package(it): it for it in reversed(lost)}.items():
+    for package, it in {it.used.path.partition("/")[0]: it for it in reversed(lost)}.items():
         yield problem(it.used, f"package {package!r} was not found", "give its folder with --roots")
-
-
-def _package(it: MeshFile) -> str:
-    return it.used.path.partition("/")[0]
 
 
 @rule("MB703", "mesh-name-case", ERROR)
@@ -254,7 +247,6 @@ def mesh_units(subject: Subject) -> Iterator[Problem]:
 MOST_BYTES, BEGINNING = 4 * 2**20, 64 * 2**10
 # A binary STL: 80 bytes of anything, how many triangles, and 50 bytes for each.
 _HEAD, _TRIANGLE = 84, 50
-_CORNERS = "<12x9f2x"
 _WORD = rb"[ \t]+([-+.\deE]+)"
 COLLADA = ".dae"
 _CORNER = {
@@ -287,7 +279,11 @@ def _box(path: str, state: tuple[int, ...], whole: bool) -> Extent | None:
         )  # few descriptions are near such a file
 
         return collada_box(data)
-    return _around(_corners(path, data, size))
+    columns = list(zip(*_corners(path, data, size), strict=True))
+    if not columns or not isfinite(sum(map(sum, columns))):
+        return None
+    (a, b, c), (d, e, f) = ([best(it) for it in columns] for best in (min, max))
+    return Extent((a, b, c), (d, e, f))
 
 
 def _corners(path: str, data: bytes, size: int) -> Iterable[Vector]:
@@ -295,7 +291,7 @@ def _corners(path: str, data: bytes, size: int) -> Iterable[Vector]:
     count = int.from_bytes(data[_HEAD - 4 : _HEAD], "little")
     if kind == ".stl" and size == _HEAD + count * _TRIANGLE:
         whole = (len(data) - _HEAD) // _TRIANGLE * _TRIANGLE
-        for it in iter_unpack(_CORNERS, data[_HEAD : _HEAD + whole]):
+        for it in iter_unpack("<12x9f2x", data[_HEAD : _HEAD + whole]):
             yield from (it[:3], it[3:6], it[6:])
         return
     for found in _CORNER[kind].finditer(data):
@@ -304,11 +300,3 @@ def _corners(path: str, data: bytes, size: int) -> Iterable[Vector]:
         except ValueError:
             return
         yield x, y, z
-
-
-def _around(corners: Iterable[Vector]) -> Extent | None:
-    columns = list(zip(*corners, strict=True))
-    if not columns or not isfinite(sum(map(sum, columns))):
-        return None
-    (a, b, c), (d, e, f) = ([best(it) for it in columns] for best in (min, max))
-    return Extent((a, b, c), (d, e, f))

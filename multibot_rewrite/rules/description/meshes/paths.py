@@ -44,8 +44,7 @@ def used_files(subject: Subject) -> tuple[Used, ...]:
 
 
 def _read(element: _Element, name: str) -> Used:
-    scheme = _SCHEME.match(name)
-    if scheme:
+    if scheme := _SCHEME.match(name):
         return Used(element, name, scheme[1].lower(), name[scheme.end() :])
     if name.lower().startswith(_SHORT):
         return Used(element, name, "file", name[len(_SHORT) - 1 :])
@@ -117,8 +116,7 @@ def mixed_schemes(subject: Subject) -> Iterator[Problem]:
 @rule("MB710", "model-uri", WARNING)
 def model_uri(subject: Subject) -> Iterator[Problem]:
     """The first of them, and how many there are."""
-    found = _with_scheme(subject, "model")
-    if found:
+    if found := _with_scheme(subject, "model"):
         message = f"RViz cannot load {found[0].name!r}{and_more(len(found))}"
         yield problem(found[0], message, "write package://")
 
@@ -126,8 +124,7 @@ def model_uri(subject: Subject) -> Iterator[Problem]:
 @rule("MB711", "mesh-from-the-net", NOTE)
 def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
     """The first of them, and how many there are."""
-    found = _with_scheme(subject, "http", "https")
-    if found:
+    if found := _with_scheme(subject, "http", "https"):
         message = f"{found[0].name!r} needs the network{and_more(len(found))}"
         yield problem(found[0], message, "put it into a package")
 
@@ -137,8 +134,7 @@ def find_left_over(subject: Subject) -> Iterator[Problem]:
     """The first of them, and how many there are; MB105 reports xacro files with a wrong name."""
     if any("xacro" in str(uri) for uri in subject.document.root.nsmap.values()):
         return
-    found = [it for it in used_files(subject) if "$(find" in it.name]
-    if found:
+    if found := [it for it in used_files(subject) if "$(find" in it.name]:
         message = f"{found[0].name!r} holds a xacro substitution{and_more(len(found))}"
         yield problem(found[0], message, "write package://NAME/...")
 

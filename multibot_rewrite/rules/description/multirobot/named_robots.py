@@ -45,8 +45,7 @@ joints_reordered = rule("MB405", "joints-reordered", WARNING, options=OF_TWO)(
 @rule("MB420", "name-taken", ERROR, options=OF_TWO)
 def name_taken(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots rejects as MB420."""
-    names = subject.settings.robots
-    if names:
+    if names := subject.settings.robots:
         from multibot_rewrite.description.checks import robots  # most lints name none
 
         yield from robots.taken_names(subject.inventory, rename_map(subject), names)

@@ -70,22 +70,17 @@ def scopes(root: _Element) -> list[Scope]:
         if scope is None:
             names = given if home is None else own[home]
             scope = found[home] = Scope(home, prefix_names[names], [], [])
-        _add(scope, element)
+        tag = str(element.tag)
+        if tag in ("link", "joint"):
+            declares = _declares(element)
+            if name := element.get("name"):
+                (scope.declared if declares else scope.used).append(_name_at(element, "name", name))
+            continue
+        attribute = _REFERENCES[tag]
+        value = element.get(attribute) if attribute else element.text
+        if value and value.strip():
+            scope.used.append(_name_at(element, attribute, value.strip()))
     return list(found.values())
-
-
-def _add(scope: Scope, element: _Element) -> None:
-    tag = str(element.tag)
-    if tag in ("link", "joint"):
-        declares = _declares(element)
-        name = element.get("name")
-        if name:
-            (scope.declared if declares else scope.used).append(_name_at(element, "name", name))
-        return
-    attribute = _REFERENCES[tag]
-    value = element.get(attribute) if attribute else element.text
-    if value and value.strip():
-        scope.used.append(_name_at(element, attribute, value.strip()))
 
 
 def _declares(element: _Element) -> bool:
@@ -195,23 +190,7 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
                 if name not in read and macro.find(".//link") is not None:
                     message = f"macro {macro.get('name', '')!r} takes {name!r} and does not use it"
                     yield Problem(macro, message, "params", "put it in front of the names")
-    yield from _unused_arguments(root)
-
-
-def _forgotten(scope: Scope, declared: list[WrittenName]) -> Iterator[Problem]:
-    """Literal names, where most links (joints) have the prefix."""
-    bare = [it for it in declared if not it.words and it.text.strip("/") not in WORLD_FRAMES]
-    prefixed = sum(1 for it in declared if it.words & scope.prefix_names)
-    for it in bare if prefixed >= len(bare) else ():
-        message = (
-            f"{it.element.tag} {it.text!r} lacks the prefix that {prefixed} other "
-            f"{it.element.tag}s of {_of(scope)} have"
-        )
-        yield Problem(it.element, message, it.attribute, _hint(scope, it.text))
-
-
-def _unused_arguments(root: _Element) -> Iterator[Problem]:
-    """An included file sees the arguments too, so a file with includes is left alone."""
+    # An included file sees the arguments too, so a file with includes is left alone.
     if any(is_xacro(it) for it in root.iter("{*}include")) or root.find(".//link") is None:
         return
     arguments = [it for it in root.iter("{*}arg") if is_xacro(it)]
@@ -223,14 +202,23 @@ def _unused_arguments(root: _Element) -> Iterator[Problem]:
             yield Problem(element, message, "name", "put it in front of the names")
 
 
+def _forgotten(scope: Scope, declared: list[WrittenName]) -> Iterator[Problem]:
+    """Literal names, where most links (joints) have the prefix."""
+    bare = [it for it in declared if not it.words and it.text.strip("/") not in WORLD_FRAMES]
+    prefixed = sum(1 for it in declared if it.words & scope.prefix_names)
+    owner = "this file" if scope.macro is None else f"macro {scope.macro.get('name', '')!r}"
+    for it in bare if prefixed >= len(bare) else ():
+        message = (
+            f"{it.element.tag} {it.text!r} lacks the prefix that {prefixed} other "
+            f"{it.element.tag}s of {owner} have"
+        )
+        yield Problem(it.element, message, it.attribute, _hint(scope, it.text))
+
+
 def _calls_others(macro: _Element) -> bool:
     """Does it call macros? They see the parameters of their caller."""
     inside = (it for it in macro.iterdescendants("{*}*") if is_xacro(it))
     return any(str(it.tag).rpartition("}")[2] not in _BUILTIN for it in inside)
-
-
-def _of(scope: Scope) -> str:
-    return "this file" if scope.macro is None else f"macro {scope.macro.get('name', '')!r}"
 
 
 def _hint(scope: Scope, text: str) -> str:

@@ -65,15 +65,11 @@ one_device = declaration.ONE_DEVICE._replace(
 @rule("MB415", "sensor-found-by-bare-name", NOTE)
 def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
     """Only if no robots are named: otherwise MB425 knows whether their names differ."""
-    if subject.settings.robots or not _has_fixed_sensor(subject):
+    sensors = subject.inventory.declared["sensor"].values()
+    if subject.settings.robots or not any(claim_is_fixed(subject, it) for it in sensors):
         return
     for it in hazards.bare_lookups(subject.inventory, AS_WRITTEN):
         yield it._replace(hint="give sensors a prefix for each robot")
-
-
-def _has_fixed_sensor(subject: Subject) -> bool:
-    declared = subject.inventory.declared["sensor"].values()
-    return any(claim_is_fixed(subject, it) for it in declared)
 
 
 @rule("MB416", "world-system-in-robot", WARNING)

@@ -11,7 +11,7 @@ from operator import itemgetter
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, rule
-from multibot_rewrite.base.model import Claim, SiteRow
+from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import FRAME_KINDS, NOT_PLAIN, TF_TOPICS, make_naming
 from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.description.checks import hazards
@@ -85,7 +85,11 @@ def missed(subject: Subject) -> Iterator[tuple[_Element, Insertion]]:
 def _insertions(subject: Subject) -> list[tuple[_Element, Insertion]]:
     """What a rewrite would insert, with the plugin it is for."""
     declared, hosts = subject.inventory.declared, subject.inventory.served
-    may = [it for it in hosts if any(map(_may_insert, it[1].sites))]
+    may = [
+        (host, section)
+        for host, section in hosts
+        if any(site.default and "namespace" not in site.kinds for site in section.sites)
+    ]
     plugins = {host for host, _ in may}
     found = []
     for it in insertions(may, declared, APART):
@@ -94,10 +98,6 @@ def _insertions(subject: Subject) -> list[tuple[_Element, Insertion]]:
             inside = inside.getparent()  # type: ignore[assignment]
         found.append((inside, it))
     return found
-
-
-def _may_insert(site: SiteRow) -> bool:
-    return bool(site.default) and "namespace" not in site.kinds
 
 
 ROS_KINDS = ("topic", "service")
@@ -149,9 +149,8 @@ def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
         if not claim_is_fixed(subject, claim):
             continue
         message = f"{tag_of(claim)} {topic!r} is the same gz topic for every copy of the robot"
-        yield Problem(
-            claim.element, message, claim.attribute, "leave it out, or set one for each robot"
-        )
+        hint = "leave it out, or set one for each robot"
+        yield Problem(claim.element, message, claim.attribute, hint)
 
 
 def _is_gz(claim: Claim) -> bool:
@@ -271,19 +270,15 @@ def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
         if "frame" not in claim.site.kinds or claim.site.form != "whole":
             continue
         name = claim.value.strip("/")
-        if "odom" not in _words(claim) or {name, name.rpartition("/")[2]} & (links.keys() | shared):
+        words = f"{claim.value} {claim.site.path}".lower()
+        if "odom" not in words or {name, name.rpartition("/")[2]} & (links.keys() | shared):
             continue
         if is_plain(name) and claim_is_fixed(subject, claim):
             message = (
                 f"{tag_of(claim)} {claim.value!r} is the same frame for every copy of the robot"
             )
-            yield Problem(
-                claim.element, message, claim.attribute, "use a different one for each robot"
-            )
-
-
-def _words(claim: Claim) -> str:
-    return f"{claim.value} {claim.site.path}".lower()
+            hint = "use a different one for each robot"
+            yield Problem(claim.element, message, claim.attribute, hint)
 
 
 @rule("MB408", "tf-not-remapped", NOTE)

@@ -97,8 +97,7 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
 def wheel_cannot_turn(subject: Subject) -> Iterator[Problem]:
     """Each such joint that a drive names."""
     for element, joint in wheel_joints(subject):
-        fault = _fault_of(joint)
-        if fault:
+        if fault := _fault_of(joint):
             yield Problem(element, f"wheel joint {joint.name!r} {fault}", "", "make it continuous")
 
 
@@ -117,9 +116,6 @@ def _fault_of(joint: Joint) -> str:
     return f"turns from {lower:g} to {upper:g} radians only"
 
 
-_FRICTION = ("mu1", "mu", "mu2")
-
-
 @rule("MB636", "wheel-without-grip", WARNING)
 def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
     """Blocks of links on a continuous joint that something drives, if nothing else moves the robot."""
@@ -131,7 +127,7 @@ def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
     for block in blocks:
         name = block.get("reference", "")
         # A wheel with rollers has grip one way alone, along <fdir1> or across it.
-        for tag in _FRICTION if name in wheels and block.find("fdir1") is None else ():
+        for tag in ("mu1", "mu", "mu2") if name in wheels and block.find("fdir1") is None else ():
             value, element = number_at(block, tag), block.find(tag)
             if value is not None and value <= 0 and element is not None:
                 message = f"{tag} of driven wheel {name!r} is {value:g}: it has no grip"
@@ -184,10 +180,8 @@ def too_weak_for_gravity(subject: Subject) -> Iterator[Problem]:
 
 def _most(subject: Subject, joint: Joint) -> float:
     """More than gravity can do at a joint whatever its axis: one quick look, enough for most."""
-    pose, weight = (
-        link_poses(subject).get(joint.child),
-        carried(subject).get(joint.child, NO_WEIGHT),
-    )
+    pose = link_poses(subject).get(joint.child)
+    weight = carried(subject).get(joint.child, NO_WEIGHT)
     if pose is None or not weight.mass:
         return 0.0
     arm = 1.0 if joint.type == "prismatic" else dist(weight.centre, pose.at)

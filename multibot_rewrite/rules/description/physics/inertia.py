@@ -96,7 +96,15 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
 def impossible_inertia(subject: Subject) -> Iterator[Problem]:
     """Inertias that no distribution of mass has, by more than rounding."""
     root, release = subject.document.root, subject.settings.distro
-    for link, inertial, moments, merged in impossible(subject.robot):
+    parts: dict[str, int] | None = None
+    for link, inertial in inertials(subject.robot):
+        if inertial.moments is None or _is_possible(inertial.moments):
+            continue
+        low, middle, high = moments = eigenvalues(inertial.moments)
+        if high < NOTHING or (not is_negative(moments) and high <= (low + middle) * (1 + ROUNDING)):
+            continue
+        parts = parts_with_mass(subject.robot) if parts is None else parts
+        merged = link.name == WORLD or parts.get(link.name) != 1
         message = f"inertia of link {link.name!r} {fault_of(moments)}"
         level = WARNING if merged or may_be_classics(root, release) else ""
         yield Problem(part_of(inertial, "inertia"), message, level=level)
@@ -192,21 +200,6 @@ def _size(link: _Element) -> float:
 
 # Relative; CAD programs print four digits and more.
 ROUNDING = 0.01
-
-
-def impossible(robot: Robot) -> Iterator[tuple[Link, Inertial, Vector, bool]]:
-    """The inertias that no body has, their principal moments, the smallest first, and whether
-    simulators merge the link with others that have a mass, or with ``world``."""
-    parts: dict[str, int] | None = None
-    for link, inertial in inertials(robot):
-        if inertial.moments is None or _is_possible(inertial.moments):
-            continue
-        low, middle, high = moments = eigenvalues(inertial.moments)
-        if high < NOTHING or (not is_negative(moments) and high <= (low + middle) * (1 + ROUNDING)):
-            continue
-        parts = parts_with_mass(robot) if parts is None else parts
-        merged = link.name == WORLD or parts.get(link.name) != 1
-        yield link, inertial, moments, merged
 
 
 def _is_possible(moments: tuple[float, ...]) -> bool:
@@ -335,22 +328,16 @@ def _masses(robot: Robot) -> dict[str, float]:
 def relied_on(subject: Subject, gone: frozenset[str]) -> tuple[str, ...]:
     """What goes with these links, in the words of a message."""
     joints = {it.name for it in subject.robot.joints if it.child in gone or it.parent in gone}
-    found = [*_sensors(subject, gone | joints), *_driven(subject, joints)]
+    blocks = subject.elements.tops("gazebo")
+    lost = (it for it in blocks if it.get("reference") in gone | joints)
+    sensors = (it.get("name") for block in lost for it in block.iterchildren("sensor"))
+    found = [f"sensor {name!r}" for name in sensors]
+    # Joints of which a plugin of the model, or ros2_control, knows the name.
+    of_model = (it for it in blocks if not it.get("reference"))
+    plugins = (it for block in of_model for it in block.iterchildren("plugin"))
+    named = (text_of(it) for plugin in plugins for it in plugin.iterdescendants("*"))
+    found += (f"joint {name!r} of a plugin" for name in named if name in joints)
+    systems = subject.elements.tops("ros2_control")
+    driven = (it.get("name", "") for system in systems for it in system.iterchildren("joint"))
+    found += (f"joint {name!r} of ros2_control" for name in driven if name in joints)
     return tuple(dict.fromkeys(found))
-
-
-def _sensors(subject: Subject, gone: frozenset[str]) -> Iterator[str]:
-    for block in subject.elements.tops("gazebo"):
-        if block.get("reference") in gone:
-            yield from (f"sensor {it.get('name')!r}" for it in block.iterchildren("sensor"))
-
-
-def _driven(subject: Subject, joints: set[str]) -> Iterator[str]:
-    """Joints of which a plugin of the model, or ros2_control, knows the name."""
-    for block in subject.elements.tops("gazebo"):
-        for plugin in () if block.get("reference") else block.iterchildren("plugin"):
-            named = (text_of(it) for it in plugin.iterdescendants("*"))
-            yield from (f"joint {it!r} of a plugin" for it in named if it in joints)
-    for system in subject.elements.tops("ros2_control"):
-        named = (it.get("name", "") for it in system.iterchildren("joint"))
-        yield from (f"joint {it!r} of ros2_control" for it in named if it in joints)

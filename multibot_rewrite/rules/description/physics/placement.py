@@ -250,8 +250,7 @@ def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
         centre = None if origin is None else vector(origin.get("xyz"))
         if centre is None or not any(centre):
             continue
-        way = _outside(subject, link, centre)
-        if way:
+        if way := _outside(subject, link, centre):
             message = f"the centre of mass of link {link.name!r} is {way:.3g} m outside of it"
             yield Problem(part_of(inertial, "origin"), message, "xyz")
 
@@ -263,19 +262,15 @@ def _outside(subject: Subject, link: Link, centre: Vector) -> float:
     # A mesh may show less than what weighs: the shafts of an arm's wrist are within the link before.
     box = None if any(it.tag == "mesh" for _, it in shapes) else _around(subject, shapes)
     if box is None:
-        return _far_from_mesh(subject, link, shapes, centre)
+        # How far it is from all that is known of the link: its joints and the places of its shapes.
+        if length(centre) < FAR_OF_MESH:
+            return 0.0
+        below = [it.element for it in subject.robot.below.get(link.name, ())]
+        places = [_pose(subject, it) for it in (*below, *(element for element, _ in shapes))]
+        known = [(0.0, 0.0, 0.0), *(it.at for it in places if it is not None)]
+        way = min((length(minus(centre, it)) for it in known), default=inf)
+        return way if way > FAR_OF_MESH else 0.0
     size = max(minus(box.high, box.low))
     ways = zip(box.low, box.high, centre, strict=True)
     way = max(max(low - at, at - high) for low, high, at in ways)
     return way if way > FAR * size + MOVED else 0.0
-
-
-def _far_from_mesh(subject: Subject, link: Link, shapes: _Shapes, centre: Vector) -> float:
-    """How far it is from all that is known of the link: its joints and the places of its shapes."""
-    if length(centre) < FAR_OF_MESH:
-        return 0.0
-    below = [it.element for it in subject.robot.below.get(link.name, ())]
-    places = [_pose(subject, it) for it in (*below, *(element for element, _ in shapes))]
-    known = [(0.0, 0.0, 0.0), *(it.at for it in places if it is not None)]
-    way = min((length(minus(centre, it)) for it in known), default=inf)
-    return way if way > FAR_OF_MESH else 0.0

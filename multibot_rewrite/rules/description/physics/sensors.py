@@ -9,7 +9,6 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import WARNING, rule
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.numbers import Vector
 from multibot_rewrite.description.checks.poses import (
     Pose,
@@ -63,11 +62,7 @@ def optical_frame_not_rotated(subject: Subject) -> Iterator[Problem]:
         if pose is not None and _is_straight(pose) and _is_straight(origin_of(joint.element)):
             message = f"optical frame {link.name!r} is not turned: its z points up, not forward"
             hint = 'give the joint rpy="-1.5708 0 -1.5708"'
-            yield Problem(_origin(joint), message, None, hint)
-
-
-def _origin(joint: Joint) -> _Element:
-    return joint.parts.get("origin", joint.element)
+            yield Problem(joint.parts.get("origin", joint.element), message, None, hint)
 
 
 def _is_straight(pose: Pose | None) -> bool:

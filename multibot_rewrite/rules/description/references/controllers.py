@@ -24,12 +24,10 @@ from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
 
 if TYPE_CHECKING:
-    from multibot_rewrite.rules.system.states import Missing
     from multibot_rewrite.system.records import Interface
 
 _IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
 _YAML = (".yaml", ".yml")
-_BESIDE = "controllers"
 
 
 def _not_exported(subject: Subject) -> Iterator[Problem]:
@@ -41,7 +39,14 @@ def _not_exported(subject: Subject) -> Iterator[Problem]:
         chosen = _chosen(subject) if any(missing(known)) else ()
         rest = [it for it in known if it.role == EXPORTS or not _said(it).startswith(chosen)]
         for it in missing(rest):
-            yield _missing(element, it, bool(subject.origins))
+            first, *more = it.claims
+            names = f"{_said(first)} and {len(more)} more" if more else _said(first)
+            # Lines of an expanded xacro are in no file.
+            line = f" (line {it.near.place.line})" if it.near and not subject.origins else ""
+            near = f"did you mean {it.meant}{line}?" if it.meant else ""
+            message = f"{_at(first)}: {first.node} claims {names}, which no <ros2_control> exports"
+            hint = near or f"name an interface that is there{line}, or add it"
+            yield Problem(element, message, _place(element), hint)
 
 
 def _claimed_twice(subject: Subject) -> Iterator[Problem]:
@@ -101,17 +106,6 @@ def _at(it: Interface) -> str:
     return f"{os.path.basename(it.place.file)}:{it.place.line}"
 
 
-def _missing(element: _Element, found: Missing, expanded: bool) -> Problem:
-    first, *more = found.claims
-    names = f"{_said(first)} and {len(more)} more" if more else _said(first)
-    # Lines of an expanded xacro are in no file.
-    line = f" (line {found.near.place.line})" if found.near and not expanded else ""
-    near = f"did you mean {found.meant}{line}?" if found.meant else ""
-    message = f"{_at(first)}: {first.node} claims {names}, which no <ros2_control> exports"
-    hint = near or f"name an interface that is there{line}, or add it"
-    return Problem(element, message, _place(element), hint)
-
-
 def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, bool]]:
     """Each file of controllers, where it is named, and whether it is surely this robot's."""
     named = [
@@ -129,7 +123,7 @@ def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, 
             yield element, path, own
     if not named:
         folder = os.path.dirname(os.path.abspath(subject.document.file))
-        beside = [it for it in entries(folder) if _BESIDE in it and it.endswith(_YAML)]
+        beside = [it for it in entries(folder) if "controllers" in it and it.endswith(_YAML)]
         if len(beside) == 1:
             yield system, os.path.join(folder, beside[0]), False
 

@@ -48,15 +48,10 @@ def declared_twice(subject: Subject) -> Iterator[Problem]:
         are = "are" if len(more) > 1 else "is"
         also = f", and so {are} {len(more)} more from the same call" if more else ""
         hint = "give each call its own prefix" if more else "rename one"
-        message = text + _first_at(subject, first.start) + also
+        # Lines of an expanded document are in no file.
+        line, _ = locate(subject.document.source, first.start)
+        message = text + ("" if subject.origins else f", first at line {line}") + also
         yield Problem(claim.element, message, claim.attribute, hint)
-
-
-def _first_at(subject: Subject, start: int) -> str:
-    """Where the first of two is; empty in an expanded document, whose lines are in no file."""
-    if subject.origins:
-        return ""
-    return f", first at line {locate(subject.document.source, start)[0]}"
 
 
 def _cause(subject: Subject, claim: Claim, first: Claim) -> object:
@@ -120,9 +115,8 @@ def duplicate_material(subject: Subject) -> Iterator[Problem]:
     materials = subject.elements.tops("material")
     for it in _repeated((it.get("name"), it) for it in materials if it.get("name")):
         message = f"material {it.get('name')!r} is defined twice"
-        yield Problem(
-            it, message, "name", "delete one: urdfdom rejects both even if they are alike"
-        )
+        hint = "delete one: urdfdom rejects both even if they are alike"
+        yield Problem(it, message, "name", hint)
 
 
 def one_node_twice(subject: Subject) -> Iterator[Problem]:
@@ -172,7 +166,6 @@ def _repeated(found: Iterable[tuple[object, _Element]]) -> Iterator[_Element]:
         seen.add(key)
 
 
-_OF_JOINTS = ("force_torque", "wrench")
 # The values of a <gazebo> block of which a link has one each (libsdformat parser_urdf.cc); some have
 # two tags, as max_vel and maxVel.
 _SINGLE = (
@@ -230,7 +223,7 @@ def sensors_of_joints(subject: Subject) -> Iterator[Problem]:
         name = block_.get("reference", "")
         if name in subject.robot.joint and name not in subject.robot.link:
             for it in block_.iterchildren("sensor"):
-                if it.get("type") not in _OF_JOINTS:
+                if it.get("type") not in ("force_torque", "wrench"):
                     message = f"sensor {it.get('name')!r} is in the block of joint {name!r}"
                     child = subject.robot.joint[name].child
                     yield Problem(it, message, None, f"refer to a link: {child!r}?")

@@ -100,14 +100,10 @@ def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
         level = it.level
         if "ros2_control" in inside:
             level = level or since_jazzy(subject)
-        elif inside and code == JOINT and _in_simulator(subject):
-            level = ERROR
+        elif inside and code == JOINT and subject.settings.simulated:
+            # Its plugins run: for certain, if it is an error that they find no joint.
+            level = ERROR if level_of_absence(subject) == ERROR else level
         yield it._replace(level=level)
-
-
-def _in_simulator(subject: Subject) -> bool:
-    """Do its plugins run for certain, and find no joint that is not there?"""
-    return subject.settings.simulated and level_of_absence(subject) == ERROR
 
 
 undeclared_link = rule("MB202", "undeclared-link", ERROR)(partial(undeclared, "MB202"))
@@ -168,17 +164,6 @@ def _sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
 @rule("MB217", "frame-not-a-link", WARNING)
 def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
     """Frames that the robot does not have; others than misspelt ones may be a localisation's."""
-    for claim, name, near in _frames(subject):
-        message = f"{where(claim)} names the frame {name!r}, which is not a link"
-        place = (claim.element, message, claim.attribute)
-        if near:
-            yield Problem(*place, f"did you mean {near!r}?")
-        elif not claim.site.default and not name.endswith(SENT_FRAMES):
-            yield Problem(*place, "another node must publish it", level=NOTE)
-
-
-def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
-    """Frames that nothing declares, and the link that was meant, if one is near enough."""
     declared = subject.inventory.declared
     links = declared["link"]
     meant: dict[str, str] = {}
@@ -196,4 +181,9 @@ def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
                 continue
             if name not in meant:
                 meant[name] = meant_name(own, links) if len(meant) < HINTED else ""
-            yield claim, name, meant[name]
+            message = f"{where(claim)} names the frame {name!r}, which is not a link"
+            place = (claim.element, message, claim.attribute)
+            if meant[name]:
+                yield Problem(*place, f"did you mean {meant[name]!r}?")
+            elif not claim.site.default and not name.endswith(SENT_FRAMES):
+                yield Problem(*place, "another node must publish it", level=NOTE)

@@ -100,19 +100,14 @@ def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
 def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
     """Virtual joints; a fixed one is right where the root link is ``world``, as Gazebo wants it."""
     robot = subject.beside
-    root = _root(robot) if robot else ""
+    roots = [it.name for it in robot.links if it.name not in robot.above] if robot else []
+    root = roots[0] if len(roots) == 1 else ""
     for it in subject.document.root.iterchildren("virtual_joint") if root else ():
         child = text_of(it, "child_link")
         dummy = root == "world" and text_of(it, "type").lower() == "fixed"
         if robot and child in robot.link and child != root and not dummy:
             message = f"{child!r} is not the root link, which is {root!r}"
             yield Problem(it, message, "child_link", f"use {root!r}")
-
-
-def _root(robot: Robot) -> str:
-    """The root link; empty where there is none or there are several."""
-    roots = [it.name for it in robot.links if it.name not in robot.above]
-    return roots[0] if len(roots) == 1 else ""
 
 
 @srdf_rule("MB807", "stale-pair", WARNING)

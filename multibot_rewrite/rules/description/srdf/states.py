@@ -22,7 +22,6 @@ from multibot_rewrite.rules.description.srdf.names import of_moveit, srdf_rule
 from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
 from multibot_rewrite.rules.subject import Subject
 
-LIMITED = ("revolute", "prismatic")
 # State values are written with a few digits.
 ROUNDING = 1e-4
 
@@ -35,9 +34,8 @@ def duplicate_state(subject: Subject) -> Iterator[Problem]:
     for it in subject.document.root.iterchildren("group_state"):
         key = text_of(it), text_of(it, "group")
         if key in seen:
-            yield Problem(
-                it, f"group {key[1]!r} has another state {key[0]!r}", "name", "rename one"
-            )
+            message = f"group {key[1]!r} has another state {key[0]!r}"
+            yield Problem(it, message, "name", "rename one")
         seen.add(key)
 
 
@@ -66,7 +64,7 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
     for it, _, name in _states(subject.document.root) if robot else ():
         assert robot is not None
         joint, values = robot.joint.get(name), numbers_in(it.get("value", ""))
-        limits = _limits(joint) if joint and joint.type in LIMITED else None
+        limits = _limits(joint) if joint and joint.type in ("revolute", "prismatic") else None
         if limits is None or not values or len(values) > 1:
             continue
         lower, upper = limits

@@ -123,8 +123,7 @@ def limit_missing(subject: Subject) -> Iterator[Problem]:
         there = limit.keys()
         bounds = ENDS if is_bounded else ()
         for needed, level in ((motor, ""), (bounds, "" if strict else WARNING)):
-            missing = [it for it in needed if it not in there]
-            if missing:
+            if missing := [it for it in needed if it not in there]:
                 message = f"<limit> of joint {joint.name!r} has no {' and no '.join(missing)}"
                 yield Problem(limit, message, level=level)
 
@@ -132,7 +131,7 @@ def limit_missing(subject: Subject) -> Iterator[Problem]:
 @rule("MB511", "limits-inverted", ERROR)
 def limits_inverted(subject: Subject) -> Iterator[Problem]:
     """Lower limits above the upper one; in URDF 1.2 of any joint."""
-    types = TYPES if _is_strict(subject) else BOUNDED
+    types = TYPES if version_of(subject.document.root) >= STRICT else BOUNDED
     for joint, limit, lower, upper in _bounds(subject):
         if lower > upper and joint.type in types:
             message = f"joint {joint.name!r}: lower {lower:g} is above upper {upper:g}"
@@ -228,10 +227,6 @@ def _is_degrees(angle: float) -> bool:
     return DEGREES[0] < size <= DEGREES[1] and size % 0.5 == 0 and size not in ENDLESS
 
 
-def _is_strict(subject: Subject) -> bool:
-    return version_of(subject.document.root) >= STRICT
-
-
 @memoized
 def _bounds(subject: Subject) -> list[tuple[Joint, _Element, float, float]]:
     """The joints of the known types that have both bounds."""
@@ -248,21 +243,25 @@ def _cannot_move(joint: Joint, limit: _Element) -> bool:
     return joint.type in BOUNDED and value_of(limit, "lower", 0.0) == value_of(limit, "upper", 0.0)
 
 
-Range = tuple[float, float]
-
-
 @rule("MB532", "soft-limits", WARNING)
 def soft_limits(subject: Subject) -> Iterator[Problem]:
     """Against hard limits that leave a range themselves."""
-    for joint, safety, soft, hard in _soft_and_hard(subject.robot):
-        if hard[0] >= hard[1]:
+    for joint, safety in joints_with(subject.robot, "safety_controller"):
+        limit = joint.parts.get("limit")
+        if joint.type not in BOUNDED or limit is None:
             continue
-        said = f"joint {joint.name!r}: the soft limits {soft[0]:g} to {soft[1]:g}"
-        if max(soft[0], hard[0]) >= min(soft[1], hard[1]):
+        # Both pairs of limits as MoveIt reads them.
+        soft = (value_of(safety, f"soft_{it}_limit", 0.0) for it in ENDS)
+        hard = (value_of(limit, it, 0.0) for it in ENDS)
+        read = [it for it in (*soft, *hard) if it is not None]
+        if len(read) != 4 or read[2] >= read[3]:
+            continue
+        soft_low, soft_high, low, high = read
+        said = f"joint {joint.name!r}: the soft limits {soft_low:g} to {soft_high:g}"
+        if max(soft_low, low) >= min(soft_high, high):
             yield Problem(safety, f"{said} leave no range")
-        if soft[0] < hard[0] - TOLERANCE or soft[1] > hard[1] + TOLERANCE:
-            message = f"{said} are outside of {hard[0]:g} to {hard[1]:g}"
-            yield Problem(safety, message, level=NOTE)
+        if soft_low < low - TOLERANCE or soft_high > high + TOLERANCE:
+            yield Problem(safety, f"{said} are outside of {low:g} to {high:g}", level=NOTE)
 
 
 @rule("MB534", "dynamics-empty", ERROR)
@@ -272,16 +271,3 @@ def dynamics_empty(subject: Subject) -> Iterator[Problem]:
         if dynamics.get("damping") is None and dynamics.get("friction") is None:
             message = f"<dynamics> of joint {joint.name!r} has neither damping nor friction"
             yield Problem(dynamics, message)
-
-
-def _soft_and_hard(robot: Robot) -> Iterator[tuple[Joint, _Element, Range, Range]]:
-    """The bounded joints with a safety controller, and both pairs of limits as MoveIt reads them."""
-    for joint, safety in joints_with(robot, "safety_controller"):
-        limit = joint.parts.get("limit")
-        if joint.type not in BOUNDED or limit is None:
-            continue
-        soft = (value_of(safety, f"soft_{it}_limit", 0.0) for it in ("lower", "upper"))
-        hard = (value_of(limit, it, 0.0) for it in ("lower", "upper"))
-        read = [it for it in (*soft, *hard) if it is not None]
-        if len(read) == 4:
-            yield joint, safety, (read[0], read[1]), (read[2], read[3])

@@ -184,7 +184,9 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
             if not text.isdigit() and "$" not in text:
                 message = f"{name} is {text!r}, not {words}"
                 yield Problem(system, message, name, level=NOTE if since_jazzy(subject) else "")
-        for it in _params(system):
+        parts = system.iterchildren("joint", "gpio", "sensor")
+        interfaces = (it for part in parts for it in part.iterchildren(_COMMAND, _STATE))
+        for it in (param for one in interfaces for param in one.iterchildren("param")):
             text = text_of(it)
             if it.get("name") in _NUMBERS and "$" not in text and number(text) is None:
                 hint = "use a decimal point" if "," in text else "write a number"
@@ -198,12 +200,6 @@ def _level(subject: Subject, param: _Element, text: str) -> str:
     if param.get("name") == "initial_value":
         return "" if text else WARNING
     return NOTE if since_jazzy(subject) else WARNING
-
-
-def _params(system: _Element) -> Iterator[_Element]:
-    for part in system.iterchildren("joint", "gpio", "sensor"):
-        for interface in part.iterchildren(_COMMAND, _STATE):
-            yield from interface.iterchildren("param")
 
 
 def mimic_of_none(subject: Subject) -> Iterator[Problem]:

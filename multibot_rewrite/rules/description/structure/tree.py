@@ -97,8 +97,7 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
         return
     seen.update(it.child for joints in loops(robot) for it in joints)
     seen.update(it.child for it in robot.joints if it.child == it.parent)
-    lost = [it for name, it in robot.link.items() if name not in seen]
-    if lost:
+    if lost := [it for name, it in robot.link.items() if name not in seen]:
         names = shorten((repr(it.name) for it in lost), SHOWN)
         yield Problem(lost[0].element, f"not connected to the root: {names}", "name")
 

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Findings -> one for each cause, the likeliest cause first: what another finding explains is folded
+below it, and what several nodes do alike, or one node does often, is one line."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
+from multibot_rewrite.base.wording import SEVERAL, shorten, unique
+from multibot_rewrite.system.index import TF, Index, ends_of
+from multibot_rewrite.system.records import PUBLISHES, SERVES
+
+_CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
+# Does the first finding explain the second?
+_Explains = Callable[[Index, Finding, Finding], bool]
+
+
+def _names(_: Index, cause: Finding, it: Finding) -> bool:
+    return not {*cause.names}.isdisjoint(it.names)
+
+
+def _robot(_: Index, cause: Finding, it: Finding) -> bool:
+    return cause.robot == it.robot
+
+
+def _served(seen: Index, cause: Finding, it: Finding) -> bool:
+    """Is what the second is about served by the node of the first?"""
+    return any(end.node == cause.node for name in it.names for end in ends_of(seen, name))
+
+
+def _same_node(seen: Index, cause: Finding, it: Finding) -> bool:
+    """Is the missing node of the first the one of the second, without its robot's name?"""
+    return seen.plain(cause.node) == it.node
+
+
+def _two_robots(_: Index, cause: Finding, it: Finding) -> bool:
+    """Are the nodes of a whole robot there twice, and so what they send?"""
+    return len(cause.names) > 1 and cause.robot == it.robot
+
+
+def _sends_tf(seen: Index, cause: Finding, it: Finding) -> bool:
+    """Has the missing node to send its robot's tf, by the plan?"""
+    planned = seen.expected.by_node.get(cause.node, ()) if seen.expected else ()
+    tf = any((end.type, end.role) == (TF, PUBLISHES) for end in planned)
+    return tf and cause.robot == it.robot
+
+
+def _described(seen: Index, cause: Finding, it: Finding) -> bool:
+    """Is it of the robot whose description it is, or of which it has the frames?"""
+    links = (
+        link for one in seen.system.descriptions if one.topic in cause.names for link in one.links
+    )
+    return it.robot in {cause.robot, *map(seen.frame_robot, links)} - {""}
+
+
+def _of_a_clock(seen: Index, cause: Finding, it: Finding) -> bool:
+    return is_about_a_clock(seen, cause) and cause.robot == it.robot
+
+
+# The code of the cause, those of what comes of it, and what both have in common.
+_EXPLAINS: Sequence[tuple[str, tuple[str, ...], _Explains]] = (
+    ("MG501", ("MG514", "MG415", "MG406", "MG413"), _robot),
+    ("MG303", ("MG503", "MG514"), _of_a_clock),
+    ("MG502", ("MG504", "MG417"), lambda *_: True),
+    ("MG101", ("MG301",), _same_node),
+    ("MG101", ("MG406", "MG415", "MG413", "MG208"), _sends_tf),
+    ("MG301", ("MG304",), _served),
+    ("MG301", ("MG402", "MG408", "MG401", "MG405", "MG325"), _two_robots),
+    ("MG314", ("MG312", "MG329"), _names),
+    ("MG320", ("MG303",), _names),
+    ("MG420", ("MG208", "MG408", "MG402", "MG413"), _described),
+    ("MG403", ("MG401",), _names),
+    ("MG414", ("MG401",), _names),
+    ("MG402", ("MG406",), _robot),
+    ("MG405", ("MG406",), _robot),
+)
+# What several nodes have with one name is one of the first, what one node has often of the second.
+_OF_NAMES = frozenset(("MG303", "MG306", "MG307"))
+_OF_NODES, _MANY = frozenset(("MG102", "MG304")), 3
+_UNPLANNED = "MG108"
+# From bad to good.
+_BAD = (ERROR, INCONCLUSIVE, WARNING, NOTE)
+# The codes of each kind of cause, as they begin; what is in none comes last.
+_ORDER = (
+    ("MG50",),
+    ("MG101", "MG109", "MG322", "MG301", "MG302", "MG511", "MG513"),
+    ("MG102", "MG303", "MG304", "MG305", "MG308", "MG31", "MG320", "MG321", "MG323"),
+    ("MG306", "MG307", "MG309"),
+    ("MG2", "MG4"),
+)
+
+
+def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
+    """One finding for each cause."""
+    by_code: dict[str, list[int]] = defaultdict(list)
+    for at, it in enumerate(found):
+        by_code[it.code].append(at)
+    below: dict[int, list[int]] = defaultdict(list)
+    gone: set[int] = set()
+    for code, codes, explains in _EXPLAINS if len(found) > 1 else ():
+        causes = [it for it in by_code.get(code, ()) if it not in gone]
+        for at in (it for other in codes for it in by_code.get(other, ()) if it not in gone):
+            # Each robot's cause has it, so that the robots' findings stay one.
+            why = [it for it in causes if explains(seen, found[it], found[at])]
+            for cause in why:
+                below[cause].append(at)
+            gone.update([at] if why else [])
+    left = [
+        _with_explained(it, [found[one] for one in below.get(at, ())])
+        for at, it in enumerate(found)
+        if at not in gone
+    ]
+    return _without_unplanned(seen, _alike(left))
+
+
+def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
+    """A cause is as bad as what comes of it."""
+    if not explained:
+        return it
+    codes = shorten(unique(one.code for one in explained))
+    level = min((it.level, *(one.level for one in explained)), key=_BAD.index)
+    return it._replace(hint=f"{it.hint}; {codes} comes of it" if it.hint else it.hint, level=level)
+
+
+def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
+    """What nodes have alike, each group at the place of its first and worst."""
+    groups: dict[tuple[object, ...], list[Finding]] = {}
+    for it in found:
+        key: tuple[object, ...] = (it,)
+        if it.code in _OF_NAMES and it.node:
+            key = it.code, it.names
+        elif it.code in _OF_NODES and it.node:
+            key = it.code, it.node
+        groups.setdefault(key, []).append(it)
+    for (code, *_), own in groups.items():
+        if len(own) == 1 or (code in _OF_NODES and len(own) < _MANY):
+            yield from own
+        else:
+            yield _one_of(own, str(code))
+
+
+def _one_of(own: Sequence[Finding], code: str) -> Finding:
+    first = min(own, key=lambda it: _BAD.index(it.level))
+    others = [it for it in own if it is not first]
+    if code in _OF_NAMES:
+        same = unique(it.node for it in others if it.node != first.node)
+    else:
+        same = unique(it.names[0] for it in others if it.names)
+    remaps = tuple(dict.fromkeys(rule for it in own for rule in it.remaps))
+    if any(not it.remaps for it in own):
+        remaps = first.remaps
+    return first._replace(
+        message=f"{first.message}; the same for {shorten(same, SEVERAL)}"
+        if same
+        else first.message,
+        names=unique(name for it in (first, *others) for name in it.names),
+        remaps=remaps,
+    )
+
+
+def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
+    """A node that is not planned is said with the error that it makes, if there is one."""
+    every = [*found]
+    nodes = {it.node: at for at, it in enumerate(every) if it.code == _UNPLANNED}
+    gone = set()
+    for at, it in enumerate(every) if nodes else ():
+        if it.level == ERROR and it.code != _UNPLANNED:
+            for node in (
+                one for one in _makers(seen, it) if one in nodes and nodes[one] not in gone
+            ):
+                gone.add(nodes[node])
+                hint = f"{every[at].hint}; {node} is not in the plan"
+                every[at] = every[at]._replace(hint=hint)
+    return [it for at, it in enumerate(every) if at not in gone]
+
+
+def _makers(seen: Index, it: Finding) -> Sequence[str]:
+    """The nodes that send or serve what a finding is about."""
+    ends = (end for name in it.names for end in ends_of(seen, name))
+    sent = (end.node for end in ends if end.role in (PUBLISHES, SERVES))
+    edges = (one for tree in seen.trees for one in tree.edges if one.child in it.names)
+    own = (node for edge in edges for node in edge.publishers if seen.robot(node) == it.robot)
+    return unique((*sent, *own))
+
+
+def is_about_a_clock(seen: Index, it: Finding) -> bool:
+    """Is it about the time that nodes get?"""
+    ends = (end for name in it.names for end in ends_of(seen, name))
+    return any(end.type == _CLOCK_TYPE for end in ends)
+
+
+def in_order(seen: Index, found: Iterable[Finding]) -> list[Finding]:
+    """The findings by their kind of cause, then by level: notes come last."""
+    return sorted(found, key=lambda it: (it.level == NOTE, *_place(seen, it), it.code))
+
+
+def _place(seen: Index, it: Finding) -> tuple[int, int]:
+    kinds = (at for at, codes in enumerate(_ORDER) if it.code.startswith(codes))
+    rank = 0 if is_about_a_clock(seen, it) else next(kinds, len(_ORDER))
+    return rank, _BAD.index(it.level)

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A system held against an earlier look at it: what is new, gone or other in ends, transforms, frames
+of messages and parameters. Which nodes came and went is asked by the rules of a plan."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from multibot_rewrite.base.conventions import OF_EVERY_NODE
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.rules.declaration import planned_rule
+from multibot_rewrite.rules.system.causes import DOES
+from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
+from multibot_rewrite.system.index import TF, Ends, Index, at_work
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, TOPIC, Edge, End, System
+
+# Services of every node.
+_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
+# In metres and parts of a quaternion.
+_SAME = 1e-3
+_MEANT = "is it meant? Then take a new snapshot"
+_POLICIES = ("reliability", "durability", "deadline", "liveliness")
+# Parent, child and topic.
+_Place = tuple[str, str, str]
+
+
+class _Change(NamedTuple):
+    """What differs at a node, or a topic of messages, with the names that it is about."""
+
+    node: str
+    what: str
+    names: tuple[str, ...]
+    level: str = WARNING
+
+
+@planned_rule("MG130", "changed-since", WARNING, absence=True)
+def changed_since(plan: Index, seen: Index) -> Iterator[Finding]:
+    """Each by itself: what another finding is about is left to that one (``untold``)."""
+    before = seen.known.before
+    for it in _changes(before, seen) if before else ():
+        robot = seen.robot(it.node) or next(filter(None, map(seen.robot, it.names)), "")
+        yield changed_since.finding(
+            it.what, _MEANT, level=it.level, robot=robot, node=it.node, names=it.names
+        )
+
+
+def untold(found: Iterable[Finding]) -> list[Finding]:
+    """The findings without those of changes that others are about: of a name, of a node that came or
+    went, of a robot that is gone. A warning about an error is one."""
+    every = [*found]
+    errors = {
+        name
+        for it in every
+        if it.code == changed_since.code and it.level == ERROR
+        for name in it.names
+    }
+    every = [
+        it._replace(level=ERROR) if it.level == WARNING and errors & {*it.names} else it
+        for it in every
+    ]
+    led = {it.node for it in every if it.code == changed_since.code and it.level == ERROR}
+    every = [it for it in every if it.code != unplanned_node.code or it.node not in led]
+    others = [it for it in every if it.code != changed_since.code]
+    names = {name for it in others for name in it.names}
+    came = (missing_node.code, unplanned_node.code)
+    nodes = {it.node for it in others if it.code in came}
+    robots = {it.robot for it in others if it.code == missing_robot.code}
+    return [
+        it
+        for it in every
+        if it.code != changed_since.code
+        or not (names & {*it.names} or it.node in nodes or it.robot in robots)
+    ]
+
+
+def _changes(before: System, seen: Index) -> Iterator[_Change]:
+    yield from _ends(before, seen)
+    yield from _transforms(before, seen)
+    yield from _frames(before, seen)
+    yield from _parameters(before, seen)
+
+
+def _ends(before: System, seen: Index) -> Iterator[_Change]:
+    old, new = _by_key(before.ends), _by_key(seen.system.ends)
+    nodes = {it.name for it in before.nodes}
+    for key, end in new.items():
+        ends = seen.by_name.get((end.kind, end.name))
+        if key in old:
+            if (was := _said(old[key])) != (now := _said(end)) and not seen.is_tool(end.node):
+                what = f"{DOES[end.role]} {end.name} as {now}, and did as {was}"
+                yield _Change(end.node, what, (end.name,))
+        elif ends and (obeyed := _is_obeyed(seen, end, ends)):
+            what = f"{DOES[end.role]} {end.name}, and did not; {obeyed} obeys it"
+            yield _Change(end.node, what, (end.name,), ERROR)
+        elif end.node in nodes and not seen.is_tool(end.node):
+            yield _Change(end.node, f"{DOES[end.role]} {end.name}, and did not", (end.name,))
+    for key, end in old.items():
+        if key not in new and end.node in seen.nodes and not seen.is_tool(end.node):
+            what = f"{DOES[end.role]} {end.name} no more"
+            yield _Change(end.node, what, (end.name,))
+
+
+def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
+    """The ends without those of every node, of tf's plumbing and hidden ones."""
+    return {
+        (it.node, it.kind, it.role, it.name): it
+        for it in ends
+        if it.name not in OF_EVERY_NODE
+        and "/_" not in it.name
+        and it.type != TF
+        and not it.type.startswith(_EVERY_NODE)
+    }
+
+
+def _said(end: End) -> str:
+    own = end.qos._asdict() if end.qos else {}
+    words = (
+        str(own[it]) for it in _POLICIES if str(own.get(it, "")) not in ("", "inf", "AUTOMATIC")
+    )
+    return " ".join((end.type, *words))
+
+
+def _is_obeyed(seen: Index, end: End, ends: Ends) -> str:
+    """Who does what a new sender orders, tools as well; empty for nobody."""
+    if end.kind == TOPIC and end.role == PUBLISHES and end.name in seen.orders:
+        others = at_work(ends.subscribers)
+    elif end.kind == ACTION and end.role == CALLS and not seen.is_tool(end.node):
+        others = [*ends.servers]
+    else:
+        others = []
+    return next((it.node for it in others if it.node != end.node), "")
+
+
+def _transforms(before: System, seen: Index) -> Iterator[_Change]:
+    """Where tf was read both times. What a node that is gone sent is gone with it."""
+    old, new = _edges(before.edges), _edges(seen.system.edges)
+    if not (old and new):
+        return
+    above = {(child, topic): parent for parent, child, topic in new}
+    for place, edge in old.items():
+        parent, child, topic = place
+        sent = f"the transform {parent} -> {child} on {topic}"
+        senders = [it for it in edge.publishers if it in seen.nodes]
+        names = (child, topic) if (child, topic) in above else (child, parent, topic)
+        if place not in new and (senders or not edge.publishers):
+            other = above.get((child, topic))
+            what = f"{sent} is gone" + (f": {child} is below {other}" if other else "")
+            yield _Change(
+                next(iter(senders), ""), what, names[:1], ERROR if edge.static else WARNING
+            )
+        elif place in new and _is_moved(edge, new[place]):
+            yield _Change("", f"{sent} is elsewhere than it was", (child,))
+    known = {(child, topic) for _, child, topic in old}
+    fresh = [it for it in new if it not in old and it[1:] not in known]
+    by_topic: dict[str, list[_Place]] = defaultdict(list)
+    for it in fresh:
+        by_topic[it[2]].append(it)
+    for topic, places in by_topic.items():
+        listed = shorten(f"{parent} -> {child}" for parent, child, _ in places)
+        senders = [it for place in places for it in new[place].publishers]
+        yield _Change(
+            senders[0] if len({*senders}) == 1 else "",
+            f"{listed} on {topic} was not there",
+            tuple(child for _, child, _ in places),
+        )
+
+
+def _edges(edges: Iterable[Edge]) -> Mapping[_Place, Edge]:
+    return {
+        (it.parent.removeprefix("/"), it.child.removeprefix("/"), it.topic): it
+        for it in edges
+        if "/_" not in it.topic
+    }
+
+
+def _is_moved(old: Edge, new: Edge) -> bool:
+    if not (old.static and new.static and old.transform and new.transform):
+        return False
+    return any(abs(it - was) > _SAME for was, it in zip(old.transform, new.transform, strict=True))
+
+
+def _frames(before: System, seen: Index) -> Iterator[_Change]:
+    """The frames that messages name, of topics from which some came both times."""
+    sides: tuple[dict[str, set[str]], ...] = (defaultdict(set), defaultdict(set))
+    for side, system in zip(sides, (before, seen.system), strict=True):
+        for it in system.heard:
+            side[it.topic].add(
+                " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints)
+            )
+    old, new = sides
+    for topic, frames in new.items():
+        if topic in old and frames != old[topic]:
+            was, now = (shorten(sorted(it)) or "nothing" for it in (old[topic], frames))
+            yield _Change("", f"messages on {topic} are of {now}, and were of {was}", (topic,))
+
+
+def _parameters(before: System, seen: Index) -> Iterator[_Change]:
+    was = {(it.node, it.name): it.value for it in before.parameters}
+    changed: dict[str, list[str]] = defaultdict(list)
+    for it in seen.system.parameters:
+        old = was.get((it.node, it.name), it.value)
+        if old != it.value and not seen.is_tool(it.node):
+            changed[it.node].append(f"{it.name} is {it.value}, and was {old}")
+    for node, own in changed.items():
+        yield _Change(node, shorten(own), ())

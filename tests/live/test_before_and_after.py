@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``multibot check before.json --from after.json``: two looks are held against each other as wholes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from graph_calls import diagnose, seen_plan
+from graph_examples import read_looks
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.cli.multibot import main as multibot
+from multibot_rewrite.rules.check import check
+from multibot_rewrite.system.json import to_json
+from multibot_rewrite.system.records import Heard, Parameter, System
+
+TWIST, ODOM, SCAN = (
+    "geometry_msgs/msg/Twist", "nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan",
+)  # fmt: skip
+TF = "tf2_msgs/msg/TFMessage"
+GOAL, STOP = "geometry_msgs/msg/PoseStamped", "std_msgs/msg/Bool"
+ROBOTS = [
+    line.format(it)
+    for it in ("robot1", "robot2")
+    for line in (
+        f"/{{0}}/driver subscribes /{{0}}/cmd_vel {TWIST}",
+        f"/{{0}}/driver publishes /{{0}}/odom {ODOM}",
+        f"/{{0}}/driver publishes /tf {TF}",
+        f"/{{0}}/lidar publishes /{{0}}/scan {SCAN}",
+        f"/{{0}}/pilot subscribes /{{0}}/scan {SCAN}",
+        f"/{{0}}/pilot subscribes /{{0}}/odom {ODOM}",
+        f"/{{0}}/pilot subscribes /{{0}}/goal_pose {GOAL}",
+        f"/{{0}}/pilot publishes /{{0}}/cmd_vel {TWIST}",
+        f"/{{0}}/rsp publishes /tf_static {TF}",
+        f"/{{0}}/rsp subscribes /tf {TF}",
+        "transform world -> {0}/base_link on /tf_static by /robot1/rsp, /robot2/rsp",
+        "transform {0}/base_link -> {0}/laser on /tf_static at 0 0 1 by /robot1/rsp, /robot2/rsp",
+    )
+]
+
+
+def held(*lines: str, change: Callable[[System], System] = lambda it: it) -> list[Finding]:
+    """What is found of these lines besides the robots, held against them."""
+    text = "\n".join((*(f"as before: {it}" for it in ROBOTS), *lines))
+    before, after = read_looks(text)
+    return check(seen_plan(diagnose(before)), change(after), before=before)
+
+
+def codes(found: list[Finding]) -> list[tuple[str, str, str]]:
+    return [(it.code, it.level, it.node) for it in found]
+
+
+def test_nothing_is_said_where_nothing_changed() -> None:
+    assert held() == []
+
+
+@pytest.mark.parametrize(
+    ("line", "node"),
+    [
+        (f"running: /foxglove_bridge publishes /robot1/cmd_vel {TWIST}", "/foxglove_bridge"),
+        (f"running: /teleop_node publishes /robot1/cmd_vel {TWIST}", "/teleop_node"),
+        (f"running: /rqt_gui_py_node_12 publishes /robot2/cmd_vel {TWIST}", "/rqt_gui_py_node_12"),
+        (f"running: /rviz2 publishes /robot1/goal_pose {GOAL}", "/rviz2"),
+        (f"running: /domain_bridge publishes /robot1/goal_pose {GOAL}", "/domain_bridge"),
+    ],
+)  # fmt: skip
+def test_a_tool_that_commands_a_robot_is_a_new_sender(line: str, node: str) -> None:
+    ((_, level, told),) = codes(held(line))
+    assert (level, told) == (ERROR, node)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        f"running: /rviz2 subscribes /robot1/scan {SCAN}",
+        "running: /rviz2 publishes /clicked_point geometry_msgs/msg/PointStamped",
+        f"running: /rosbag2_recorder subscribes /robot1/cmd_vel {TWIST}",
+        "running: /robot1/pilot serves /robot1/pilot/get_parameters rcl_interfaces/srv/GetParameters",
+        "running: /robot1/pilot publishes /parameter_events rcl_interfaces/msg/ParameterEvent",
+    ],
+)
+def test_the_plumbing_of_tools_and_nodes_is_no_change(line: str) -> None:
+    assert held(line) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "node"),
+    [
+        ("running: /robot1/pilot serves /robot1/dock std_srvs/srv/Trigger", "/robot1/pilot"),
+        (f"running: /robot1/lidar publishes /robot1/low_scan {SCAN}", "/robot1/lidar"),
+        ("running: transform world -> gantry on /tf_static", ""),
+    ],
+)
+def test_a_new_end_or_transform(line: str, node: str) -> None:
+    assert codes(held(line)) == [("MG130", WARNING, node)]
+
+
+def test_a_root_that_all_share_is_missed() -> None:
+    def cut(graph: System) -> System:
+        left = (it for it in graph.edges if it.child != "robot1/base_link")
+        return graph._replace(edges=tuple(left))
+
+    (it,) = held(change=cut)
+    assert (it.code, it.level, it.robot) == ("MG130", ERROR, "robot1")
+    assert "world -> robot1/base_link on /tf_static is gone" in it.message
+
+
+def test_a_part_is_elsewhere() -> None:
+    def moved(graph: System) -> System:
+        turned = (0.0, 0.0, 1.2, 0.0, 0.0, 0.0, 1.0)
+        edges = (
+            it._replace(transform=turned) if it.child == "robot2/laser" else it
+            for it in graph.edges
+        )
+        return graph._replace(edges=tuple(edges))
+
+    assert [(it.code, it.names) for it in held(change=moved)] == [("MG130", ("robot2/laser",))]
+
+
+def test_other_qos_frames_and_parameters() -> None:
+    text = "\n".join(f"as before: {it}" for it in ROBOTS)
+    before, after = read_looks(text)
+    own = Parameter("/robot1/pilot", "max_speed", "0.5")
+    before = before._replace(parameters=(own,), heard=(Heard("/robot1/scan", "robot1/laser"),))
+    lidar = f"earlier: /robot2/lidar publishes /robot2/low_scan {SCAN} best_effort"
+    was, _ = read_looks(lidar)
+    now, _ = read_looks(lidar.replace("best_effort", "reliable"))
+    before = before._replace(ends=(*before.ends, *was.ends))
+    after = after._replace(
+        ends=(*after.ends, *now.ends),
+        parameters=(own._replace(value="2.0"),),
+        heard=(Heard("/robot1/scan", "robot1/base_link"),),
+    )
+    found = check(seen_plan(diagnose(before)), after, before=before)
+    assert {(it.code, it.node, it.names): it.message for it in found} == {
+        ("MG130", "/robot2/lidar", ("/robot2/low_scan",)): "publishes /robot2/low_scan as"
+        f" {SCAN} RELIABLE VOLATILE, and did as {SCAN} BEST_EFFORT VOLATILE",
+        (
+            "MG130",
+            "",
+            ("/robot1/scan",),
+        ): "messages on /robot1/scan are of robot1/base_link, and were of robot1/laser",
+        ("MG130", "/robot1/pilot", ()): "max_speed is 2.0, and was 0.5",
+    }
+
+
+def test_the_command_says_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    new = f"running: /teleop_twist_keyboard publishes /robot1/cmd_vel {TWIST}"
+    before, after = read_looks("\n".join((*(f"as before: {it}" for it in ROBOTS), new)))
+    files = [tmp_path / "before.json", tmp_path / "after.json"]
+    for file, graph in zip(files, (before, after), strict=True):
+        file.write_bytes(to_json(graph))
+    assert multibot(["check", str(files[0]), "--from", str(files[0])]) == 0
+    capsys.readouterr()
+    assert multibot(["check", str(files[0]), "--from", str(files[1])]) == 1
+    out, err = capsys.readouterr()
+    assert "/teleop_twist_keyboard: error:" in out and "as planned" not in err.replace(
+        "not as planned", ""
+    )

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One cause is one finding, and the likeliest cause comes first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import pytest
+from graph_calls import diagnose, seen_plan
+from graph_examples import read_example, read_looks, read_system
+from healthy_systems import nav2_with_tools
+
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
+from multibot_rewrite.live.diagnose import survey
+from multibot_rewrite.rules.check import check, judge
+from multibot_rewrite.rules.folded import in_order
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, System
+
+SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
+ODOM, TF = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
+CLOCK, STATE = "rosgraph_msgs/msg/Clock", "lifecycle_msgs/srv/ChangeState"
+TWIST, MAP = "geometry_msgs/msg/Twist", "nav_msgs/msg/OccupancyGrid"
+
+
+def found(*lines: str) -> list[Finding]:
+    return judge(read_system("\n".join(f"running: {it}" for it in lines)))
+
+
+def codes(it: Iterable[Finding]) -> list[str]:
+    return [one.code for one in it]
+
+
+def test_one_lidar_of_another_type_is_one_line() -> None:
+    readers = ("amcl", "local_costmap", "monitor", "slam")
+    (it,) = found(
+        f"/robot1/lidar publishes /robot1/scan {CLOUD}",
+        f"/rviz2 subscribes /robot1/scan {SCAN}",
+        *(f"/robot1/{it} subscribes /robot1/scan {SCAN}" for it in readers),
+    )
+    # That of a viewer is a warning, and the worst comes first.
+    assert (it.code, it.level, it.node) == ("MG306", ERROR, "/robot1/amcl")
+    assert all(word in it.message for word in ("/robot1/slam", "/rviz2", "the same for"))
+
+
+def test_one_clock_under_another_name_is_one_line_and_stays_everybodys() -> None:
+    nodes = ("amcl", "slam", "pilot", "driver")
+    (it,) = found(
+        f"/sim publishes /clock {CLOCK}",
+        *(f"/robot1/{it} subscribes /clock {CLOCK}" for it in nodes),
+        *(f"/robot2/{it} subscribes /robot2/clock {CLOCK}" for it in nodes),
+    )
+    assert (it.code, {rule.node for rule in it.remaps}) == (
+        "MG303", {f"/robot2/{it}" for it in nodes}
+    )  # fmt: skip
+    assert {(rule.old, rule.new) for rule in it.remaps} == {("/robot2/clock", "/clock")}
+    assert "/clock:=/robot2" not in it.hint and "MG503 comes of it" in it.hint
+
+
+def test_one_manager_of_nodes_that_are_gone_is_one_line() -> None:
+    gone = [f"server{it}" for it in range(9)]
+    (it,) = found(
+        "/robot1/lifecycle_manager publishes /robot1/bond bond/msg/Status",
+        *(f"/robot1/lifecycle_manager calls /robot1/{it}/change_state {STATE}" for it in gone),
+    )
+    assert it.code == "MG304" and "/robot1/server0" in it.message and "the same for" in it.message
+    assert len(it.names) == 9
+
+
+def test_no_clock_explains_what_waits_for_time() -> None:
+    lines = [f"/robot1/{it} subscribes /clock {CLOCK}" for it in ("amcl", "pilot")]
+    lines += ["/robot1/amcl has use_sim_time true", "/robot1/slam has use_sim_time false"]
+    (it,) = found(*lines)
+    assert it.code == "MG501" and "MG514 comes of it" in it.hint
+
+
+def test_two_parents_of_a_circle_are_the_circle() -> None:
+    told = found(
+        "transform base_footprint -> base_link on /robot1/tf by /robot1/rsp",
+        "transform base_link -> laser on /robot1/tf by /robot1/rsp",
+        "transform laser -> base_link on /robot1/tf by /robot1/other",
+    )
+    assert codes(told) == ["MG403"]
+
+
+def test_data_of_two_robots_on_one_topic_explains_who_misses_it() -> None:
+    told = found(
+        *(f"/robot{it}/base publishes /odom {ODOM}" for it in "12"),
+        *(f"/fleet subscribes /robot{it}/odom {ODOM}" for it in "12"),
+    )
+    assert codes(told) == ["MG320"]
+
+
+def test_a_relay_to_another_robot_is_why_it_has_two_senders() -> None:
+    told = found(
+        *(f"/robot{it}/base subscribes /robot{it}/cmd_vel {TWIST}" for it in "12"),
+        *(f"/robot{it}/pilot publishes /robot{it}/cmd_vel {TWIST}" for it in "12"),
+        f"/relay subscribes /robot1/cmd_vel {TWIST}",
+        f"/relay publishes /robot2/cmd_vel {TWIST}",
+    )
+    assert codes(told) == ["MG314"]
+
+
+def test_another_robots_description_explains_its_frames() -> None:
+    rsp = [f"/robot{it}/rsp publishes /tf_static {TF}" for it in "12"]
+    both = "by /robot1/rsp, /robot2/rsp twice"
+    told = found(
+        *rsp,
+        *(
+            f"/robot{it}/rsp publishes /robot{it}/robot_description std_msgs/msg/String"
+            for it in "12"
+        ),
+        f"transform robot1/base -> robot1/arm on /tf_static {both}",
+        *(
+            f"description on /robot{it}/robot_description: links robot1/base, robot1/arm"
+            for it in "12"
+        ),
+    )
+    assert codes(told) == ["MG420"] and told[0].node == "/robot2/rsp"
+
+
+def test_a_node_that_is_not_planned_is_said_with_what_it_does() -> None:
+    lines = [f"as before: /robot1/map_server publishes /robot1/map {MAP}"]
+    lines += ["as before: /robot1/planner", "as before: /robot2/planner"]
+    new = "running: /robot1/slam publishes /robot1/"
+    before, after = read_looks("\n".join([*lines, f"{new}map {MAP}"]))
+    (it,) = check(seen_plan(diagnose(before)), after)
+    assert it.code == "MG323" and it.hint.endswith("/robot1/slam is not in the plan")
+    _, alone = read_looks("\n".join([*lines, f"{new}x std_msgs/msg/Bool"]))
+    assert codes(check(seen_plan(diagnose(before)), alone)) == ["MG108"]
+
+
+def test_a_missing_node_explains_the_tree_that_it_joins() -> None:
+    plan, graph = read_example(
+        "planned: frames of robot1 on /robot1/tf: base_link, laser\n"
+        f"planned: /robot1/rsp publishes /robot1/tf_static {TF}\n"
+        f"as planned: /robot1/amcl publishes /robot1/tf {TF}\n"
+        "running: transform map -> odom on /robot1/tf by /robot1/amcl\n"
+        "running: transform wheel -> base_link on /robot1/tf by /robot1/amcl"
+    )
+    assert codes(check(plan, graph))[0] == "MG101"
+
+
+def test_all_tf_rules_forgotten_is_not_more_with_a_plan() -> None:
+    healthy = nav2_with_tools()
+
+    def shared(name: str) -> str:
+        return (
+            f"/{name.rpartition('/')[2]}" if name in ("/robot1/tf", "/robot1/tf_static") else name
+        )
+
+    broken = healthy._replace(
+        ends=tuple(it._replace(name=shared(it.name)) for it in healthy.ends),
+        edges=tuple(it._replace(topic=shared(it.topic)) for it in healthy.edges),
+    )
+    without = diagnose(broken).findings
+    held = check(seen_plan(diagnose(healthy)), broken)
+    assert len(held) <= max(len(without), 2), [str(it) for it in held]
+    assert {it.code for it in without} <= {it.code for it in held}
+
+
+def test_the_order_is_by_cause_and_then_by_level() -> None:
+    rows = [
+        ("MG328", WARNING), ("MG402", WARNING), ("MG306", ERROR), ("MG303", NOTE), ("MG101", ERROR),
+        ("MG303", WARNING), ("MG401", ERROR), ("MG501", ERROR), ("MG109", INCONCLUSIVE),
+        ("MG303", ERROR),
+    ]  # fmt: skip
+    given = [Finding(code, level, "x") for code, level in rows]
+    told = [(it.code, it.level) for it in in_order(read_system("running: /robot1/a"), given)]
+    assert told == [
+        ("MG501", ERROR), ("MG101", ERROR), ("MG109", INCONCLUSIVE), ("MG303", ERROR),
+        ("MG303", WARNING), ("MG306", ERROR), ("MG401", ERROR), ("MG402", WARNING),
+        ("MG328", WARNING), ("MG303", NOTE),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("robots", "lines"), [(2, 4), (100, 3)])
+def test_the_header_has_few_lines_for_many_robots(robots: int, lines: int) -> None:
+    text = "\n".join(
+        f"running: /robot{it}/{node} publishes /robot{it}/{name} {TF}"
+        for it in range(1, robots + 1)
+        for node, name in (("rsp", "tf"), ("amcl", "tf"), ("rsp", "tf_static"))
+    )
+    told = [*survey(diagnose(read_system(text).system))]
+    assert len(told) == lines
+    if robots == 100:
+        assert told[-1].startswith("tf on /robot1/tf, ") and "97 more" in told[-1]
+
+
+def test_it_says_nothing_new_of_a_healthy_system() -> None:
+    graph: System = nav2_with_tools()
+    assert any((it.kind, it.role) == (TOPIC, PUBLISHES) for it in graph.ends)
+    assert diagnose(graph).findings == ()

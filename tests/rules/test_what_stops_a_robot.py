@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What stops or endangers a robot is an error; silence of drivers, services and states is told."""
+
+from __future__ import annotations
+
+import pytest
+from graph_examples import read_system
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.rules.check import judge
+
+TWIST, SCAN, ODOM = (
+    "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry",
+)  # fmt: skip
+JOY, CLEAR = "sensor_msgs/msg/Joy", "nav2_msgs/srv/ClearEntireCostmap"
+FOLLOW = "control_msgs/action/FollowJointTrajectory"
+
+
+def found(*lines: str) -> list[Finding]:
+    return judge(read_system("\n".join(f"running: {it}" for it in lines)))
+
+
+def codes(*lines: str) -> list[tuple[str, str, str]]:
+    return [(it.code, it.level, it.node) for it in found(*lines)]
+
+
+DRIVER = [
+    f"/robot2/base subscribes /robot2/cmd_vel {TWIST}",
+    f"/robot2/base publishes /robot2/odom {ODOM}",
+    "/robot2/base publishes /robot2/imu sensor_msgs/msg/Imu",
+]
+USERS = [
+    f"/robot{it}/{node} {does} /robot{it}/{name} {type_}"
+    for it in (1, 2)
+    for node, does, name, type_ in (
+        ("pilot", "publishes", "cmd_vel", TWIST),
+        ("pilot", "subscribes", "odom", ODOM),
+        ("filter", "subscribes", "imu", "sensor_msgs/msg/Imu"),
+    )
+]
+
+
+def test_all_that_one_driver_does_is_one_finding() -> None:
+    (it,) = found(*DRIVER, *USERS)
+    assert (it.code, it.level, it.robot) == ("MG322", "error", "robot1")
+    assert {*it.names} == {"/robot1/cmd_vel", "/robot1/odom", "/robot1/imu"}
+    assert "robot1 has no base, as robot2 has (/robot2/base)" in it.message
+
+
+def test_a_driver_that_nobody_waits_for_may_be_left_out() -> None:
+    assert codes(*DRIVER, *(it for it in USERS if it.startswith("/robot2"))) == []
+
+
+def test_a_driver_under_another_name_is_why_it_is_missed() -> None:
+    moved = [it.replace("/robot2/", "/").replace("/base ", "/robot1/base ") for it in DRIVER[1:2]]
+    told = codes(*DRIVER, *USERS, *moved)
+    assert ("MG303", "error", "/robot1/pilot") in told
+    assert "MG322" not in {code for code, *_ in told}
+
+
+@pytest.mark.parametrize("frame", ["/laser", "/robot1/laser"])
+def test_tf2_refuses_to_look_up_a_frame_with_a_slash_in_front(frame: str) -> None:
+    lines = [
+        f"/robot1/lidar publishes /robot1/scan {SCAN}",
+        f"transform base_link -> {frame[1:]} on /robot1/tf",
+        f"frame_id {frame} on /robot1/scan",
+    ]
+    (unread,) = found(*lines)
+    assert (unread.code, unread.level) == ("MG412", "warning") and "slash" in unread.message
+    (read,) = found(*lines, f"/robot1/amcl subscribes /robot1/scan {SCAN}")
+    assert (read.code, read.level) == ("MG412", "error")
+    assert codes(*(it.replace("frame_id /", "frame_id ") for it in lines)) == []
+
+
+def test_a_scan_in_a_frame_of_no_tf_stops_who_reads_it() -> None:
+    lines = [
+        f"/robot1/lidar publishes /robot1/scan {SCAN}",
+        "transform base_link -> camera on /robot1/tf",
+        "frame_id other on /robot1/scan",
+    ]
+    assert codes(*lines) == [("MG412", "warning", "/robot1/lidar")]
+    assert codes(*lines, f"/robot1/amcl subscribes /robot1/scan {SCAN}") == [
+        ("MG412", "error", "/robot1/lidar")
+    ]
+    # A battery has no place, and an image is of use without one.
+    image = [it.replace("scan", "image").replace(SCAN, "sensor_msgs/msg/Image") for it in lines]
+    assert codes(*image, "/robot1/view subscribes /robot1/image sensor_msgs/msg/Image") == [
+        ("MG412", "warning", "/robot1/lidar")
+    ]
+
+
+def test_a_node_that_is_active_at_another_robot() -> None:
+    lines = ["/robot1/slam is active", "/robot2/slam is unconfigured"]
+    assert codes(*lines) == [("MG511", "error", "/robot2/slam")]
+    assert codes("/robot1/slam is inactive", "/robot2/slam is inactive") == [
+        ("MG511", "warning", "/robot1/slam"),
+        ("MG511", "warning", "/robot2/slam"),
+    ]
+
+
+def test_one_joystick_for_two_robots() -> None:
+    lines = [
+        f"/robot1/joy_node publishes /robot1/joy {JOY}",
+        *(f"/robot{it}/teleop_twist_joy_node subscribes /robot1/joy {JOY}" for it in "12"),
+    ]
+    (it,) = found(*lines)
+    assert (it.code, it.level, it.names) == ("MG310", "error", ("/robot1/joy",))
+    assert codes(*lines[:2]) == []
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ([f"/robot1/app calls /robot1/clear {CLEAR}"], ["MG304"]),
+        # Another robot's, and what all robots call in vain by their make.
+        ([f"/robot1/app calls /robot2/clear {CLEAR}"], []),
+        ([f"/robot{it}/app calls /robot{it}/clear {CLEAR}" for it in "12"], []),
+    ],
+)
+def test_a_service_that_nobody_serves(lines: list[str], told: list[str]) -> None:
+    others = [f"/robot{it}/base publishes /robot{it}/odom {ODOM}" for it in "12"]
+    assert [(it.code, it.level) for it in found(*others, *lines)] == [
+        (it, "warning") for it in told
+    ]
+
+
+def test_goals_for_the_one_controller_under_another_name() -> None:
+    lines = [
+        f"/robot1/moveit calls /robot1/arm_controller/follow {FOLLOW}",
+        f"/robot1/controller serves /robot1/controller/follow {FOLLOW}",
+    ]
+    assert codes(*lines) == [("MG304", "error", "/robot1/moveit")]
+
+
+@pytest.mark.parametrize(
+    ("guard", "hint"),
+    [
+        ("twist_mux", "send it to a topic that /robot1/twist_mux reads"),
+        ("collision_monitor", "put twist_mux before /robot1/collision_monitor"),
+    ],
+)
+@pytest.mark.parametrize("sender", ["/robot1/teleop_node", "/foxglove_bridge", "/_ros2cli_1"])
+def test_a_sender_past_what_chooses_or_limits(guard: str, hint: str, sender: str) -> None:
+    lines = [
+        f"/robot1/base subscribes /robot1/cmd_vel {TWIST}",
+        f"/robot1/{guard} publishes /robot1/cmd_vel {TWIST}",
+        f"{sender} publishes /robot1/cmd_vel {TWIST}",
+        f"/foxglove_bridge subscribes /robot1/cmd_vel {TWIST}",
+    ]
+    (it,) = found(*lines)
+    assert (it.code, it.level, it.node) == ("MG312", "error", sender)
+    assert it.hint.startswith(hint)
+    assert codes(*lines[:2], lines[3]) == []
