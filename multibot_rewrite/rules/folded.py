@@ -77,6 +77,7 @@ _EXPLAINS: Sequence[tuple[str, tuple[str, ...], _Explains]] = (
     ("MG301", ("MG304",), _served),
     ("MG301", ("MG402", "MG408", "MG401", "MG405", "MG325"), _two_robots),
     ("MG314", ("MG312", "MG329"), _names),
+    ("MG310", ("MG320",), _names),
     ("MG320", ("MG303",), _names),
     ("MG420", ("MG208", "MG408", "MG402", "MG413"), _described),
     ("MG403", ("MG401",), _names),
@@ -130,7 +131,11 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
     codes = unique(one.code for one in explained)
     told = f"{shorten(codes)} {'comes' if len(codes) == 1 else 'come'} of it"
     level = min((it.level, *(one.level for one in explained)), key=_BAD.index)
-    return it._replace(hint=f"{it.hint}; {told}" if it.hint else told, level=level)
+    # Of one name each has the rules for a part of its nodes.
+    same = (one for one in explained if one.names == it.names)
+    remaps = (*it.remaps, *(rule for one in same for rule in one.remaps)) if it.remaps else ()
+    hint = f"{it.hint}; {told}" if it.hint else told
+    return it._replace(hint=hint, level=level, remaps=tuple(dict.fromkeys(remaps)))
 
 
 def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
