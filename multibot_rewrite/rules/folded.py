@@ -85,9 +85,9 @@ _EXPLAINS: Sequence[tuple[str, tuple[str, ...], _Explains]] = (
     ("MG402", ("MG406",), _robot),
     ("MG405", ("MG406",), _robot),
 )
-# What several nodes have with one name is one of the first, what one node has often of the second.
+# What several nodes have with one name is one of the first, what one node has so often of the second.
 _OF_NAMES = frozenset(("MG303", "MG306", "MG307"))
-_OF_NODES, _MANY = frozenset(("MG102", "MG304")), 3
+_OF_NODES = {"MG102": 2, "MG304": 3}
 _UNPLANNED = "MG108"
 # From bad to good.
 _BAD = (ERROR, INCONCLUSIVE, WARNING, NOTE)
@@ -128,8 +128,9 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
     """A cause is as bad as what comes of it."""
     if not explained:
         return it
-    codes = unique(one.code for one in explained)
-    told = f"{shorten(codes)} {'comes' if len(codes) == 1 else 'come'} of it"
+    first, *others = explained
+    more = f", and {shorten(unique(one.code for one in others))}" if others else ""
+    told = f"so {first.node or first.robot or 'tf'}: {first.message} ({first.code}{more})"
     level = min((it.level, *(one.level for one in explained)), key=_BAD.index)
     # Of one name each has the rules for a part of its nodes.
     same = (one for one in explained if one.names == it.names)
@@ -149,7 +150,7 @@ def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
             key = it.code, it.node
         groups.setdefault(key, []).append(it)
     for (code, *_), own in groups.items():
-        if len(own) == 1 or (code in _OF_NODES and len(own) < _MANY):
+        if len(own) == 1 or len(own) < _OF_NODES.get(str(code), 0):
             yield from own
         else:
             yield _one_of(own, str(code))

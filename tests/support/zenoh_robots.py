@@ -13,7 +13,6 @@ import json
 import struct
 import sys
 import threading
-import time
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from typing import Any, NamedTuple
@@ -165,7 +164,7 @@ def tf_message(
     """A TFMessage in CDR, little endian or big; all its transforms have these numbers."""
     data = struct.pack(f"{mark}I", len(edges))
     for edge in edges:
-        data += b"\0" * (-len(data) % 4) + struct.pack(f"{mark}iI", int(time.time()), 8)
+        data += b"\0" * (-len(data) % 4) + struct.pack(f"{mark}iI", 0, 0)
         for name in edge:
             text = name.encode() + b"\0"
             data += b"\0" * (-len(data) % 4) + struct.pack(f"{mark}I", len(text)) + text
