@@ -8,7 +8,7 @@ import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
@@ -60,7 +60,10 @@ def run(options: argparse.Namespace) -> int:
         if it._replace(level=ERROR) not in back and (it.code, it.names) not in again
     )
     held = coverage(made.planned)
-    if _reported(options, plan, (*told, *plan.with_names(back)), held):
+    both = dict.fromkeys((*told, *plan.with_names((*back, *plan.fleet.table.problems))))
+    ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
+    about = About([options.fleet], plan.words, plan.file.distro, held)
+    if report_beside(options, chosen(options, ordered), about):
         say("nothing was written", PROGRAM)
         return STOPPED
     read = _read(plan, made.files)
@@ -76,16 +79,6 @@ def run(options: argparse.Namespace) -> int:
         end = f"; not proved: {', '.join(why)}" if why else ""
         end = f"{end}{facts_of_release(plan.file.distro, plan.file.why)}"
         return _written(options, files, found, held, end)
-
-
-def _reported(
-    options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding], held: Coverage
-) -> bool:
-    """Report what is wrong with the files and the remap table; does it stop the build?"""
-    both = dict.fromkeys((*found, *plan.with_names(plan.fleet.table.problems)))
-    ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
-    about = About([options.fleet], plan.words, plan.file.distro, held)
-    return report_beside(options, chosen(options, ordered), about)
 
 
 def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:

@@ -93,8 +93,10 @@ def _is_open(it: Finding) -> bool:
 def _argument(orders: Sequence[LaunchOrder], read: _Read) -> str:
     """Return the argument of a launch file with which no manager is missing; empty for none."""
     for name, value in islice(_choices(orders), MOST):
+        given = ((it, [one for one in it.arguments if one[0] != name]) for it in orders)
+        changed = [it._replace(arguments=(*others, (name, value))) for it, others in given]
         with suppress(MultibotError):
-            other = read([_with(it, name, value) for it in orders])
+            other = read(changed)
             if other.models.found and not any(map(_is_missing, judge_launch(other))):
                 return f"add {name}:={value}, with which a manager is started"
     return ""
@@ -108,8 +110,3 @@ def _choices(orders: Sequence[LaunchOrder]) -> Iterator[tuple[str, str]]:
     given = {it for order in orders for it in order.arguments}
     for name in filter(is_called_as_switch, declared):
         yield from ((name, it) for it in ("true", "false") if (name, it) not in given)
-
-
-def _with(it: LaunchOrder, name: str, value: str) -> LaunchOrder:
-    others = (one for one in it.arguments if one[0] != name)
-    return it._replace(arguments=(*others, (name, value)))

@@ -66,7 +66,12 @@ def _commit(staged: dict[str, str]) -> None:
     try:
         for target, temporary in list(staged.items()):
             with explained(target):
-                _take_place(target, temporary, done)
+                backup = f"{temporary}.old" if os.path.lexists(target) else ""
+                # Noted before it is done: an interrupt in between leaves nothing.
+                done.append((target, backup))
+                if backup:
+                    os.link(target, backup)
+                os.replace(temporary, target)
             del staged[target]
     except BaseException:
         for target, backup in reversed(done):
@@ -78,15 +83,6 @@ def _commit(staged: dict[str, str]) -> None:
         for backup in [it for _, it in done if it]:
             with suppress(OSError):
                 os.unlink(backup)
-
-
-def _take_place(target: str, temporary: str, done: list[tuple[str, str]]) -> None:
-    backup = f"{temporary}.old" if os.path.lexists(target) else ""
-    # Noted before it is done: an interrupt in between leaves nothing.
-    done.append((target, backup))
-    if backup:
-        os.link(target, backup)
-    os.replace(temporary, target)
 
 
 def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
@@ -152,13 +148,12 @@ def explained(path: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        above = existing_folder(path)
-        reason = f"{error.strerror or error}, choose another output"
+        above, why = existing_folder(path), f"{error.strerror or error}, choose another output"
         if not os.path.isdir(above):
-            reason = f"{above} is a file, not a folder; choose another output"
+            why = f"{above} is a file, not a folder; choose another output"
         elif os.path.isdir(path):
-            reason = "it is a folder, name a file in it"
-        raise UsageError(f"{path}: cannot be written: {reason}") from None
+            why = "it is a folder, name a file in it"
+        raise UsageError(f"{path}: cannot be written: {why}") from None
 
 
 def existing_folder(path: str) -> str:

@@ -36,7 +36,6 @@ def locked(folder: str) -> Iterator[None]:
     """Alone with a folder: another build into it, or beside it, waits until this one is done."""
     import fcntl
 
-    # The nearest folder above that is there.
     above = os.path.dirname(os.path.realpath(folder))
     while not os.path.isdir(above):
         above = os.path.dirname(above)
@@ -55,17 +54,13 @@ def locked(folder: str) -> Iterator[None]:
 
 def check_inside(folder: str, paths: Iterable[str]) -> None:
     """Raise UsageError where a link or a file in a folder's place leads a path out of ``folder``."""
-    for part in sorted({part for path in paths for part in _parts(path)}):
+    every = (path.split("/") for path in paths)
+    for part in sorted({"/".join(it[:end]) for it in every for end in range(1, len(it) + 1)}):
         full = os.path.join(folder, part)
         if os.path.islink(full):
             raise UsageError(
                 f"{full}: it is a link, and a build writes nothing elsewhere; remove it"
             )
-
-
-def _parts(path: str) -> Iterator[str]:
-    words = path.split("/")
-    yield from ("/".join(words[:end]) for end in range(1, len(words) + 1))
 
 
 def change_folder(

@@ -20,8 +20,10 @@ def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: boo
     An option that begins with it comes first. Then its meaning counts: what is known for this command,
     a key of the fleet file, a word of other tools, an option of another command. Its letters come last.
     """
-    if begun := _begun(wrong.lstrip("-"), known):
-        return f"; did you mean '{begun}'?"
+    bare = wrong.lstrip("-")
+    begun = (it for it in known if len(bare) > _BEGUN and it.startswith(f"--{bare}"))
+    if first := next(begun, ""):
+        return f"; did you mean '{first}'?"
     word = f"-{wrong.removeprefix('-').replace('_', '-')}"
     if own := other_words("options").get(f"{command} {word}"):
         return f"; use {own}"
@@ -65,16 +67,10 @@ def _nearest(word: str, known: Iterable[str]) -> str:
     return full.get(next(parts, "") or nearest(word, alike, CHOICE), "")
 
 
-def _begun(word: str, known: Iterable[str]) -> str:
-    """Return the first known option that begins with a word of three letters or more; "" for none."""
-    return next((it for it in known if len(word) > _BEGUN and it.startswith(f"--{word}")), "")
-
-
 def _takers(option: str) -> str:
     """Return the commands that have an option, with a verb: ``multibot init takes``; "" if none has."""
     every = {**PROGRAMS, **{f"multibot {name}": it for name, it in COMMANDS.items()}}
-    groups = ((name, group) for name, it in every.items() for group in it.groups)
-    has = (name for name, group in groups if any(option in it.names for it in group.options))
-    names = [*dict.fromkeys(has)]
+    options = {name: [one for of in it.groups for one in of.options] for name, it in every.items()}
+    names = [name for name, own in options.items() if any(option in it.names for it in own)]
     verb = "takes" if len(names) == 1 else "take"
     return f"{shorten(names)} {verb}" if names else ""

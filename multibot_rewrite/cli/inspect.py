@@ -30,7 +30,6 @@ from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.reports.suggest import suggest, vocabulary_text
 from multibot_rewrite.description.reports.xacro_arguments import (
-    Argument,
     XacroArguments,
     as_json as arguments_json,
     find_arguments,
@@ -89,7 +88,6 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     # Without a release the rows of all are shown, each with its own.
     vocabulary = load_vocabulary(files, options.distro or "")
     if name is None:
-        # Everything that is known: what a description may have, and what may be found in it.
         sections = vocabulary.sections(*TYPES)
         if options.form == JSON:
             known = [as_json(it) for it in sections]
@@ -122,11 +120,12 @@ def _unknown(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> UsageEr
 
 def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     """One line a section."""
+    columns = ("type", "name", "ROS", "also called", "rows", "source")
     rows = [
         (it.type, it.names[0], it.ros, shorten(it.names[1:], 1), str(len(it.sites)), it.source)
         for it in sections
     ]
-    yield Grid(("type", "name", "ROS", "also called", "rows", "source"), rows)
+    yield Grid(columns, rows)
 
 
 def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
@@ -135,7 +134,8 @@ def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
         yield from [""] * (number > 0)
         yield f"{section.name}  {section.file}:{section.line}"
         yield from (f"  {what}: {text}" for what, text in facts(section).items())
-        if rows := [_row(site, section) for site in section.sites]:
+        rows = [_row(site, section) for site in section.sites]
+        if rows:
             yield Grid(("path", "role", "kinds", "form", "default", "note", "from"), rows)
 
 
@@ -233,7 +233,12 @@ def is_name(word: str) -> bool:
 def explain(options: argparse.Namespace, words: Sequence[str]) -> int:
     """Explain rules by their codes, how codes begin, or names; more than a few are listed. Returns the
     exit code."""
-    found = {it.code: it for word in _split(words) for it in _asked(word)}
+    known, found = rules(), dict[str, Rule]()
+    for word in _split(words):
+        asked = find_rules(word, known) if word else []
+        if not asked:
+            raise UsageError(no_rule(word, known))
+        found |= {it.code: it for it in asked}
     if options.form == JSON:
         deliver(options, json_bytes({"rules": rules_json(found.values())}))
     elif len(found) > MOST_EXPLAINED:
@@ -261,14 +266,6 @@ def rules_json(found: Iterable[Rule] | None = None) -> list[dict[str, object]]:
 
 def _split(words: Iterable[str]) -> list[str]:
     return [code for word in words for code in word.split(",")]
-
-
-def _asked(word: str) -> list[Rule]:
-    known = rules()
-    found = find_rules(word, known) if word else []
-    if not found:
-        raise UsageError(no_rule(word, known))
-    return found
 
 
 ARGUMENT_COLUMNS = ("argument", "default", "goes into", "as", "count", "example")
@@ -312,29 +309,28 @@ def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
 
 def arguments_report(found: XacroArguments) -> Iterator[str | Grid]:
     """What is printed of a xacro's arguments."""
-    if rows := [row for it in found.arguments for row in _argument_rows(it)]:
+    rows: list[tuple[str, ...]] = []
+    for it in found.arguments:
+        first = it.name, clip(it.default)
+        for use in it.uses:
+            how = f"{use.how} {use.separator}".rstrip()
+            many = f"{use.names} of {use.total}"
+            rows.append((*first, use.kind, how, many, use.example))
+            first = "", ""
+    if rows:
         yield Grid(ARGUMENT_COLUMNS, rows)
         yield ""
     without = [it.name for it in found.arguments if not it.uses and not it.fault]
     if without:
         yield f"go into no names: {', '.join(without)}"
-    if refused := [it.name for it in found.arguments if it.fault]:
+    refused = [it.name for it in found.arguments if it.fault]
+    if refused:
         yield f"take no name of a robot: {', '.join(refused)}"
     if found.untried:
         yield f"too many to try: {', '.join(found.untried)}"
-    # The command that uses the arguments for robots.
     command = ["urdf-postfix", found.file, "robot1", "robot2", "-o", "out/{robot}.urdf"]
-    line = shlex.join([*command, *found.words])
     if found.words:
         yield "each robot by its own argument, and everything else rewritten as usual:"
     else:
         yield "no argument gives each robot its own names; the rewrite does it:"
-    yield f"  {line}"
-
-
-def _argument_rows(it: Argument) -> Iterator[tuple[str, ...]]:
-    first = it.name, clip(it.default)
-    for use in it.uses:
-        how = f"{use.how} {use.separator}".rstrip()
-        yield *first, use.kind, how, f"{use.names} of {use.total}", use.example
-        first = "", ""
+    yield f"  {shlex.join([*command, *found.words])}"

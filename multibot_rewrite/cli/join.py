@@ -29,7 +29,14 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _join(options: argparse.Namespace) -> int:
-    parts, samples = _listed(options) if options.words[0].endswith(JOIN) else (_parts(options), 0)
+    first, *others = options.words
+    if first.endswith(JOIN):
+        more = [*others, *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
+        if more:
+            raise UsageError(f"{more[0]} cannot go with {first}: write it into the file")
+        parts, samples = listed_in(first)
+    else:
+        parts, samples = tuple(_parts(options)), 0
     made = join(
         parts,
         vocabulary=options.vocabulary,
@@ -106,14 +113,6 @@ def _parts(options: argparse.Namespace) -> list[Part]:
         Part(file, at, _numbers(pose), prefix, "", given)
         for (file, given), at, pose, prefix in every
     ]
-
-
-def _listed(options: argparse.Namespace) -> tuple[Sequence[Part], int]:
-    """The parts that a file lists, which says everything of them, and the poses that are tried."""
-    more = [*options.words[1:], *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
-    if more:
-        raise UsageError(f"{more[0]} cannot go with {options.words[0]}: write it into the file")
-    return listed_in(options.words[0])
 
 
 def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:

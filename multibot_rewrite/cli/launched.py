@@ -17,7 +17,6 @@ from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.proposal.launches import said_of
 from multibot_rewrite.producers.launch.programs import once_for_all
-from multibot_rewrite.producers.launch.records import LaunchedNode
 
 _EACH = "each robot"
 
@@ -55,16 +54,11 @@ def run(options: argparse.Namespace, path: str) -> int:
 def _of_robot(robot: RobotSpec, whose: str, file: FleetFile, trust: bool) -> Iterator[_Row]:
     orders = [it._replace(trusted=trust) for it in robot.launch]
     for it in launch_of(orders, robot.name).nodes:
-        why = _why_once(it, file)
+        names = {it.name or it.executable, os.path.basename(it.executable)}
+        shared = not names.isdisjoint(file.shared_nodes)
+        why = "shared_nodes names it" if shared else once_for_all(it)
+        why = why if names.isdisjoint(file.own_nodes) else ""
         files = (os.path.relpath(one.source) for one in it.parameters if one.source)
         place = f"{os.path.relpath(it.place.file)}:{it.place.line}"
         reason = why or it.later
         yield _Row("all robots" if why else whose, said_of(it), place, (*files,), reason)
-
-
-def _why_once(it: LaunchedNode, file: FleetFile) -> str:
-    """Why a process runs once, by the fleet file and by what it is."""
-    names = {it.name or it.executable, os.path.basename(it.executable)}
-    if not names.isdisjoint(file.own_nodes):
-        return ""
-    return "shared_nodes names it" if not names.isdisjoint(file.shared_nodes) else once_for_all(it)

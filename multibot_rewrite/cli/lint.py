@@ -76,7 +76,12 @@ def run(options: argparse.Namespace) -> int:
     if options.shared and paths != [STDIN] and not options.fix:
         _check_shared(options, alone, config.settings, paths, findings[len(unreadable) :])
     if options.write_baseline:
-        return _write_baseline(options, findings)
+        from multibot_rewrite.lint.config.baseline import baseline_text
+
+        text = baseline_text(findings, options.write_baseline)
+        write_files(options, [(options.write_baseline, text)])
+        note(options, f"{options.write_baseline}: {_count(findings)} are known from now on")
+        return DONE
     return _conclude(options, config, paths, findings, said.why or why_here(asked))
 
 
@@ -171,15 +176,6 @@ def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Findi
     return files
 
 
-def _write_baseline(options: argparse.Namespace, findings: Sequence[Finding]) -> int:
-    from multibot_rewrite.lint.config.baseline import baseline_text
-
-    text = baseline_text(findings, options.write_baseline)
-    write_files(options, [(options.write_baseline, text)])
-    note(options, f"{options.write_baseline}: {_count(findings)} are known from now on")
-    return DONE
-
-
 def _conclude(
     options: argparse.Namespace,
     config: Configured,
@@ -197,24 +193,17 @@ def _conclude(
     about = About(paths, by_themselves(config.settings.robots), config.settings.distro)
     if options.fix and options.diff:
         failed = fails(findings, config.fail_on)
+    elif options.format == TEXT:
+        failed = report_first(options, findings, about, NO_RULES)
     else:
-        failed = _report(options, findings, about)
+        from multibot_rewrite.lint.registry import RULES  # where all is known from before
+
+        failed = report_first(options, findings, about, RULES)
     end = facts_of_release(config.settings.distro, why)
     note(options, f"{_summary(options, paths, findings, stale)}{end}")
     if any(it.code == CRASHED for it in findings):
         return UNUSABLE
     return STOPPED if failed else DONE
-
-
-def _report(options: argparse.Namespace, findings: Sequence[Finding], about: About) -> bool:
-    """Write what was found; are there findings at the level of ``--fail-on``?"""
-    if options.format == TEXT:
-        return report_first(options, findings, about, NO_RULES)
-    from multibot_rewrite.lint.registry import (
-        RULES,  # where all is known from before, text needs none
-    )
-
-    return report_first(options, findings, about, RULES)
 
 
 def _summary(

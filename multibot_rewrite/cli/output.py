@@ -186,9 +186,9 @@ def print_bytes(data: bytes) -> None:
         raise UsageError("standard output is closed; name a file with -o")
     try:
         # A program gets the bytes; a terminal would obey some of them.
-        text = data.decode("utf-8", "surrogateescape")
-        shown = for_terminal(text).encode() if sys.stdout.isatty() else data
-        sys.stdout.buffer.write(shown)
+        if sys.stdout.isatty():
+            data = for_terminal(data.decode("utf-8", "surrogateescape")).encode()
+        sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
     except OSError as error:
         # Python would complain again when it closes standard output.

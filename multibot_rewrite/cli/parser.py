@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from functools import partial
 from itertools import pairwise, takewhile
 from typing import NoReturn
@@ -103,9 +103,11 @@ def make_parser(command: Command, prog: str = "") -> Parser:
 def declare(parser: Parser, command: Command) -> None:
     """Give a parser the options and the help text of a command."""
     parser.short = short_help(command, parser.prog)
-    parser.description = "\n\n".join(_head(command))
-    codes = "\n  ".join(command.exit_codes.split("; "))
-    parser.epilog = f"exit codes:\n  {codes}"
+    head = [command.about, "examples:\n" + "\n".join(map(_example, command.examples))]
+    more = command.more.split("\n\n") if command.more else ()
+    head += (it if it.startswith("  ") else wrapped(it) for it in more)
+    parser.description = "\n\n".join(head)
+    parser.epilog = "exit codes:\n  " + command.exit_codes.replace("; ", "\n  ")
     for group in command.groups:
         section = parser.add_argument_group(group.title)
         for option in group.options:
@@ -151,14 +153,6 @@ def _names(group: OptionGroup) -> list[str]:
     ]
     lines = wrapped(f"{title}: {' '.join(words)}", COLUMNS - 2).split("\n")
     return [lines[0], *(f"  {it}" for it in lines[1:])]
-
-
-def _head(command: Command) -> Iterable[str]:
-    yield command.about
-    yield "examples:\n" + "\n".join(_example(it) for it in command.examples)
-    if command.more:
-        parts = command.more.split("\n\n")
-        yield "\n\n".join(it if it.startswith("  ") else wrapped(it) for it in parts)
 
 
 def _example(example: Example) -> str:
@@ -231,12 +225,9 @@ def _first_unknown_option(words: Sequence[str], known: Collection[str]) -> str:
     """Return the first option that is not known, without its value; "" where all are known."""
     before_end = takewhile(lambda word: word != "--", words)
     names = (it.partition("=")[0] for it in before_end if _OPTION.fullmatch(it))
-    return next((it for it in names if it not in known and not _is_short(it, known)), "")
-
-
-def _is_short(name: str, known: Collection[str]) -> bool:
-    """Is it a known short option with others, or with its value, as ``-qv`` or ``-n3``?"""
-    return not name.startswith("--") and name[:2] in known
+    # A short option may have others behind it, or its value, as ``-qv`` or ``-n3``.
+    unknown = (it for it in names if it not in known)
+    return next((it for it in unknown if it.startswith("--") or it[:2] not in known), "")
 
 
 def _colour_asked(words: Sequence[str]) -> str:

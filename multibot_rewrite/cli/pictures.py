@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import MultibotError, UsageError
@@ -82,21 +83,12 @@ def snippets(places: Iterable[str]) -> dict[str, list[str]]:
     """
     found = {}
     for place in dict.fromkeys(places):
-        file, _, line = place.rpartition(":")
-        if file and line.isdecimal():
-            found[place] = _lines_around(file, int(line))
+        file, _, number = place.rpartition(":")
+        # A plan may be somebody else's: it does not say that any file is read.
+        if not number.isdecimal() or not file.endswith(_SOURCES) or not os.path.isfile(file):
+            continue
+        first, end = max(int(number) - 1 - _AROUND, 0), int(number) + _AROUND
+        with suppress(MultibotError, ValueError):
+            lines = enumerate(read_file(file).decode().splitlines()[first:end], first + 1)
+            found[place] = [f"{at:5d} {it.rstrip()[:_LONGEST]}" for at, it in lines]
     return {place: lines for place, lines in found.items() if lines}
-
-
-def _lines_around(file: str, line: int) -> list[str]:
-    first = max(line - 1 - _AROUND, 0)
-    # A plan may be somebody else's: it does not say that any file is read.
-    if not file.endswith(_SOURCES) or not os.path.isfile(file):
-        return []
-    try:
-        lines = read_file(file).decode().splitlines()[first : line + _AROUND]
-    except (MultibotError, ValueError):
-        return []
-    return [
-        f"{number:5d} {it.rstrip()[:_LONGEST]}" for number, it in enumerate(lines, start=first + 1)
-    ]

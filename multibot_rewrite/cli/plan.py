@@ -46,9 +46,10 @@ def run(options: argparse.Namespace) -> int:
     if any(map(_LAUNCH.fullmatch, [options.input, *options.words[:1]])):
         return _of_launch(options)
     fleet.check_use(options, printed=not goes_to_file(options))
-    # The plan of a robot that is called nothing: a layout, or rules, are for one with a name.
+    # A robot that is called nothing; a layout, or rules, are for one with a name.
     unnamed = not options.input.endswith(fleet.FLEET_FILES) and not robots(options)
-    alone = unnamed and options.form == PLAN and not given_options(options, {"layout": "--layout"})
+    named = given_options(options, {"layout": "--layout"}) or options.form != PLAN
+    alone = unnamed and not named
     if alone:
         options.words, options.layout = [ALONE], LAYOUT_ALONE
     made = fleet.build(options)
@@ -101,7 +102,8 @@ def _of_launch(options: argparse.Namespace) -> int:
 def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
     """Write the rules in the form that is asked for."""
     known = {node.robot for node in made.table.runs}
-    if nothing := [robot for robot in made.inventories if robot not in known]:
+    nothing = [robot for robot in made.inventories if robot not in known]
+    if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         note(options, f"no node of {', '.join(nothing)} is known, so no rule is for it; {hint}")
     if options.form == TABLE:

@@ -14,7 +14,7 @@ from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.output import note, shown, write_files
 from multibot_rewrite.cli.report import chosen
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.fleet.fleet import Fleet, expected
+from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.live.rehearsal import (
     Stub,
     bridge_stub,
@@ -26,7 +26,7 @@ from multibot_rewrite.live.rehearsal import (
     with_substitutes,
 )
 from multibot_rewrite.rules.check import check, check_domains
-from multibot_rewrite.spelling.transforms import Edges, with_odometry
+from multibot_rewrite.spelling.transforms import with_odometry
 from multibot_rewrite.spelling.ways import WAYS
 from multibot_rewrite.system.domains import by_domain, domain_of, side_by_side
 from multibot_rewrite.system.json import to_json
@@ -46,12 +46,17 @@ def run(options: argparse.Namespace) -> int:
     made = fleet.build(options)
     # Nodes that stand in for others have none of their parameters.
     plan, table = expected(made)._replace(parameters=()), chosen(options, made.table.problems)
-    edges, added = _edges(made)
-    nodes = [*stub_nodes(made.table, edges, _left_out(options))]
+    edges, added = made.edges, []
+    for robot in made.inventories:
+        # What no node of the stacks sends: the odometry of a driver.
+        edges, own = with_odometry(edges, robot, made.naming)
+        added += [f"{own} of {robot}"] if own else []
+    ways = WAYS if "all" in options.without_rules else list(options.without_rules)
+    nodes = [*stub_nodes(made.table, edges, ways)]
     seen, replaced = _played(options, plan, nodes)
     for it in added:
         note(options, f"note: {it} comes from a driver or simulator; the rehearsal sends it")
-    seen = {it: with_own_types(own, plan, replaced) for it, own in seen.items()}
+    seen = {it: with_own_types(graph, plan, replaced) for it, graph in seen.items()}
     plan = with_own_types(with_substitutes(plan, replaced), plan, replaced)
     if any(it.bridge for it in plan.topics):
         note(options, "note: no simulator runs: the rehearsal has what its bridge brings")
@@ -89,25 +94,10 @@ def _played(
     return {it: _without_places(seen) for it, (seen, _) in played.items()}, replaced
 
 
-def _left_out(options: argparse.Namespace) -> Sequence[str]:
-    """The ways of which no rules are given."""
-    return WAYS if "all" in options.without_rules else list(options.without_rules)
-
-
 def _without_places(graph: System) -> System:
     """Stubs send which frame hangs on which, not where, and all with one quality of service."""
     ends = tuple(it._replace(qos=None) for it in graph.ends)
     return graph._replace(ends=ends, edges=tuple(it._replace(transform=()) for it in graph.edges))
-
-
-def _edges(made: Fleet) -> tuple[Edges, list[str]]:
-    """What is sent, and which of it no node of the stacks sends: the odometry of a driver."""
-    edges, names = made.edges, []
-    for robot in made.inventories:
-        edges, added = with_odometry(edges, robot, made.naming)
-        if added:
-            names.append(f"{added} of {robot}")
-    return edges, names
 
 
 def _note_substitutes(options: argparse.Namespace, replaced: dict[str, str]) -> None:

@@ -135,11 +135,6 @@ def _kind_of(it: Finding) -> tuple[str, ...]:
     return () if alone else (it.level, it.code, it.file, it.hint)
 
 
-def _tells_notes(options: argparse.Namespace) -> bool:
-    """Are notes shown? Not to a reader who wants quiet, unless they are what the command fails on."""
-    return not options.quiet or options.format != TEXT or options.fail_on == NOTE
-
-
 def _text(
     options: argparse.Namespace,
     findings: Sequence[Finding],
@@ -148,7 +143,9 @@ def _text(
     *,
     colour: bool,
 ) -> str:
-    told = findings if _tells_notes(options) else [it for it in findings if it.level != NOTE]
+    # A reader who wants quiet gets no notes, unless they are what the command fails on.
+    notes = not options.quiet or options.format != TEXT or options.fail_on == NOTE
+    told = findings if notes else [it for it in findings if it.level != NOTE]
     shown = told if options.verbose else grouped(told, about.robots)
     if options.format != TEXT and not rules:
         from multibot_rewrite.lint.catalogue import rules as all_rules  # it imports every check

@@ -123,7 +123,8 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     results = ((it.robot, it.prepared.job.data, it.data) for it in chain([first], others, rewrites))
     deliver(options, results, len(names))
     why = first.prepared.job.why or why_here(options.distro)
-    tell(options, summary(first, names, _own_arguments(options, names), why))
+    arguments = (it for it in xacro_args(options).items() if name_robot(dict([it]), names[:1]))
+    tell(options, summary(first, names, ", ".join(name for name, _ in arguments), why))
     return DONE
 
 
@@ -165,12 +166,6 @@ def changes_json(rewrites: Sequence[Rewrite]) -> bytes:
         "robots": {r.robot: [change._asdict() for change in r.changes] for r in rewrites},
     }
     return json.dumps(table, indent=1, ensure_ascii=False).encode() + b"\n"
-
-
-def _own_arguments(options: argparse.Namespace, names: list[str]) -> str:
-    """The xacro arguments that hold a robot's name."""
-    given = xacro_args(options).items()
-    return ", ".join(it for it, text in given if name_robot({it: text}, names[:1]))
 
 
 def summary(

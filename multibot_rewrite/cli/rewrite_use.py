@@ -52,7 +52,7 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
     check_report(options, printed=not (options.output or options.in_place))
     is_one = options.form == CHANGES
     known = "" if is_one else PLACEHOLDER
-    unknown = [word for word in re.findall(r"\{[^{}]*\}", options.output or "") if word != known]
+    unknown = [it for it in re.findall(r"\{[^{}]*\}", options.output or "") if it != known]
     if unknown:
         hint = f"only {known} is filled in" if known else "one file serves all robots"
         raise UsageError(f"--output {options.output}: unknown placeholder {unknown[0]}, {hint}")

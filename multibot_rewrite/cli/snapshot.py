@@ -99,10 +99,14 @@ def report(snapshot: System) -> Iterator[str | Grid]:
     groups = sorted({node.process for node in snapshot.nodes} - {""})
     short = {"": "", **{group: str(number) for number, group in enumerate(groups, 1)}}
     counts = Counter((end.node, end.role, end.kind) for end in snapshot.ends)
-    rows = []
-    for node in snapshot.nodes:
-        ends = (str(counts[node.name, role, kind]) for _, kind, role in COLUMNS)
-        rows.append((node.name, short[node.process], *ends))
+    rows = [
+        (
+            it.name,
+            short[it.process],
+            *(str(counts[it.name, role, kind]) for _, kind, role in COLUMNS),
+        )
+        for it in snapshot.nodes
+    ]
     if rows:
         yield ""
         yield Grid(("node", "process", *(column for column, _, _ in COLUMNS)), rows)
@@ -114,7 +118,8 @@ def report(snapshot: System) -> Iterator[str | Grid]:
     if framed := [it[:2] for it in snapshot.heard if not (it.joints or it.topic == CLOCK)]:
         yield ""
         yield Grid(("message on", "frame_id"), framed)
-    if said := answering(snapshot):
+    said = answering(snapshot)
+    if said:
         yield ""
         answers = [*_state_rows(snapshot, said)]
         yield Grid(("node", "state", "use_sim_time", "controllers"), answers)
@@ -174,10 +179,8 @@ def write_nodes(options: argparse.Namespace, graph: System) -> int:
     stack = options.stack or "learned"
     if as_nodl:
         in_json = (options.output or "").endswith(".json")
-        remarks += _write_nodl(
-            options,
-            [to_nodl(it, graph, options.namespace or "/", library, in_json) for it in learned],
-        )
+        made = [to_nodl(it, graph, namespace, library, in_json) for it in learned]
+        remarks += _write_nodl(options, made)
     else:
         deliver(options, to_nodes_yaml(learned, stack, library).encode(), editors.NODES)
     for remark in remarks:
@@ -217,7 +220,8 @@ def _notes(
 ) -> Iterator[str]:
     for node in learned:
         yield from (f"{node.seen}: {remark}" for remark in node.remarks)
-    if lost := helpers_without_owner(graph, [node.seen for node in learned]):
+    lost = helpers_without_owner(graph, [node.seen for node in learned])
+    if lost:
         yield f"whose helpers these are is not seen, they are left out: {', '.join(lost)}"
     tools = left_out(graph, [node.seen for node in learned], namespace or "/")
     if tools and not named:

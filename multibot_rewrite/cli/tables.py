@@ -73,7 +73,7 @@ def _table(grid: Grid, width: int | None, colour: bool) -> Iterator[str]:
 
 def _fitted(grid: Grid, width: int | None) -> list[int] | None:
     """The width of each column; None where names would have to be cut."""
-    columns = [list(cells) for cells in zip(grid.columns, *grid.rows, strict=True)]
+    columns = [*zip(grid.columns, *grid.rows, strict=True)]
     natural = [max(map(len, cells)) for cells in columns]
     least = [max(len(it) for cell in cells for it in _pieces(cell)) for cells in columns]
     room = sum(natural) if width is None else width - len(GAP) * (len(columns) - 1)

@@ -39,21 +39,16 @@ def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
 
         recording = read_bag(options.bag)
         return report_on(options, diagnose(as_snapshot(recording), counted(recording)))
-    views = live.graphs(options, domains) if domains else _saved(options)
+    views: Mapping[int, System] = live.graphs(options, domains) if domains else {}
+    if not domains and len(options.snapshot) > 1:
+        from multibot_rewrite.producers.snapshot_file import read_by_domain
+
+        views = read_by_domain(options.snapshot)
     if len(views) > 1:
         return _report_on_domains(options, views)
     saved = next(iter(views.values()), None)
     seen = saved or live.graph(options, judge=lambda it: diagnose(it).findings)
     return report_on(options, diagnose(live.with_states(options, seen)))
-
-
-def _saved(options: argparse.Namespace) -> Mapping[int, System]:
-    """The snapshots of several files by domain; empty for the live graph or one file."""
-    if len(options.snapshot) < 2:
-        return {}
-    from multibot_rewrite.producers.snapshot_file import read_by_domain
-
-    return read_by_domain(options.snapshot)
 
 
 def _report_on_domains(options: argparse.Namespace, views: Mapping[int, System]) -> int:

@@ -109,7 +109,10 @@ def word(text: str) -> str:
 
 def seconds(text: str) -> float:
     """A time."""
-    value = _number(text)
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
     if not 0 < value <= MAX_SECONDS:
         raise argparse.ArgumentTypeError(
             f"{text!r} is not a time, give seconds up to {MAX_SECONDS}"
@@ -134,10 +137,3 @@ def count(text: str) -> int:
     if not text.isdecimal():
         raise argparse.ArgumentTypeError(f"{text!r} is not a number, give 0 or more")
     return int(text)
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan

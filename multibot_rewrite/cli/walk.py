@@ -104,8 +104,8 @@ def _below(
             left_out += (os.path.join(folder, it) for it in shown if it not in folders)
         else:
             folders[:] = shown
-        named = sorted(name for name in files if name.lower().endswith(suffixes))
-        paths = [os.path.join(folder, name) for name in named]
+        found = [name for name in sorted(files) if name.lower().endswith(suffixes)]
+        paths = [os.path.join(folder, name) for name in found]
         # A dead link is reported when it is read; a pipe would never end.
         yield from (path for path in paths if os.path.isfile(path) or not os.path.exists(path))
 

@@ -36,11 +36,7 @@ from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.rewriters.vocabulary.grammar import (
-    split_opens,
-    split_path,
-    split_step,
-)
+from multibot_rewrite.description.rewriters.vocabulary import grammar
 from multibot_rewrite.description.steps.apply import Template, cut
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import (
@@ -128,9 +124,9 @@ def ports_of(inventory: Inventory) -> Iterator[Port]:
     starts = dict(zip(document.elements, document.starts, strict=True))
     for host, section in inventory.served:
         for word in section.opens:
-            _, step, when, path, usual = split_opens(word)
+            _, step, when, path, usual = grammar.split_opens(word)
             if step and (not when or holds(host, when)):
-                there = list(elements_at(host, split_path(path)[0]))
+                there = list(elements_at(host, grammar.split_path(path)[0]))
                 for it in there:
                     yield from _written(document.source, starts[it], it, path, int(step))
                 if usual and not there:
@@ -141,7 +137,7 @@ def _written(source: bytes, start: int, element: _Element, path: str, step: int)
     text = text_of(element)
     slot = text_slot(source, start, text) if text.isdecimal() and int(text) else None
     if slot:
-        name = split_step(split_path(path)[0][-1])[2] or path
+        name = grammar.split_step(grammar.split_path(path)[0][-1])[2] or path
         yield Port(name, int(text), step, element, start, *slot, "{}")
 
 
@@ -149,12 +145,12 @@ def _default(
     source: bytes, starts: Mapping[_Element, int], host: _Element, path: str, usual: str, step: int
 ) -> Iterator[Port]:
     """One that is not written is put first into its plugin, or into what is there of the path."""
-    *above, last = split_path(path)[0]
+    *above, last = grammar.split_path(path)[0]
     inside = next(elements_at(host, tuple(above)), None)
     start = 0 if inside is None else starts[inside]
     at = tag_end(source, start) if start else 0
     if inside is not None and at and not source.endswith(b"/>", start, at):
-        tag, attribute, value = split_step(last)
+        tag, attribute, value = grammar.split_step(last)
         named = f' {attribute}="{value}"' if attribute else ""
         text = f"<{tag}{named}>{{}}</{tag}>"
         yield Port(value or path, int(usual), step, inside, at, at, at, text)

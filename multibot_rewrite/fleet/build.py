@@ -17,6 +17,7 @@ from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.fleet.checks.across_domains import one_launch_each
 from multibot_rewrite.fleet.checks.closed_plan import bridged_by, gaps_of, sorted_out
+from multibot_rewrite.fleet.checks.of_bringup import as_in_the_vendors_files
 from multibot_rewrite.fleet.checks.of_robots import of_robots
 from multibot_rewrite.fleet.file.fleet_file import input_files
 from multibot_rewrite.fleet.fleet import Fleet, expected, possible
@@ -118,7 +119,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         files = sorted((*files, launch_file(starts)))
         told += one_launch_each(plan.file.apart, starts)
         _check_paths_differ(files)
-        said = tuple(said_once(plan, [*findings, *told]))
+        said = tuple(said_once(plan, as_in_the_vendors_files(plan, [*findings, *told])))
         return Outputs(tuple(files), said, starts, planned)
 
 

@@ -7,22 +7,10 @@ import os
 import re
 import signal
 
+from multibot_rewrite.base import model
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Rule
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import (
-    FOR_OLD_GAZEBO,
-    FOR_ROS_1,
-    NO_ARGUMENT,
-    NO_PACKAGE,
-    NOT_DEFINED,
-    NOT_UTF8,
-    REFUSED,
-    TEMPLATE,
-    UNREADABLE,
-    XACRO_FAILED,
-    InputError,
-)
 from multibot_rewrite.base.outside import unrepeatable
 from multibot_rewrite.description.sources.packages import is_for_ros_1, package_of
 from multibot_rewrite.description.sources.read import XACRO
@@ -35,21 +23,21 @@ _PLACE = lazy_compile(
 )
 # Why a file cannot be read -> the rule that reports it.
 _CODES = {
-    UNREADABLE: "MB102", TEMPLATE: "MB105",
-    XACRO_FAILED: "MB103", NOT_DEFINED: "MB103", NO_PACKAGE: "MB119", NO_ARGUMENT: "MB145",
+    model.UNREADABLE: "MB102", model.XACRO_FAILED: "MB103", model.NOT_DEFINED: "MB103",
+    model.TEMPLATE: "MB105", model.NO_PACKAGE: "MB119", model.NO_ARGUMENT: "MB145",
 }  # fmt: skip
 # CMake's configure_file, Jinja, Ruby and empy make files of such files, and of parts of files.
 _TEMPLATES = (".in", ".jinja", ".jinja2", ".j2", ".erb", ".em")
 _MADE = "a template, in which another program fills in what is missing; lint what it makes"
 
 
-def failure(path: str, error: InputError, settings: Settings) -> Finding:
+def failure(path: str, error: model.InputError, settings: Settings) -> Finding:
     """Return the finding for a file that cannot be read."""
     from multibot_rewrite.lint.registry import RULES  # all rules: a file that is read needs few
 
     message, cause = str(error), error.cause
     if cause not in _CODES and path.endswith(_TEMPLATES):
-        message, cause = f"{path}: {_MADE}", TEMPLATE
+        message, cause = f"{path}: {_MADE}", model.TEMPLATE
     code = _CODES.get(cause, "MB101")
     level = level_of(settings, code, _level(path, cause, error.name) or RULES[code].level)
     it = _PLACE.fullmatch(message)
@@ -62,20 +50,20 @@ def failure(path: str, error: InputError, settings: Settings) -> Finding:
 
 def _level(path: str, cause: str, name: str) -> str:
     """Return how bad a failure is that is no fault for certain; empty for the level of its rule."""
-    if cause == FOR_ROS_1:  # as it should be in a package of ROS 1; elsewhere it may be left over
+    if cause == model.FOR_ROS_1:  # as it should be in a package of ROS 1; elsewhere left over
         return NOTE if is_for_ros_1(path) else WARNING
     # SDF of before 1.3 is converted by libsdformat; a template may be fine when it is filled in.
-    if cause in (FOR_OLD_GAZEBO, TEMPLATE):
+    if cause in (model.FOR_OLD_GAZEBO, model.TEMPLATE):
         return NOTE
-    if cause == REFUSED:  # here alone: xacro and urdfdom read some of these
+    if cause == model.REFUSED:  # here alone: xacro and urdfdom read some of these
         return WARNING
     # TinyXML-2 looks at no encoding, and Gazebo reads its files itself; launch files stop at others.
-    if cause == NOT_UTF8 and path.endswith((".sdf", ".world")):
+    if cause == model.NOT_UTF8 and path.endswith((".sdf", ".world")):
         return WARNING
-    if cause == NOT_DEFINED:  # a file may be a part of a robot
+    if cause == model.NOT_DEFINED:  # a file may be a part of a robot
         return NOTE if name and _is_made_beside(path, name) else WARNING
     # It may not be meant for xacro.
-    return WARNING if cause == XACRO_FAILED and not path.endswith(XACRO) else ""
+    return WARNING if cause == model.XACRO_FAILED and not path.endswith(XACRO) else ""
 
 
 def _is_made_beside(path: str, name: str) -> bool:

@@ -13,14 +13,8 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit, ProofError
+from multibot_rewrite.description.checks import poses
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.description.checks.poses import (
-    NO_ROTATION,
-    ROTATIONS,
-    SAME,
-    matrix_of_quaternion,
-    pose_of,
-)
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.check import lint_data
@@ -89,8 +83,8 @@ def _said(findings: Iterable[Finding]) -> set[tuple[str, str]]:
     return {(it.code, _LINE.sub("line N", it.message)) for it in findings}
 
 
-_IDENTITY = matrix_of_quaternion(NO_ROTATION)
-_UNREAD = {"origin": ("xyz", *ROTATIONS), "robot": ("version",)}
+_IDENTITY = poses.matrix_of_quaternion(poses.NO_ROTATION)
+_UNREAD = {"origin": ("xyz", *poses.ROTATIONS), "robot": ("version",)}
 
 
 class Meaning(NamedTuple):
@@ -113,13 +107,13 @@ def _is_same(one: Meaning, other: Meaning) -> bool:
         return False
     if len(one.numbers) != len(other.numbers) or len(one.children) != len(other.children):
         return False
-    if any(abs(a - b) > SAME for a, b in zip(one.numbers, other.numbers, strict=True)):
+    if any(abs(a - b) > poses.SAME for a, b in zip(one.numbers, other.numbers, strict=True)):
         return False
     return all(map(_is_same, one.children, other.children))
 
 
 def _meaning(element: _Element) -> Meaning:
-    tag, pose = str(element.tag), pose_of(element) if element.tag == "origin" else None
+    tag, pose = str(element.tag), poses.pose_of(element) if element.tag == "origin" else None
     unread = _UNREAD.get(tag, ()) if tag != "origin" or pose else ()
     attributes = {str(key): str(it) for key, it in element.items() if key not in unread}
     numbers = (*pose.at, *chain(*pose.matrix)) if pose else ()
@@ -135,7 +129,7 @@ def _half_spheres(link: _Element) -> Iterator[Meaning]:
     """What stands for the ends of a link's capsules, after all else."""
     for shape, holder in capsules(link):
         pose, length = (
-            pose_of(next(holder.iterchildren("origin"), None)),
+            poses.pose_of(next(holder.iterchildren("origin"), None)),
             number(shape.get("length")),
         )
         sphere = _plain("sphere", {"radius": shape.get("radius", "")})

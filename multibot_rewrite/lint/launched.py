@@ -32,13 +32,7 @@ from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.bridges import expands, is_bridge, told_rows
 from multibot_rewrite.producers.launch.launched import InSimulator, Launched, file_of
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.rules.files.bridges import (
-    GzTopic,
-    GzTopics,
-    bridge_row,
-    no_gz_topic,
-    not_converted,
-)
+from multibot_rewrite.rules.files import bridges
 from multibot_rewrite.rules.files.judge import judged
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS
@@ -138,7 +132,7 @@ def _given(it: LaunchedNode) -> dict[str, object]:
 
 
 # That of every world, beside /world/NAME/clock (gz-sim 8 src/SimulationRunner.cc).
-_CLOCK = GzTopic("gz.msgs.Clock", DIRECTIONS["in"])
+_CLOCK = bridges.GzTopic("gz.msgs.Clock", DIRECTIONS["in"])
 
 
 class _Told(NamedTuple):
@@ -162,7 +156,7 @@ def bridge_findings(launched: Launched) -> Iterator[Finding]:
             # send what one that stands in the launch file reads.
             at = told.place
             sure = bool(mine) and (at == NOWHERE or launched.whole)
-            one = it._replace(level=ERROR) if sure or it.code != no_gz_topic.code else it
+            one = it._replace(level=ERROR) if sure or it.code != bridges.no_gz_topic.code else it
             yield one if at == NOWHERE else one._replace(file=at.file, line=at.line, column=1)
 
 
@@ -175,7 +169,9 @@ def _told(it: Run) -> Iterator[_Told]:
         yield _Told(BRIDGE_FILE, text, expands(it), it.place)
 
 
-def _of_bridge(told: _Told, release: str, known: Mapping[str, GzTopic]) -> Iterable[Finding]:
+def _of_bridge(
+    told: _Told, release: str, known: Mapping[str, bridges.GzTopic]
+) -> Iterable[Finding]:
     every: Declared = {it: {} for kinds in KINDS.values() for it in kinds}
     names = CompanionNames(every, _NAMING, "")
     text = told.text.encode()
@@ -183,11 +179,11 @@ def _of_bridge(told: _Told, release: str, known: Mapping[str, GzTopic]) -> Itera
         file = read_named(BRIDGE, text, told.file, Context(names, names, {}, release))
     except InputError:
         return ()
-    file = file._replace(memo={GzTopics: GzTopics(known)} if known else {})
-    return judged(file, (no_gz_topic, not_converted, bridge_row))
+    file = file._replace(memo={bridges.GzTopics: bridges.GzTopics(known)} if known else {})
+    return judged(file, (bridges.no_gz_topic, bridges.not_converted, bridges.bridge_row))
 
 
-def _topics(models: Iterable[InSimulator]) -> dict[str, GzTopic]:
+def _topics(models: Iterable[InSimulator]) -> dict[str, bridges.GzTopic]:
     found = (it for model in models for it in model.topics)
-    own = {f"/{it.gz.lstrip('/')}": GzTopic(it.gz_type, it.direction) for it in found}
+    own = {f"/{it.gz.lstrip('/')}": bridges.GzTopic(it.gz_type, it.direction) for it in found}
     return {CLOCK: _CLOCK, **own}

@@ -51,7 +51,10 @@ def lint_files(
         for path, (its, asked) in zip(unknown, linted, strict=True):
             found[path] = its
             if cache:
-                _keep(cache, path, settings, its, asked)
+                from multibot_rewrite.lint.cache.cache import findings_written
+
+                key, written = _key(path, settings), findings_written(its)
+                cache.keep(_group(path), key, written, asked)
     return _in_order(_once(it for path in paths for it in found[path] or ()), paths)
 
 
@@ -59,14 +62,6 @@ def _known(cache: Cache, path: str, settings: Settings) -> list[Finding] | None:
     from multibot_rewrite.lint.cache.cache import findings_from
 
     return findings_from(cache.recall(_group(path), _key(path, settings)))
-
-
-def _keep(
-    cache: Cache, path: str, settings: Settings, found: list[Finding], asked: Asked | None
-) -> None:
-    from multibot_rewrite.lint.cache.cache import findings_written
-
-    cache.keep(_group(path), _key(path, settings), findings_written(found), asked)
 
 
 def _group(path: str) -> str:

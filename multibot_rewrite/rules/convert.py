@@ -17,19 +17,8 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit
+from multibot_rewrite.description.checks import poses
 from multibot_rewrite.description.checks.numbers import Vector, number
-from multibot_rewrite.description.checks.poses import (
-    Pose,
-    is_same,
-    length_of,
-    matrix_of_quaternion,
-    pose_of,
-    quaternion,
-    quaternion_of_rpy,
-    rolled,
-    rpy_of,
-    turned,
-)
 from multibot_rewrite.description.steps.document import Document, attribute_slot, tag_end
 from multibot_rewrite.rules.schema.versions import OLDEST, Version
 
@@ -124,20 +113,24 @@ def as_rpy(text: Spanned, origin: _Element) -> tuple[Edit, ...]:
     """The edit that writes a quaternion as roll, pitch and yaw; none where they would differ."""
     if origin.get("rpy") is not None:
         return one_rotation(text, origin, "quat_xyzw")
-    turn = quaternion(origin)
+    turn = poses.quaternion(origin)
     if turn is None:
         return ()
-    matrix = matrix_of_quaternion(turn)
-    rpy = rpy_of(matrix)
-    if not is_same(matrix, matrix_of_quaternion(quaternion_of_rpy(rpy))):
+    matrix = poses.matrix_of_quaternion(turn)
+    rpy = poses.rpy_of(matrix)
+    if not poses.is_same(matrix, poses.matrix_of_quaternion(poses.quaternion_of_rpy(rpy))):
         return ()
     return _one(renamed(text, origin, "quat_xyzw", "rpy", " ".join(map(written, rpy))))
 
 
 def one_rotation(text: Spanned, origin: _Element, other: str) -> tuple[Edit, ...]:
     """The edit that takes one of two rotations out; none where they differ."""
-    turn, matrix = quaternion(origin), rolled(origin)
-    if turn is None or matrix is None or not is_same(matrix, matrix_of_quaternion(turn)):
+    turn, matrix = poses.quaternion(origin), poses.rolled(origin)
+    if (
+        turn is None
+        or matrix is None
+        or not poses.is_same(matrix, poses.matrix_of_quaternion(turn))
+    ):
         return ()
     return _one(removed(text, origin, other))
 
@@ -167,9 +160,9 @@ def lowered(text: Spanned) -> tuple[Edit, ...]:
 
 
 def _is_readable(origin: _Element) -> bool:
-    turn = quaternion(origin)
-    alone = origin.get("rpy") is None and pose_of(origin) is not None
-    return alone and turn is not None and 0 < length_of(turn) < float("inf")
+    turn = poses.quaternion(origin)
+    alone = origin.get("rpy") is None and poses.pose_of(origin) is not None
+    return alone and turn is not None and 0 < poses.length_of(turn) < float("inf")
 
 
 def _one(edit: Edit | None) -> tuple[Edit, ...]:
@@ -212,9 +205,9 @@ def capsule_edits(text: Spanned, link: _Element) -> tuple[Edit, ...]:
     return (*edits, Edit(at, at + 2, lines + text.source[at : at + 2], None))
 
 
-def ends_of(pose: Pose, length: float) -> tuple[Vector, Vector]:
+def ends_of(pose: poses.Pose, length: float) -> tuple[Vector, Vector]:
     """The centres of the half spheres of a capsule."""
-    x, y, z = turned(pose.matrix, (0.0, 0.0, length / 2))
+    x, y, z = poses.turned(pose.matrix, (0.0, 0.0, length / 2))
     (a, b, c) = pose.at
     return (a + x, b + y, c + z), (a - x, b - y, c - z)
 
@@ -229,8 +222,8 @@ def _is_plain(text: Spanned, link: _Element, shape: _Element, holder: _Element) 
     return known and all(it is not None and it > 0 for it in sizes) and _pose(holder) is not None
 
 
-def _pose(holder: _Element) -> Pose | None:
-    return pose_of(next(holder.iterchildren("origin"), None))
+def _pose(holder: _Element) -> poses.Pose | None:
+    return poses.pose_of(next(holder.iterchildren("origin"), None))
 
 
 def _cylinder(text: Spanned, shape: _Element) -> Iterator[Edit]:

@@ -77,6 +77,7 @@ _EXPLAINS: Sequence[tuple[str, tuple[str, ...], _Explains]] = (
     ("MG301", ("MG304",), _served),
     ("MG301", ("MG402", "MG408", "MG401", "MG405", "MG325"), _two_robots),
     ("MG314", ("MG312", "MG329"), _names),
+    ("MG310", ("MG320",), _names),
     ("MG320", ("MG303",), _names),
     ("MG420", ("MG208", "MG408", "MG402", "MG413"), _described),
     ("MG403", ("MG401",), _names),
@@ -84,9 +85,9 @@ _EXPLAINS: Sequence[tuple[str, tuple[str, ...], _Explains]] = (
     ("MG402", ("MG406",), _robot),
     ("MG405", ("MG406",), _robot),
 )
-# What several nodes have with one name is one of the first, what one node has often of the second.
+# What several nodes have with one name is one of the first, what one node has so often of the second.
 _OF_NAMES = frozenset(("MG303", "MG306", "MG307"))
-_OF_NODES, _MANY = frozenset(("MG102", "MG304")), 3
+_OF_NODES = {"MG102": 2, "MG304": 3}
 _UNPLANNED = "MG108"
 # From bad to good.
 _BAD = (ERROR, INCONCLUSIVE, WARNING, NOTE)
@@ -127,10 +128,15 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
     """A cause is as bad as what comes of it."""
     if not explained:
         return it
-    codes = unique(one.code for one in explained)
-    told = f"{shorten(codes)} {'comes' if len(codes) == 1 else 'come'} of it"
+    first, *others = explained
+    more = f", and {shorten(unique(one.code for one in others))}" if others else ""
+    told = f"so {first.node or first.robot or 'tf'}: {first.message} ({first.code}{more})"
     level = min((it.level, *(one.level for one in explained)), key=_BAD.index)
-    return it._replace(hint=f"{it.hint}; {told}" if it.hint else told, level=level)
+    # Of one name each has the rules for a part of its nodes.
+    same = (one for one in explained if one.names == it.names)
+    remaps = (*it.remaps, *(rule for one in same for rule in one.remaps)) if it.remaps else ()
+    hint = f"{it.hint}; {told}" if it.hint else told
+    return it._replace(hint=hint, level=level, remaps=tuple(dict.fromkeys(remaps)))
 
 
 def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
@@ -144,7 +150,7 @@ def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
             key = it.code, it.node
         groups.setdefault(key, []).append(it)
     for (code, *_), own in groups.items():
-        if len(own) == 1 or (code in _OF_NODES and len(own) < _MANY):
+        if len(own) == 1 or len(own) < _OF_NODES.get(str(code), 0):
             yield from own
         else:
             yield _one_of(own, str(code))

@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Remap, Rule
 from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.rules.system.changed import untold
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS, unexplained
@@ -125,22 +125,26 @@ def _with_cause(
     known = [one for one in by_plan if one.code != unplanned_node.code]
     if known and in_doubt and _is_absence(it, rules) and not _is_absence(known[0], rules):
         return known[0]
-    hint, place = _hint(it, known, rules) if known else it.hint, known[0] if known else it
+    hint, remaps = _hint(it, known, rules) if known else (it.hint, it.remaps)
+    place = known[0] if known else it
     if len(known) < len(by_plan):
         hint += f"; {it.node} is not in the plan"
     level = ERROR if any(one.level == ERROR for one in by_plan) else it.level
-    found = it._replace(hint=hint, level=level)
+    found = it._replace(hint=hint, level=level, remaps=remaps)
     if not place.file:
         return found
     return found._replace(file=place.file, line=place.line, column=place.column)
 
 
-def _hint(it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule]) -> str:
+def _hint(
+    it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule]
+) -> tuple[str, tuple[Remap, ...]]:
+    """What the plan says to do, and the rules that it names; those of all who are named."""
     first, *others = by_plan
     if not _is_of_an_end(first, rules):
-        return first.hint
+        return first.hint, first.remaps
     if not _is_there(first):
-        return it.hint
+        return it.hint, it.remaps
     who = "it" if first.node == it.node else first.node
     more = unique(
         f"{one.node} (see {one.file}:{one.line})" if one.file else one.node
@@ -148,7 +152,10 @@ def _hint(it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule]) ->
         if one.node != first.node
     )
     same = f"; the same for {shorten(more)}" if more else ""
-    return f"by the plan {who} {first.message}: {first.hint}{same}"
+    remaps = tuple(dict.fromkeys(rule for one in by_plan for rule in one.remaps))
+    if not all(one.remaps for one in by_plan):
+        remaps = ()
+    return f"by the plan {who} {first.message}: {first.hint}{same}", remaps
 
 
 def _is_meant(plan: Index, seen: Index, it: Finding, rule: Rule) -> bool:

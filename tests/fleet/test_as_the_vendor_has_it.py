@@ -129,3 +129,65 @@ def test_only_the_nodes_of_one_robot_excuse_it(
     given = sensor_twice.finding("both publish it", level=ERROR, names=(name,))
     (found,) = as_the_vendor_has_it(plan, seen, [given], known)
     assert found.level == level
+
+
+FAULT = """local_costmap:
+  local_costmap:
+    ros__parameters:
+      height: 3.0
+"""
+READER = """Node(package='nav2_controller', executable='controller_server',
+             name='controller_server', parameters=[str(ROBOT.parent / 'nav2.yaml')]),
+        ekf('ekf_map'"""
+
+
+@pytest.mark.parametrize("by_launch", [True, False])
+def test_a_fault_of_a_file_of_the_vendor_is_told_and_built(
+    by_launch: bool, fleet: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The costmap does not come up with it, in one robot as in two; of other files it is an error."""
+    (fleet.parent / "nav2.yaml").write_text(FAULT)
+    (fleet.parent / "up.launch.py").write_text(LAUNCH.replace("ekf('ekf_map'", READER))
+    if not by_launch:
+        text = FLEET.format("both", LAYOUTS["both"]).replace("launch: up.launch.py\n", "")
+        fleet.write_text(f"{text}stack: [nav2]\ncompanions: {{params: [nav2.yaml]}}\n")
+    code = main(["build", str(fleet), "-o", str(fleet.parent / "out")])
+    (told,) = (it for it in capsys.readouterr().err.splitlines() if "MB120" in it)
+    assert "nav2.yaml:4:" in told and ("for one robot, too" in told) is by_launch
+    assert (code == 0) is by_launch
+
+
+ARM = """<robot name="arm"><link name="base_link"/><link name="tip"/>
+  <joint name="j" type="revolute"><parent link="base_link"/><child link="tip"/>
+    <limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+  <ros2_control name="a" type="system"><hardware><plugin>mock_components/GenericSystem</plugin>
+    </hardware><joint name="j"><command_interface name="position"/>
+    <state_interface name="position"/></joint></ros2_control></robot>"""
+CONTROLLERS = """controller_manager:
+  ros__parameters: {arm: {type: joint_trajectory_controller/JointTrajectoryController}}
+arm:
+  ros__parameters:
+    joints: [j]
+    command_interfaces: [position]
+    state_interfaces: [position, velocity]
+"""
+MANAGED = """Node(package='controller_manager', executable='ros2_control_node',
+             parameters=[{'robot_description': ROBOT.read_text()}, str(ROBOT.parent / 'arm.yaml')]),
+        Node(package='controller_manager', executable='spawner', arguments=['arm']),
+    ])
+"""
+
+
+def test_a_controller_of_the_vendor_that_lacks_an_interface_is_told_and_built(
+    fleet: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is not activated, in one robot as in two; its hardware is called by no robot's name."""
+    launch = LAUNCH[: LAUNCH.index("ekf('ekf_local')")]
+    for name, text in {"robot.urdf": ARM, "arm.yaml": CONTROLLERS}.items():
+        (fleet.parent / name).write_text(text)
+    (fleet.parent / "up.launch.py").write_text(f"{launch}{MANAGED}")
+    assert main(["check-launch", str(fleet.parent / "up.launch.py")]) == 1
+    assert "error: MB229" in capsys.readouterr().out
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
+    (told,) = (it for it in capsys.readouterr().err.splitlines() if "MB229" in it)
+    assert "warning: MB229" in told and "for one robot, too" in told

@@ -290,7 +290,7 @@ def test_findings_are_sorted_and_said_once(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = SMALL.replace("{name: robot2,", "{name: robot2, pose: {x: 9},")
-    fleet_folder(tmp_path, text.replace("stack: nav2", "stack: nav2_slam"))
+    fleet_folder(tmp_path, text.replace("stack: nav2", "simulator: none\nstack: nav2_slam"))
     assert build(tmp_path) == 0
     lines = capsys.readouterr().err.splitlines()
     told = [it for it in lines if "MF701" in it]

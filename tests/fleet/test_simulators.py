@@ -269,3 +269,32 @@ def test_the_time_of_a_manager_in_the_simulator_is_that_of_its_robot(
     assert main(["build", str(file), "-o", str(tmp_path / "out"), "-q"]) == 1
     name = "r1_robot_state_publisher" if affix == "prefix" else "robot_state_publisher_r1"
     assert f"/{name}: error: MG503" in capsys.readouterr().err
+
+
+SENSING = """<robot name="bot"><link name="base_link"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <gazebo reference="base_link"><sensor name="l" type="gpu_lidar"><topic>scan</topic></sensor></gazebo>
+</robot>"""
+
+
+@pytest.mark.parametrize(
+    ("keys", "is_told"),
+    [
+        ("simulator: gazebo\nuse_sim_time: false\nstack: [robot_localization]", True),
+        ("simulator: gazebo\nuse_sim_time: true\nstack: [robot_localization]", False),
+        ("simulator: gazebo\nstack: [robot_localization]", False),
+        ("simulator: none\nuse_sim_time: false\nstack: [robot_localization]", False),
+    ],
+)
+def test_nodes_on_the_time_of_the_machine_beside_sensors_of_a_simulator(
+    keys: str, is_told: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """tf and filters refuse data that is decades older than now."""
+    (tmp_path / "robot.urdf").write_text(SENSING)
+    robots = "robots: [{name: r1}, {name: r2, pose: {x: 3}}]\n"
+    text = f"layout: both\naffix: prefix\ndistro: jazzy\ndescription: robot.urdf\n{keys}\n{robots}"
+    (tmp_path / "fleet.yaml").write_text(text)
+    main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")])
+    told = [it for it in capsys.readouterr().err.splitlines() if "MG503" in it]
+    assert bool(told) is is_told
+    assert all("warning:" in it and "on the time of the machine" in it for it in told)

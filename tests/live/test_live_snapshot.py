@@ -166,7 +166,7 @@ def test_frames_have_topic_and_publishers(seen: System, has_tf: bool) -> None:
         pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
     states = ("/robot1/state", "/robot2/state")
     assert {it.transform for it in seen.edges} == {(1.5, 0, 0, 0, 0, 0, 1)}
-    assert {it._replace(transform=()) for it in seen.edges} == {
+    assert {it._replace(transform=(), rate=0.0) for it in seen.edges} == {
         Edge("base_link", "odom", "/robot1/tf", False, ("/robot1/state",)),
         Edge("base_link", "odom", "/robot2/tf", False, ("/robot2/state",)),
         Edge("lidar", "base_link", "/tf_static", True, states, several=True),

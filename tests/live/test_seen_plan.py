@@ -21,7 +21,10 @@ from multibot_rewrite.system.records import (
     System,
 )
 
-SHARED = ("/bond", "/clock", "/diagnostics", "/diagnostics_agg", "/parameter_events", "/rosout")
+SHARED = (
+    "/bond", "/clock", "/diagnostics", "/diagnostics_agg", "/localized_scan", "/parameter_events",
+    "/rosout",
+)  # fmt: skip
 WORLD = ("earth", "map", "utm", "world")
 
 

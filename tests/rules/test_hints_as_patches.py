@@ -7,12 +7,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 import pytest
-from graph_calls import diagnose
+from graph_calls import diagnose, seen_plan
 from graph_examples import read_system
 from graph_faults import FAULTS, Fault
 
 from multibot_rewrite.base.findings.finding import Finding, Remap
-from multibot_rewrite.rules.check import judge
+from multibot_rewrite.rules.check import check, judge
 from multibot_rewrite.system.records import Edge, System
 
 TWIST, SCAN = "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan"
@@ -75,6 +75,32 @@ def test_rules_of_a_hint_mend_the_fault(fault: Fault, found: tuple[Finding, ...]
         after = diagnose(remapped(graph, it.remaps)).findings
         assert (it.code, it.robot, it.node) not in about(after), it
         assert about(after) <= about(found), it
+
+
+PLANS = [
+    (it, plan, check(plan, it.change(it.system())))
+    for it in FAULTS
+    for plan in [seen_plan(diagnose(it.system()))]
+]
+PLANNED = [row for row in PLANS if any(one.remaps for one in row[2])]
+
+
+def test_many_faults_have_such_a_hint_by_their_plan() -> None:
+    assert len(PLANNED) > 30
+    assert any("by the plan" in one.hint for *_, found in PLANNED for one in found if one.remaps)
+
+
+@pytest.mark.parametrize(("fault", "plan", "found"), PLANNED, ids=[it.name for it, *_ in PLANNED])
+def test_rules_of_a_hint_by_the_plan_mend_the_fault(
+    fault: Fault, plan: System, found: list[Finding]
+) -> None:
+    graph = fault.change(fault.system())
+    for it in (one for one in found if one.remaps):
+        after = check(plan, remapped(graph, it.remaps))
+        assert (it.code, it.robot, it.node) not in about(after), it
+        # That its node is not planned is said with the fault until then.
+        new = {one for one in about(after) - about(found) if one[0] != "MG108"}
+        assert not new, [str(one) for one in after]
 
 
 def said(*lines: str) -> Iterator[tuple[str, str, bool]]:

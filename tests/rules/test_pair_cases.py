@@ -116,10 +116,10 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
         ),
         (
             FRAMES.format("robot1/base_link", "robot1/tool"),
-            ["MG204 frame robot1/tool is not in the description of robot1; a sensor's own frame?"
-             " Then add it to other_frames of the plan",
-             "MG208 frame robot1/laser of robot1 is in no transform: robot1/laser; has"
-             " /robot1/robot_state_publisher the description of robot1, or that of another robot?"],
+            ["MG208 frame robot1/laser of robot1 is in no transform: robot1/laser; has"
+             " /robot1/robot_state_publisher the description of robot1, or that of another robot?",
+             "MG204 frame robot1/tool is not in the description of robot1; a sensor's own frame?"
+             " Then add it to other_frames of the plan"],
         ),
         # A description of one link has no transform: its frame comes with the odometry.
         (ALONE.format(""), []),

@@ -221,7 +221,7 @@ def sender_rows() -> tuple[Fault, ...]:
         ),
         Fault(
             "a lidar that sends nothing", nav, heard_all_but("/robot2/scan"),
-            "MG326", ("/robot2/lidar_driver", "/robot2/scan", "/robot1/scan"), WARNING,
+            "MG326", ("/robot2/lidar_driver", "/robot2/scan", "/robot1/scan"), ERROR,
         ),
         Fault(
             "a lidar's clock is 12 s behind", nav, stamped("/robot1/scan", 12.0),

@@ -54,9 +54,12 @@ def read_command(name: str) -> Command:
         if head.startswith("["):
             groups.append(_group(head.strip("[]"), below))
         elif key == "examples":
-            examples = tuple(_example(it) for it in below if it)
+            examples = tuple(Example(*it.partition("    # ")[::2]) for it in below if it)
         else:
-            fields[key] = text.strip() or _paragraphs(below)
+            # Paragraphs in one line each; one that is indented keeps its lines.
+            parts = "\n".join(below).strip("\n").split("\n\n")
+            lines = (it if it.startswith(" ") else it.replace("\n", " ") for it in parts)
+            fields[key] = text.strip() or "\n\n".join(lines)
     return Command(
         name,
         fields.get("module", name.replace("-", "_")),
@@ -85,17 +88,6 @@ def _parts(lines: Sequence[str]) -> Iterator[_Part]:
     starts = [at for at, it in enumerate(lines) if it.strip() and not it.startswith(" ")]
     for start, end in pairwise((*starts, len(lines))):
         yield lines[start], [it[2:] for it in lines[start + 1 : end]]
-
-
-def _example(line: str) -> Example:
-    command, _, about = line.partition("    # ")
-    return Example(command, about)
-
-
-def _paragraphs(lines: Sequence[str]) -> str:
-    """Paragraphs in one line each; one that is indented keeps its lines."""
-    parts = "\n".join(lines).strip("\n").split("\n\n")
-    return "\n\n".join(it if it.startswith(" ") else it.replace("\n", " ") for it in parts)
 
 
 def _group(title: str, lines: Sequence[str]) -> OptionGroup:

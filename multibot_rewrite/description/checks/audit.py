@@ -14,15 +14,9 @@ from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.loose_xml import DASHES, DEFAULT, LATE, slips
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.releases import releases_with
+from multibot_rewrite.description.checks import references
 from multibot_rewrite.description.checks.hazards import hazards, ignored_namespaces, used_namespaces
 from multibot_rewrite.description.checks.problem import Problem, to_findings
-from multibot_rewrite.description.checks.references import (
-    ambiguous,
-    doubtful,
-    duplicates,
-    loose_ends,
-    undeclared_names,
-)
 from multibot_rewrite.description.checks.unknown import ANOTHER_RELEASE, not_here, unknown_parts
 from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -37,11 +31,11 @@ if TYPE_CHECKING:
 def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:
     """All findings that do not depend on the robot's name, in source order."""
     document = inventory.document
-    errors = chain(leftover_xacro(inventory), worlds(inventory), duplicates(inventory))
+    errors = chain(leftover_xacro(inventory), worlds(inventory), references.duplicates(inventory))
     warnings = chain(
         loosely_written(document),
         undeclared(inventory, renames.naming),
-        ambiguous(inventory),
+        references.ambiguous(inventory),
         unknown_parts(inventory, tree),
         ignored_namespaces(inventory, tree),
         used_namespaces(inventory, tree),
@@ -107,8 +101,10 @@ def worlds(inventory: Inventory) -> Iterator[Problem]:
 
 def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     """Uses of a link or joint that nothing declares: they are not renamed."""
-    loose = loose_ends(doubtful(inventory), inventory.declared, naming.shared_frames)
-    for it in undeclared_names(loose, inventory.declared):
+    loose = references.loose_ends(
+        references.doubtful(inventory), inventory.declared, naming.shared_frames
+    )
+    for it in references.undeclared_names(loose, inventory.declared):
         yield it._replace(message=f"{it.message}: it is not renamed")
 
 

@@ -12,19 +12,8 @@ from multibot_rewrite.base.model import InputError, ProofError
 from multibot_rewrite.base.naming import NAMESPACE, TWIN, Naming, spelled
 from multibot_rewrite.description.checks.hazards import ALONE
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.readback import meeting
 from multibot_rewrite.description.readback.active import active_parts
-from multibot_rewrite.description.readback.meeting import (
-    CAMERA_INFO,
-    NOT_TAKEN,
-    advice,
-    code_of,
-    lost_rules,
-    meetings,
-    parted,
-    said,
-    same_for_all,
-    undescribed,
-)
 from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC, RuntimeName
 from multibot_rewrite.description.readback.reading import Reading, read, read_tree
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
@@ -77,13 +66,13 @@ def shared_by_both(
     ``arm`` of ``left_b``."""
     twin = _unused(document)
     named = {it: read(fill(pieces, it), document.file, vocabulary).names for it in (*robots, twin)}
-    every = {(it.kind, it.name) for it in same_for_all(named.pop(twin), twin, naming)}
-    for met in meetings(named, naming):
+    every = {(it.kind, it.name) for it in meeting.same_for_all(named.pop(twin), twin, naming)}
+    for met in meeting.meetings(named, naming):
         it = met.name
         if (it.kind, it.name) not in every:
-            message = said(f"{met.robot} and {met.other} would both", it)
+            message = meeting.said(f"{met.robot} and {met.other} would both", it)
             hint = "rename a robot or choose another separator"
-            yield Problem(document.root, message, None, hint, (), code_of(it))
+            yield Problem(document.root, message, None, hint, (), meeting.code_of(it))
 
 
 def shared_with(
@@ -100,12 +89,12 @@ def shared_with(
         )
     found = [*_changed(document, reading, robot, naming, vocabulary)]
     of_plugins: dict[int, list[RuntimeName]] = {}
-    for it in same_for_all(reading.names, robot, naming):
+    for it in meeting.same_for_all(reading.names, robot, naming):
         if it.of_controllers:
             of_plugins.setdefault(it.number, []).append(it)
             continue
-        element, message = it.element_in(document.root), said(ALL, it)
-        found.append(Problem(element, message, None, advice(it), (), code_of(it)))
+        element, message = it.element_in(document.root), meeting.said(ALL, it)
+        found.append(Problem(element, message, None, meeting.advice(it), (), meeting.code_of(it)))
     for names in of_plugins.values():
         plugin = names[0].element_in(document.root)
         found.append(_of_controllers(plugin, names, naming, vocabulary.release))
@@ -135,17 +124,17 @@ def _changed(
     document: Document, reading: Reading, robot: str, naming: Naming, vocabulary: Vocabulary
 ) -> Iterator[Problem]:
     """What met or matched before the rewrite, and does not after it."""
-    images = any(CAMERA_INFO in it.name for it in reading.names)
+    images = any(meeting.CAMERA_INFO in it.name for it in reading.names)
     if b":=" not in document.source and not images and not _alike(reading, robot):
         return
     before = read_tree(document.root, vocabulary)
-    for lost in lost_rules(before, reading):
+    for lost in meeting.lost_rules(before, reading):
         if lost.name.strip("/") not in naming.shared_topics:
             plugin = next(islice(document.root.iter("plugin"), lost.number, None), document.root)
             message = f"{lost.rule!r} is for {lost.name}, and matches nothing after the rewrite"
             hint = "write the topic and the left side of its rule the same way"
             yield Problem(plugin, message, None, hint, (), LOST_RULE)
-    for it, other in parted(before, reading):
+    for it, other in meeting.parted(before, reading):
         one, two = (name.name.replace(robot, ROBOT) for name in (it, other))
         message = (
             f"{it.path} is {one!r} after the rewrite and {other.path} is {two!r}: "
@@ -156,7 +145,7 @@ def _changed(
             f"{left} stays as it is: {BY_HAND}" if left else f"write both the same way, or {BESIDE}"
         )
         yield Problem(it.element_in(document.root), message, None, hint, (), PARTED)
-    for it, *pair in undescribed(before, reading):
+    for it, *pair in meeting.undescribed(before, reading):
         image, asked, info = (name.replace(robot, ROBOT) for name in (it.name, *pair))
         message = f"image_transport and RViz look for {asked!r} beside {image!r}: it is {info!r}"
         hint = f'start what shows it with --ros-args -r "{asked}:={info}", or {BESIDE}'
@@ -184,7 +173,7 @@ def _of_controllers(
         f'start each controller with its spawner and --controller-ros-args "{rules}"; multibot plan'
         " and build print the lines"
     )
-    return Problem(element, message, None, hint, (), NOT_TAKEN)
+    return Problem(element, message, None, hint, (), meeting.NOT_TAKEN)
 
 
 def _rule(name: str, naming: Naming) -> str:

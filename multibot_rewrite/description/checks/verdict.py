@@ -9,17 +9,7 @@ from collections.abc import Iterable
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.meeting import ELSEWHERE, NO_LINK, PARTED, SAME_TEXT
-from multibot_rewrite.description.readback.meeting import (
-    COMMAND,
-    DATA,
-    FRAMES,
-    LOOKUP,
-    NOT_TAKEN,
-    NUMBERED,
-    OPENED,
-    TWO_NODES,
-    TWO_SERVERS,
-)
+from multibot_rewrite.description.readback import meeting
 
 SHARED = "shared by all robots"
 # Code -> what is counted and what is said of it. A rewrite with one of these findings is not proved.
@@ -29,16 +19,16 @@ REASONS = {
     "MB902": ("plugin", "not known"),
     "MB903": ("hardware class", "not known"),
     "MB906": ("included model", "not read"),
-    DATA: ("topic", SHARED),
-    COMMAND: ("command", SHARED),
-    TWO_SERVERS: ("service", SHARED),
-    TWO_NODES: ("node", SHARED),
-    FRAMES: ("frame", SHARED),
-    OPENED: ("resource", SHARED),
+    meeting.DATA: ("topic", SHARED),
+    meeting.COMMAND: ("command", SHARED),
+    meeting.TWO_SERVERS: ("service", SHARED),
+    meeting.TWO_NODES: ("node", SHARED),
+    meeting.FRAMES: ("frame", SHARED),
+    meeting.OPENED: ("resource", SHARED),
     SAME_TEXT: ("description", "the same for all robots"),
     PARTED: ("topic", "whose ends no longer match"),
     NO_LINK: ("robot", "without a link"),
-    LOOKUP: ("name", "looked up in the whole world"),
+    meeting.LOOKUP: ("name", "looked up in the whole world"),
     "MB410": ("description name", SHARED),
     "MB416": ("world system", "in every robot"),
     "MB436": ("remap rule", "matching no name any more"),
@@ -51,9 +41,9 @@ REASONS = {
 
 # What is proved of a description and hangs on what starts it: a code, and how the summary says it.
 GIVEN = {
-    NOT_TAKEN: "where each controller is spawned with its rules",
+    meeting.NOT_TAKEN: "where each controller is spawned with its rules",
     ELSEWHERE: "where what shows an image has the rule for its camera_info",
-    NUMBERED: "where what each robot talks to has its number",
+    meeting.NUMBERED: "where what each robot talks to has its number",
 }
 
 

@@ -27,6 +27,7 @@ from multibot_rewrite.description.checks.poses import (
     pose_of_six,
     rpy_of,
 )
+from multibot_rewrite.description.joining import kept
 from multibot_rewrite.description.joining.blocks import (
     OneSystem,
     one_system,
@@ -35,15 +36,6 @@ from multibot_rewrite.description.joining.blocks import (
     repeated,
     said_once,
     word_of,
-)
-from multibot_rewrite.description.joining.kept import (
-    KeptText,
-    is_joined_whole,
-    left_out,
-    placed,
-    section,
-    sections,
-    was,
 )
 from multibot_rewrite.description.joining.part import (
     ZERO,
@@ -86,7 +78,7 @@ def fixed(part: ReadPart, spec: Part, spans: Spans) -> Fixed:
         words = dict(zip(("parent", "child"), names, strict=True))
         at, _ = spans.inside(spans.document.root)
         text = _MOUNT.format(name=name, origin=origin, **words)
-        return Fixed((was(at, at, b"", text.encode()),), name)
+        return Fixed((kept.was(at, at, b"", text.encode()),), name)
     joints = robot.below.get(WORLD, ())
     root = spans.document.root
     link = next(it for it in root.iterchildren("link") if it.get("name") == WORLD)
@@ -97,7 +89,7 @@ def fixed(part: ReadPart, spec: Part, spans: Spans) -> Fixed:
     if free is not None:
         raise InputError(f"{part.file}: joint {free.name!r} is {free.type}: nothing fixes the part")
     blocks = [it for it in root.iterchildren("gazebo") if it.get("reference") == WORLD]
-    gone = (left_out(spans, it) for it in (link, *blocks))
+    gone = (kept.left_out(spans, it) for it in (link, *blocks))
     notes = (f"{part.file}:{it.sourceline}: left out: it is about {WORLD!r}" for it in blocks)
     moved = (_moved(part, it, spec, spans) for it in joints)
     return Fixed((*gone, *moved), "", tuple(notes))
@@ -115,7 +107,7 @@ def _moved(part: ReadPart, joint: Joint, spec: Part, spans: Spans) -> Edit:
     edits = [Edit(*slot, spec.at.translate(ESCAPES).encode(), None)]
     edits += _turned(part, joint, spec.pose, spans)
     new = b"".join(cut(source[:end], sorted(edits, key=lambda it: it.start)))[start:]
-    return was(start, end, source[start:end], new)
+    return kept.was(start, end, source[start:end], new)
 
 
 def _turned(part: ReadPart, joint: Joint, pose: Sequence[float], spans: Spans) -> Iterator[Edit]:
@@ -193,7 +185,7 @@ def _check_given(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
     if given[0].part.at:
         raise UsageError(f"{given[0].file}: it is the first part, there is no link before it")
     first = parts[0]
-    before = sections(first.data, first.file) if is_joined_whole(first.data) else [first]
+    before = kept.sections(first.data, first.file) if kept.is_joined_whole(first.data) else [first]
     names = [it.name for it in (*before, *parts[1:])]
     twice = next((it for at, it in enumerate(names) if it in names[:at]), None)
     if twice is not None:
@@ -227,13 +219,13 @@ def _added(
     twice = repeated(joined.document.root, spans)
     edits = [*mount.edits, *twice, *once.part, *system.part]
     made = _edited(text, [*edits, *own_spaces(joined.document, spans, edits)])
-    more = section(
-        KeptText(part.name, part.prefix, names, made), start, end + len(made) - len(text)
+    more = kept.section(
+        kept.KeptText(part.name, part.prefix, names, made), start, end + len(made) - len(text)
     )
     base = _edited(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
     notes = (*mount.notes, *once.notes, *system.notes)
-    return placed(base, first.name, first.prefix, more), mounted, notes
+    return kept.placed(base, first.name, first.prefix, more), mounted, notes
 
 
 def _edited(text: bytes, edits: Iterable[Edit]) -> bytes:
@@ -266,7 +258,7 @@ def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list
         old = spans.text_of(it)
         words = (b' xmlns:%s="%s"' % pair for pair in sorted(lacking) if pair[1] in used)
         at = 1 + len(old[1:].split(b">", 1)[0].split(None, 1)[0].rstrip(b"/"))
-        edits.append(was(start, spans.end_of(it), old, old[:at] + b"".join(words) + old[at:]))
+        edits.append(kept.was(start, spans.end_of(it), old, old[:at] + b"".join(words) + old[at:]))
     return edits
 
 

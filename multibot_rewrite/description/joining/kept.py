@@ -17,7 +17,7 @@ A comment holds no ``--``, and no colon before a blank: launch files pass a desc
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 from urllib.parse import quote, unquote
 
@@ -117,28 +117,23 @@ def sections(text: bytes, file: str) -> list[KeptText]:
     mark = _BASE.search(before)
     if mark is None:
         raise InputError(f"{file}: it was not made by multibot join: its parts are not known")
-    found = list(_behind(before, mark.end(), file))
-    last = found[-1][1] if found else mark.end()
-    base = before[: mark.start()] + before[last:]
-    name, prefix = ((word or b"").decode() for word in mark.groups())
-    return [KeptText(name, prefix, (), base), *(it for it, _ in found)]
-
-
-def _behind(text: bytes, at: int, file: str) -> Iterator[tuple[KeptText, int]]:
-    """Each part that follows, and where it ends."""
-    while part := _PART.match(text, at):
+    found, last = [], mark.end()
+    while part := _PART.match(before, last):
         name, prefix, materials, head = (word or b"" for word in part.groups())
         end = _END % name
-        close = text.find(end, part.end())
-        stop = text.find(b" -->\n", close + len(end))
+        close = before.find(end, part.end())
+        stop = before.find(b" -->\n", close + len(end))
         if close < 0 or stop < 0:
             what = f"the comment at the end of part {name.decode()!r} was edited by hand"
             raise InputError(f"{file}: {what}")
-        tail = text[close + len(end) : stop]
-        whole = _shown(head) + text[part.end() : close] + _shown(tail)
+        tail = before[close + len(end) : stop]
+        whole = _shown(head) + before[part.end() : close] + _shown(tail)
         names = tuple(unquote(it) for it in materials.decode().split(",") if it)
-        at = stop + len(b" -->\n")
-        yield KeptText(name.decode(), prefix.decode(), names, whole), at
+        found.append(KeptText(name.decode(), prefix.decode(), names, whole))
+        last = stop + len(b" -->\n")
+    base = before[: mark.start()] + before[last:]
+    first, prefix = (word or b"" for word in mark.groups())
+    return [KeptText(first.decode(), prefix.decode(), (), base), *found]
 
 
 def _end(spans: Spans, found: re.Match[bytes], file: str) -> int:

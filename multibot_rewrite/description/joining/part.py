@@ -17,14 +17,8 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import PREFIX, Naming, make_naming
 from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.checks import links_and_joints
 from multibot_rewrite.description.checks.audit import audit
-from multibot_rewrite.description.checks.links_and_joints import (
-    WORLD,
-    Robot,
-    loops,
-    read_robot,
-    roots,
-)
 from multibot_rewrite.description.joining.kept import is_joined, is_joined_whole
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.included_by import robot_instead
@@ -90,13 +84,13 @@ class ReadPart(NamedTuple):
     data: bytes
     text: bytes
     inventory: Inventory
-    robot: Robot
+    robot: links_and_joints.Robot
     findings: tuple[Finding, ...]
 
     @property
     def root(self) -> str:
         """The name of its root link."""
-        return roots(self.robot)[0].name
+        return links_and_joints.roots(self.robot)[0].name
 
 
 def prefixing(kinds: Iterable[str] = PREFIXED, topics: str | None = None) -> Naming:
@@ -150,7 +144,7 @@ def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> Re
             found = tuple(audit(inventory, make_renames(inventory, prefixing(())), tree))
             if any(it.level == ERROR for it in found):
                 raise RewriteRefused(found)
-    robot = read_robot(inventory.document.root)
+    robot = links_and_joints.read_robot(inventory.document.root)
     name = name_of(part, file, inventory.document.root.get("name", ""))
     return ReadPart(name, file, part.prefix, data, text, inventory, robot, findings)
 
@@ -159,7 +153,7 @@ def _faults(inventory: Inventory) -> Iterator[str]:
     if inventory.format != "robot":
         yield f"it is <{inventory.document.root.tag}>; only URDFs can be joined"
         return
-    robot = read_robot(inventory.document.root)
+    robot = links_and_joints.read_robot(inventory.document.root)
     if not robot.links:
         yield f"it has no link; {robot_instead(inventory.document.file)}"
     for kind, every in (("link", robot.links), ("joint", robot.joints)):
@@ -176,9 +170,9 @@ def _faults(inventory: Inventory) -> Iterator[str]:
         for end, name in (("parent", joint.parent), ("child", joint.child)):
             if name not in robot.link:
                 yield f"joint {joint.name!r} has the {end} {name!r}, which is no link"
-    for loop in loops(robot):
+    for loop in links_and_joints.loops(robot):
         yield f"joints {', '.join(repr(it.name) for it in loop)} make a loop"
-    found = [it.name for it in roots(robot)]
+    found = [it.name for it in links_and_joints.roots(robot)]
     if len(found) != 1:
         first = " and ".join(map(repr, found[:2]))
         yield f"{len(found)} of its links have no parent ({first}); a URDF has one root link"
@@ -198,7 +192,7 @@ def check_meeting(part: ReadPart, known: Mapping[tuple[str, str], str]) -> None:
     """Raise InputError for a name that an earlier part has; ``known`` says which."""
     for kind, name in names_of(part.inventory):
         other = known.get((kind, name))
-        if other is None or (kind, name) == ("link", WORLD):
+        if other is None or (kind, name) == ("link", links_and_joints.WORLD):
             continue
         more = (
             f"another prefix than {part.prefix!r}" if part.prefix else "a prefix (--prefix hand_)"

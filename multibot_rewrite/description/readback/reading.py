@@ -8,12 +8,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.description.readback.active import (
-    hardware_section,
-    opened,
-    plugin_section,
-    sensor_sections,
-)
+from multibot_rewrite.description.readback import active, parameters
 from multibot_rewrite.description.readback.nodes import (
     BELOW,
     TOPIC,
@@ -23,13 +18,6 @@ from multibot_rewrite.description.readback.nodes import (
     node_of,
 )
 from multibot_rewrite.description.readback.other_topics import of_others, resolved
-from multibot_rewrite.description.readback.parameters import (
-    MODEL,
-    around,
-    default_of,
-    is_nested,
-    values_of,
-)
 from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
 
@@ -77,10 +65,14 @@ def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
     nodes = _nodes(hosts, vocabulary.release)
     with_node = {it.number for it in nodes}
     names = [*_links(root), *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
-    names += _of_plugins(root, hosts, with_node, vocabulary)
-    names += [*_of_hardware(root, vocabulary), *_of_sensors(root, vocabulary)]
+    names += _of_hosts(root, hosts, "plugin", with_node, vocabulary)
+    systems = enumerate(root.iter("ros2_control"))
+    known = ((it, number, active.hardware_section(it, vocabulary)) for number, it in systems)
+    hardware = [_Host(it, number, section) for it, number, section in known if section]
+    names += _of_hosts(root, hardware, "ros2_control", (), vocabulary)
+    names += _of_sensors(root, vocabulary)
     names += _of_elements(root, vocabulary)
-    missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
+    missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(parameters.MODEL))
     heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
     below = (end for it in nodes for end in _endpoints(it, below=True))
     others = (
@@ -110,7 +102,7 @@ def _hosts(root: _Element, vocabulary: Vocabulary) -> tuple[list[_Host], list[tu
         # The class of a ros2_control system, or a plugin of Webots: none of Gazebo's.
         if "filename" not in plugin.attrib and "name" not in plugin.attrib:
             continue
-        section, known = plugin_section(plugin, vocabulary)
+        section, known = active.plugin_section(plugin, vocabulary)
         if not known:
             unknown.append((number, plugin.get("filename", "") or plugin.get("name", "")))
         if section is not None:
@@ -128,13 +120,17 @@ def _of_first_senders(
 ) -> tuple[RuntimeName, ...]:
     """Without those of systems whose transform another one of the model sends, or sends first."""
     numbers = {it.number for it in missed}
-    models = {it.number: around(it.element) for it in hosts}
+    models = {it.number: parameters.around(it.element) for it in hosts}
     sent: set[_Element] = set()
     partly: set[int] = set()
     for it in hosts:
-        sites = [s for s in it.section.sites if MODEL in s.default and s.kinds[0] == FRAME]
+        sites = [
+            s for s in it.section.sites if parameters.MODEL in s.default and s.kinds[0] == FRAME
+        ]
         if it.number not in numbers:
-            sent |= {models[it.number] for s in sites if default_of(it.element, s.default)}
+            sent |= {
+                models[it.number] for s in sites if parameters.default_of(it.element, s.default)
+            }
         elif any(any(values_at(it.element, s.path)) for s in sites):
             partly.add(it.number)
     sent |= {models[it] for it in partly}
@@ -142,7 +138,7 @@ def _of_first_senders(
     for number in sorted(numbers - partly):
         if models[number] not in sent:
             first.setdefault(models[number], number)
-    first = {model: it for model, it in first.items() if not is_nested(model)}
+    first = {model: it for model, it in first.items() if not parameters.is_nested(model)}
     return tuple(it for it in missed if it.number in partly or it.number in first.values())
 
 
@@ -176,15 +172,15 @@ def _endpoints(node: ReadNode, below: bool) -> Iterator[RuntimeName]:
     yield from (it for it in node.endpoints if not it.off and (it.parameter in stems) == below)
 
 
-def _of_plugins(
-    root: _Element, hosts: list[_Host], nodes: Container[int], vocabulary: Vocabulary
+def _of_hosts(
+    root: _Element, hosts: list[_Host], tag: str, nodes: Container[int], vocabulary: Vocabulary
 ) -> Iterator[RuntimeName]:
     for host in hosts:
         if host.number not in nodes or _is_of_either(host):
-            yield from _topics(*host, "plugin", vocabulary.release)
-        yield from _frames(host, "plugin")
+            yield from _topics(*host, tag, vocabulary.release)
+        yield from _frames(host, tag)
         yield from _lookups(root, host, vocabulary)
-        yield from _opened(host, "plugin")
+        yield from _opened(host, tag)
 
 
 def _is_of_either(host: _Host) -> bool:
@@ -195,20 +191,9 @@ def _is_of_either(host: _Host) -> bool:
     return any(it.kinds == ("namespace",) and "/" not in it.path for it in host.section.sites)
 
 
-def _of_hardware(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
-    for number, system in enumerate(root.iter("ros2_control")):
-        section = hardware_section(system, vocabulary)
-        if section is not None:
-            host = _Host(system, number, section)
-            yield from _topics(*host, "ros2_control", vocabulary.release)
-            yield from _frames(host, "ros2_control")
-            yield from _lookups(root, host, vocabulary)
-            yield from _opened(host, "ros2_control")
-
-
 def _of_sensors(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
     for number, sensor in enumerate(root.iter("sensor")):
-        for section in sensor_sections(sensor, vocabulary):
+        for section in active.sensor_sections(sensor, vocabulary):
             yield from _topics(sensor, number, section, "sensor", vocabulary.release)
             yield from _opened(_Host(sensor, number, section), "sensor")
 
@@ -248,7 +233,7 @@ def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
 
 
 def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
-    for kind, value, path in opened(host.element, host.section):
+    for kind, value, path in active.opened(host.element, host.section):
         yield RuntimeName(kind, value, tag, host.number, path)
 
 
@@ -263,7 +248,7 @@ def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[Ru
     (every,) = vocabulary.find("element", tag)
     for site in (*every.sites, *host.section.sites):
         if site.role != "keep" and kind in site.kinds:
-            for value in dict.fromkeys(values_of(host.element, site)):
+            for value in dict.fromkeys(parameters.values_of(host.element, site)):
                 # What is looked up below a link has its name.
                 if (value.partition("::")[0] if site.form == "suffixed" else value) in there:
                     yield RuntimeName(kind, value, tag, host.number, site.path)

@@ -13,14 +13,9 @@ from multibot_rewrite.base.wording import clip
 from multibot_rewrite.description.checks.mentions import MENTIONED
 from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.reports.explain import plugin_name, short_name
+from multibot_rewrite.description.rewriters import tree
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.description.rewriters.tree import (
-    ANY_WITH_ROS,
-    TreeNode,
-    hardware_keys,
-    plugin_keys,
-)
 from multibot_rewrite.description.rewriters.vocabulary.grammar import (
     read_header,
     read_section,
@@ -127,8 +122,8 @@ def loaded_by(host: Host) -> Loaded | None:
 
 def _section_name(type_: str, element: _Element) -> str:
     """The first name by which the element would be looked up and a section can be called."""
-    keys = plugin_keys(element) if type_ == "plugin" else hardware_keys(element)
-    return next((key for key in keys if key != ANY_WITH_ROS and _can_head(type_, key)), "")
+    keys = tree.plugin_keys(element) if type_ == "plugin" else tree.hardware_keys(element)
+    return next((key for key in keys if key != tree.ANY_WITH_ROS and _can_head(type_, key)), "")
 
 
 def _can_head(type_: str, name: str) -> bool:
@@ -142,7 +137,7 @@ def _has_params(section: SuggestedSection) -> bool:
     return any("param" in split_path(row.path)[0][-1] for row in section.rows if row.path[0] != "@")
 
 
-def _values(element: _Element, node: TreeNode | None, path: str) -> Iterator[tuple[str, str]]:
+def _values(element: _Element, node: tree.TreeNode | None, path: str) -> Iterator[tuple[str, str]]:
     """Path and value of every attribute and text below an element that no row speaks of."""
     known = {""} if node is not None and node.text is not None else set()
     if node is not None:
@@ -157,7 +152,7 @@ def _values(element: _Element, node: TreeNode | None, path: str) -> Iterator[tup
         yield from _values(child, _below(node, child), f"{path}/{_step(child)}".lstrip("/"))
 
 
-def _below(node: TreeNode | None, child: _Element) -> TreeNode | None:
+def _below(node: tree.TreeNode | None, child: _Element) -> tree.TreeNode | None:
     below = node.children.get(str(child.tag)) if node is not None else None
     return below.select(child) if below is not None and below.select is not None else below
 

@@ -16,26 +16,7 @@ from multibot_rewrite.base.bounded import MAX_BYTES, load_json
 from multibot_rewrite.base.model import XACRO_FAILED, InputError
 from multibot_rewrite.base.outside import real_path, unrepeatable
 from multibot_rewrite.description.sources.access import Access, NotAllowedError
-from multibot_rewrite.description.sources.child.frames import (
-    CALLS,
-    ENVIRONMENT,
-    FIND,
-    GLOB,
-    LONGEST,
-    NUMBER,
-    ORIGINS,
-    PIECES,
-    QUESTION,
-    READ,
-    REFUSAL,
-    REPORT,
-    REQUEST,
-    TEXT,
-    VALUE,
-    GarbageError,
-    framed,
-    received,
-)
+from multibot_rewrite.description.sources.child import frames
 from multibot_rewrite.description.sources.processes import XacroChild, child
 
 # What a child may ask, and read in all.
@@ -43,8 +24,8 @@ MOST_QUESTIONS, MOST_READ = 20_000, 16 * MAX_BYTES
 _TRIPLE, _QUADRUPLE, _EIGHT = 3, 4, 8
 # What reading an answer raises that is not what was agreed on.
 _GARBAGE = (
-    GarbageError, ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError,
-    struct.error,
+    frames.GarbageError, ValueError, LookupError, TypeError, AttributeError, OverflowError,
+    RecursionError, struct.error,
 )  # fmt: skip
 
 
@@ -125,7 +106,7 @@ def converse(
     }
     with child(seconds) as it:
         try:
-            it.send(framed(REQUEST, json.dumps(request).encode()))
+            it.send(frames.framed(frames.REQUEST, json.dumps(request).encode()))
             return _result(it, _answered(it, sources))
         except TimeoutError:
             raise InputError(_ended(access.path, signal.SIGALRM, seconds), XACRO_FAILED) from None
@@ -141,26 +122,26 @@ def converse(
 def _answered(it: XacroChild, sources: Sources) -> bytes:
     """Answer questions until there is a report."""
     for _ in range(MOST_QUESTIONS):
-        kind, data = received(it.read, LONGEST)
-        if kind == REPORT:
+        kind, data = frames.received(it.read, frames.LONGEST)
+        if kind == frames.REPORT:
             return data
-        if kind != QUESTION:
+        if kind != frames.QUESTION:
             break
         it.send(_answer(data, sources))
-    raise GarbageError
+    raise frames.GarbageError
 
 
 def _answer(data: bytes, sources: Sources) -> bytes:
     what, name = load_json(data)
     access = sources.access
     ways: Mapping[str, Callable[[str], bytes]] = {
-        READ: sources.read,
-        GLOB: lambda pattern: json.dumps(access.matching(pattern)).encode(),
-        FIND: lambda package: os.fsencode(access.package(package)),
-        ENVIRONMENT: lambda variable: json.dumps(access.variable(variable)).encode(),
+        frames.READ: sources.read,
+        frames.GLOB: lambda pattern: json.dumps(access.matching(pattern)).encode(),
+        frames.FIND: lambda package: os.fsencode(access.package(package)),
+        frames.ENVIRONMENT: lambda variable: json.dumps(access.variable(variable)).encode(),
     }
     try:
-        return framed(VALUE, ways[what](_text(name)))
+        return frames.framed(frames.VALUE, ways[what](_text(name)))
     except NotAllowedError as error:
         said: list[object] = ["refused", str(error)]
     except OSError as error:
@@ -169,7 +150,7 @@ def _answer(data: bytes, sources: Sources) -> bytes:
         said = ["lookup", str(error.args[0])]
     except ValueError as error:
         said = ["refused", f"{name!r}: {error}"]
-    return framed(REFUSAL, json.dumps(said).encode())
+    return frames.framed(frames.REFUSAL, json.dumps(said).encode())
 
 
 def _result(it: XacroChild, data: bytes) -> Result:
@@ -178,8 +159,8 @@ def _result(it: XacroChild, data: bytes) -> Result:
     if "missing" in report:
         raise InputError(f"{_text(report['missing'])}; pip install xacro, or source ROS 2")
     failed = report.get("error")
-    text = b"" if failed else _expected(it, TEXT)
-    origins = b"" if failed else _expected(it, ORIGINS)
+    text = b"" if failed else _expected(it, frames.TEXT)
+    origins = b"" if failed else _expected(it, frames.ORIGINS)
     return Result(
         _text(report["notes"]),
         tuple(_text(name) for name in report["fences"]),
@@ -189,14 +170,14 @@ def _result(it: XacroChild, data: bytes) -> Result:
         ("", "") if failed else (_text(report["root"][0] or ""), _text(report["root"][1])),
         text,
         _numbers(origins, _TRIPLE),
-        _numbers(_expected(it, CALLS), _QUADRUPLE),
-        _numbers(_expected(it, PIECES), _EIGHT),
+        _numbers(_expected(it, frames.CALLS), _QUADRUPLE),
+        _numbers(_expected(it, frames.PIECES), _EIGHT),
         tuple(_text(word) for word in report["words"]),
     )
 
 
 def _expected(it: XacroChild, kind: bytes) -> bytes:
-    return received(it.read, {kind: LONGEST[kind]})[1]
+    return frames.received(it.read, {kind: frames.LONGEST[kind]})[1]
 
 
 def _failure(told: Any) -> Failure:
@@ -212,15 +193,15 @@ def _failure(told: Any) -> Failure:
 
 def _text(value: object) -> str:
     if not isinstance(value, str):
-        raise GarbageError
+        raise frames.GarbageError
     return value
 
 
 def _numbers(data: bytes, together: int) -> array[int]:
-    found = array(NUMBER)
+    found = array(frames.NUMBER)
     found.frombytes(data)
     if len(found) % together:
-        raise GarbageError
+        raise frames.GarbageError
     return found
 
 

@@ -13,17 +13,10 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
 
+from multibot_rewrite.base import model
 from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import (
-    NO_ARGUMENT,
-    NO_PACKAGE,
-    NOT_DEFINED,
-    UNREADABLE,
-    XACRO_FAILED,
-    InputError,
-)
 from multibot_rewrite.description.sources.access import BOUNDED, Access, Find, Reach, check_file
 from multibot_rewrite.description.sources.child.frames import KERNEL
 from multibot_rewrite.description.sources.conversation import Failure, Result, Sources, converse
@@ -77,10 +70,10 @@ def once_kept(key: object, expanded: Callable[[], _T]) -> _T:
     if key not in kept:
         try:
             kept[key] = expanded()
-        except InputError as error:
+        except model.InputError as error:
             kept[key] = error
     found: Any = kept[key]
-    if isinstance(found, InputError):
+    if isinstance(found, model.InputError):
         raise found.with_traceback(None)
     return found  # type: ignore[no-any-return]
 
@@ -130,7 +123,7 @@ def expand_traced(
         text = _text(path, result, trace)
         if len(result.origins) != 3 * len(start_offsets(text)):
             what = "the places that its process reported are wrong"
-            raise InputError(f"{path}: xacro failed: {what}", XACRO_FAILED)
+            raise model.InputError(f"{path}: xacro failed: {what}", model.XACRO_FAILED)
         return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts), Pieces(trace))
 
     given = frozenset(arguments.items()), frozenset(changed.items())
@@ -149,11 +142,11 @@ def _text(path: str, result: Result, trace: Trace) -> bytes:
             text = re.sub(r"(.{9,}) \1(?= |$)", r"\1", text, flags=re.DOTALL)
         reason = " ".join((text or said).split())
         message = _message(path, result.failure, reason, trace)
-        raise InputError(message, *_cause(reason))
+        raise model.InputError(message, *_cause(reason))
     # xacro expands what is inside the root, and drops the declaration of its own prefix.
     prefix, tag = result.root
     if prefix == "xacro":
-        raise InputError(
+        raise model.InputError(
             f"{path}: the root element is <{tag}>, which xacro does not expand; "
             "put everything inside a <robot> element"
         )
@@ -175,13 +168,13 @@ def _tell_once() -> None:
 def _cause(reason: str) -> tuple[str, str]:
     """Return the cause in what xacro said, and the name that is not defined."""
     if _UNREADABLE.search(reason):
-        return UNREADABLE, ""
+        return model.UNREADABLE, ""
     if reason.startswith("package '") and "is not found" in reason:
-        return NO_PACKAGE, ""
+        return model.NO_PACKAGE, ""
     if reason.startswith("Undefined substitution argument"):
-        return NO_ARGUMENT, ""
+        return model.NO_ARGUMENT, ""
     found = _NOT_DEFINED.search(reason)
-    return (NOT_DEFINED, found[1] or found[2] or "") if found else (XACRO_FAILED, "")
+    return (model.NOT_DEFINED, found[1] or found[2] or "") if found else (model.XACRO_FAILED, "")
 
 
 def _message(path: str, failure: Failure, reason: str, trace: Trace) -> str:

@@ -8,25 +8,15 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.base import naming
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import FOR_OLD_GAZEBO, Claim, InputError, SiteRow
-from multibot_rewrite.base.naming import (
-    DECLARED_KINDS,
-    DEFAULT_LAYOUT,
-    TOPIC_KINDS,
-    Layout,
-    find_layout,
-)
+from multibot_rewrite.description.rewriters import spelling
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import names_in_topics
 from multibot_rewrite.description.rewriters.model_namespaces import below_models, own_namespaces
 from multibot_rewrite.description.rewriters.remap_rules import names_in_rules
-from multibot_rewrite.description.rewriters.spelling import (
-    ResolvedName,
-    resolved_names,
-    takes_empty,
-)
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
@@ -36,7 +26,7 @@ from multibot_rewrite.description.steps.document import Document, read_document
 NOTHING: Declared = {}
 SRDF = "srdf.robot"
 # As the file has its names: no namespace is a word that a layout renames.
-USUAL_LAYOUT = find_layout(DEFAULT_LAYOUT)._replace(namespaced=True)
+USUAL_LAYOUT = naming.find_layout(naming.DEFAULT_LAYOUT)._replace(namespaced=True)
 
 
 class Host(NamedTuple):
@@ -57,7 +47,7 @@ class Inventory(NamedTuple):
     hosts: list[Host]
     declared: dict[str, dict[str, Claim]]
     format: str
-    names: list[tuple[ResolvedName, ...]]
+    names: list[tuple[spelling.ResolvedName, ...]]
     release: str
 
     @property
@@ -77,7 +67,7 @@ def collect(
     document: Document,
     tree: Tree,
     urdf_declarations: Declared = NOTHING,
-    layout: Layout = USUAL_LAYOUT,
+    layout: naming.Layout = USUAL_LAYOUT,
 ) -> Inventory:
     """Walk the document in order along the tree of rewriters.
 
@@ -98,7 +88,7 @@ def collect(
     rules = names_in_rules(claims, inventory.served)
     rules = {**rules, **names_in_topics(of_gz, declared, layout.renames_models)}
     apart = layout.at_run_time
-    return inventory._replace(names=resolved_names(claims, declared, apart, rules))
+    return inventory._replace(names=spelling.resolved_names(claims, declared, apart, rules))
 
 
 def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], list[Host]]:
@@ -131,7 +121,7 @@ def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], li
                 claims.append(Claim(site, element, start, attribute, value))
         if text is not None:
             value = text_of(element)
-            if (value or takes_empty(text)) and _applies(text, element):
+            if (value or spelling.takes_empty(text)) and _applies(text, element):
                 claims.append(Claim(text, element, start, "", value))
     return claims, hosts
 
@@ -158,7 +148,9 @@ def _of_the_robot(claims: list[Claim]) -> list[Claim]:
     heard = [it for it in claims if it.site.when == SENT]
     if not heard:
         return claims
-    topics = (it for it in claims if it.site.when != SENT and it.site.kinds[0] in TOPIC_KINDS)
+    topics = (
+        it for it in claims if it.site.when != SENT and it.site.kinds[0] in naming.TOPIC_KINDS
+    )
     sent = {it.value.strip("/ ") for it in topics}
     return [it for it in claims if it.site.when != SENT or it.value.strip("/ ") in sent]
 
@@ -172,7 +164,7 @@ def _applies(site: SiteRow, element: etree._Element) -> bool:
 
 
 def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dict[str, Claim]]:
-    declared = {kind: dict(urdf_declarations.get(kind, {})) for kind in DECLARED_KINDS}
+    declared = {kind: dict(urdf_declarations.get(kind, {})) for kind in naming.DECLARED_KINDS}
     for claim in claims:
         site = claim.site
         if site.role != "declares" or site.kinds[0] not in declared:

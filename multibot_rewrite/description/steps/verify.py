@@ -28,18 +28,12 @@ from multibot_rewrite.description.rewriters.spelling import (
 )
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import Tree
+from multibot_rewrite.description.steps import strip
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.description.steps.inserted import MARKER, Marker, markers, removals
 from multibot_rewrite.description.steps.plan import Plan
-from multibot_rewrite.description.steps.strip import (
-    Place,
-    inside_of,
-    own_places,
-    strip_edits,
-    stripped,
-)
 
 Names = tuple[ResolvedName, ...]
 _KIND, _STEM = attrgetter("kind"), "stem"
@@ -97,7 +91,7 @@ def verify(
         inserted = removals(result.document, robot)
     except InputError as error:
         raise ProofError(f"the output does not parse: {error}") from None
-    is_inserted = inside_of(inserted)
+    is_inserted = strip.inside_of(inserted)
     if naming.own:
         result = result._replace(names=_as_in(inventory, result, is_inserted, naming))
     pairs = list(zip(result.claims, result.names, strict=True))
@@ -313,7 +307,7 @@ def _is_own_namespace(claim: Claim, it: Evidence) -> bool:
 
 def strips_to_source(it: Evidence) -> None:
     """Undoing the rewrite, by what the output alone says, gives the input back."""
-    own = own_places(it.inventory, it.naming)
+    own = strip.own_places(it.inventory, it.naming)
     fills = any(marker.filled for marker in it.markers)
     if not (_strips(it, own) if own or fills or _replaces(it.plan) else _adds_affixes(it)):
         raise ProofError(
@@ -321,8 +315,8 @@ def strips_to_source(it: Evidence) -> None:
         )
 
 
-def _strips(it: Evidence, own: frozenset[Place]) -> bool:
-    edits = strip_edits(it.result, it.naming, it.robot, own)
+def _strips(it: Evidence, own: frozenset[strip.Place]) -> bool:
+    edits = strip.strip_edits(it.result, it.naming, it.robot, own)
     return b"".join(cut(it.result.document.source, edits)) == it.inventory.document.source
 
 
@@ -338,7 +332,7 @@ def _adds_affixes(it: Evidence) -> bool:
     for old, (claim, names) in zip(it.inventory.claims, it.found, strict=True):
         key = id(names), claim.site.namespaced
         if names and key not in known:
-            known[key] = stripped(claim, names, it.naming, it.robot)
+            known[key] = strip.stripped(claim, names, it.naming, it.robot)
         if old.value != (known[key] if names else claim.value):
             return False
         more -= len(claim.value) - len(old.value)

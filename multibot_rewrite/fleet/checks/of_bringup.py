@@ -4,11 +4,13 @@ robots has it as well, and is built."""
 
 from __future__ import annotations
 
+import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
@@ -38,12 +40,40 @@ def as_the_vendor_has_it(
     specs = {it.spec.namespace: it.spec for it in plan.robots if it.spec.launch}
     alone = cache(lambda robot: _errors_of(specs[robot], seen, known))
     for it in found:
-        robots = _robots(it, seen) & specs.keys() if it.level == ERROR else ()
+        # What names no robot, as the interfaces of its hardware, is asked of all.
+        about = (_robots(it, seen) or specs.keys()) if it.level == ERROR else set[str]()
+        robots = about & specs.keys()
         if robots and all(_is_in(alone(robot), it, seen, robot) for robot in robots):
-            hint = f"{it.hint}; {_ALREADY}" if it.hint else _ALREADY
-            yield it._replace(level=WARNING, hint=hint)
+            yield _as_known(it)
         else:
             yield it
+
+
+def as_in_the_vendors_files(plan: FleetPlan, found: Iterable[Finding]) -> Iterator[Finding]:
+    """Yield the findings about a fleet; an error in a parameter file that goes with the launch files of
+    a robot, which that file has by itself, is a warning."""
+    launched_with = {
+        os.path.realpath(path): path
+        for robot in plan.robots
+        for path in (robot.spec.companions.get("params", ()) if robot.spec.launch else ())
+    }
+    alone = cache(lambda path: _errors_in(path, plan.file.distro))
+    for it in found:
+        path = launched_with.get(os.path.realpath(it.file)) if it.level == ERROR else None
+        yield _as_known(it) if path and (it.code, it.line) in alone(path) else it
+
+
+def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
+    from multibot_rewrite.lint.check import lint_data
+    from multibot_rewrite.rules.settings import Settings
+
+    found = lint_data(path, read_file(path), Settings(distro=release))
+    return {(it.code, it.line) for it in found if it.level == ERROR}
+
+
+def _as_known(it: Finding) -> Finding:
+    hint = f"{it.hint}; {_ALREADY}" if it.hint else _ALREADY
+    return it._replace(level=WARNING, hint=hint)
 
 
 def _errors_of(robot: RobotSpec, fleet: Index, known: Knowledge) -> Mapping[_Key, Set[_Part]]:

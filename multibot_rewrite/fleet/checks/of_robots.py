@@ -34,7 +34,9 @@ from multibot_rewrite.producers.launch.handed_on import for_robot
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.files.ros_names import in_description
 from multibot_rewrite.rules.launch.models import in_each_other
+from multibot_rewrite.rules.system.clocks import clocks_mixed, compares_times
 from multibot_rewrite.rules.system.sharing import one_device
+from multibot_rewrite.spelling.bridged_topics import is_bridged
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
@@ -60,6 +62,7 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
     yield from moveit_frames(plan)
     yield from differences(plan)
     yield from of_sdf_alone(plan)
+    yield from _on_another_time(plan)
     # Each description that names another robot of the fleet in values of unknown use, at its first such
     # value; what is for the one robot of it is right.
     words = {word for it in plan.robots for word in it.spec.words}
@@ -69,6 +72,21 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
         others = words if more else words.difference(first.spec.words)
         problems = in_description(source.root, others, first.names.declared)
         yield from to_findings(source, problems, ERROR)
+
+
+def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:
+    """The robots in a simulator that are told to use the time of the machine, with nodes that compare
+    it with that of what they get; gz-sim's sensors have the time of the simulator."""
+    for robot in plan.robots:
+        facts = plan.evidence_of(robot).nodes if robot.spec.use_sim_time is False else ()
+        own = (it.name for it in facts if not (it.when or it.shared))
+        timed = [it for it in own if compares_times(it.rpartition("/")[2])]
+        bridged = is_simulated(robot) and is_bridged(robot.member.inventory)
+        if timed and bridged:
+            who = f"robot {robot.spec.name!r} is in a simulator and on the time of the machine"
+            message = f"{who}; what it senses has that of the simulator: {shorten(timed)}"
+            hint = "leave use_sim_time: false out, or write simulator: none for a real robot"
+            yield at_robot(clocks_mixed, robot, message, hint, level=WARNING)
 
 
 def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:

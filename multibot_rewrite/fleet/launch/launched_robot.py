@@ -11,6 +11,7 @@ from functools import lru_cache
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import RemapRule
+from multibot_rewrite.description.sources.expand import once_kept
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
@@ -67,10 +68,19 @@ def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
 def _read(order: LaunchOrder) -> LaunchGraph:
     """However its path is written, a launch file is read once; what is wrong is said of the path that
     was given."""
-    whole = order._replace(file=os.path.abspath(order.file))
+    whole = _whole(order)
     with suppress(InputError):
-        return _graph(whole, _times(whole.file))
+        return once_kept(whole, lambda: _graph(whole, _times(whole.file)))
     return launch_graph(order)
+
+
+def keep(order: LaunchOrder, graph: LaunchGraph) -> None:
+    """Take a launch file as read, where what is expanded is kept: nobody changes it meanwhile."""
+    once_kept(_whole(order), lambda: graph)
+
+
+def _whole(order: LaunchOrder) -> LaunchOrder:
+    return order._replace(file=os.path.abspath(order.file))
 
 
 @lru_cache

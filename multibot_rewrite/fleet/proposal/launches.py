@@ -13,7 +13,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.sources.included_by import data_of_file
-from multibot_rewrite.fleet.launch.launched_robot import launch_of
+from multibot_rewrite.fleet.launch.launched_robot import keep, launch_of
 from multibot_rewrite.producers.launch.child import read_launch_files
 from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.programs import programs
@@ -86,7 +86,10 @@ def read_any(launch: Sequence[str]) -> list[Reading]:
 def read_as(orders: Iterable[LaunchOrder]) -> list[Reading]:
     """What launch files start, each as it is launched."""
     every = tuple(orders)
-    return _read(every, tuple(_time(it.file) for it in every)) if every else []
+    read = _read(every, tuple(_time(it.file) for it in every)) if every else []
+    for it in (one for one in read if one.graph.nodes and not one.order.every):
+        keep(it.order, it.graph)
+    return read
 
 
 @lru_cache(maxsize=16)

@@ -81,8 +81,13 @@ def write_shard(path: str, data: bytes) -> None:
 
 def bound(folder: str) -> None:
     """Remove the files that were not used for longest, until half of what may be is left."""
+    files = []
     with os.scandir(folder) as found:
-        files = sorted(_sizes(found), reverse=True)
+        for it in found:
+            with suppress(OSError):  # another run was faster
+                state = it.stat(follow_symlinks=False)
+                files.append((state.st_mtime_ns, state.st_size, it.path))
+    files.sort(reverse=True)
     total = sum(size for _, size, _ in files)
     if total <= MOST_IN_ALL and len(files) <= MOST_FILES:
         return
@@ -90,15 +95,8 @@ def bound(folder: str) -> None:
     for number, (_, size, path) in enumerate(files):
         left += size
         if left > MOST_IN_ALL // 2 or number >= MOST_FILES // 2:
-            with suppress(OSError):  # another run was faster
+            with suppress(OSError):
                 os.unlink(path)
-
-
-def _sizes(found: Iterable[os.DirEntry[str]]) -> Iterable[tuple[int, int, str]]:
-    for it in found:
-        with suppress(OSError):
-            state = it.stat(follow_symlinks=False)
-            yield state.st_mtime_ns, state.st_size, it.path
 
 
 def _tuples(value: Any) -> Any:

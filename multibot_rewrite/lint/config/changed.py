@@ -56,14 +56,14 @@ def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
 def _differing(top: str, base: str) -> tuple[frozenset[str], frozenset[str]]:
     """What differs from a commit, in submodules as well, and what git does not have. A submodule is
     asked by itself: git would run its filters."""
-    diff = (
+    diff = [
         "diff",
         "--name-only",
         "-z",
         "--no-renames",
         "--no-ext-diff",
         "--ignore-submodules=dirty",
-    )
+    ]
     changed = _names(_git(top, *diff, base, "--"))
     others = _names(_git(top, "ls-files", "-z", "--others", "--exclude-standard"))
     inner = {it for it in _submodules(top) if any(_differing(os.path.join(top, it), "HEAD"))}

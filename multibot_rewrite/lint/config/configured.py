@@ -7,13 +7,7 @@ import os
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from multibot_rewrite.base.config import (
-    configured_vocabulary,
-    folders_above,
-    parse,
-    read,
-    type_name,
-)
+from multibot_rewrite.base import config
 from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.findings.selection import OFF
 from multibot_rewrite.base.model import UsageError
@@ -62,25 +56,25 @@ def configured(near: str, file: str | None) -> Configured:
     path = file or next(_above(near), "")
     result = _configured(path, _table(path)) if path else Configured()
     settings = result.settings
-    vocabulary = (*configured_vocabulary(near), *settings.vocabulary)
+    vocabulary = (*config.configured_vocabulary(near), *settings.vocabulary)
     return result._replace(settings=settings._replace(vocabulary=tuple(dict.fromkeys(vocabulary))))
 
 
 def _above(near: str) -> Iterator[str]:
-    for folder in folders_above(near):
+    for folder in config.folders_above(near):
         own, project = os.path.join(folder, OWN), os.path.join(folder, PROJECT)
         if os.path.isfile(own):
             yield own
         # Parsing is slow compared with the rest of a start, and most projects do not have the table.
-        data = read(project) if os.path.isfile(project) else b""
+        data = config.read(project) if os.path.isfile(project) else b""
         if MARK in data and _in_project(project, data) is not None:
             yield project
 
 
 def _table(path: str) -> Mapping[str, object]:
-    data = read(path)
+    data = config.read(path)
     if os.path.basename(path) != PROJECT:
-        return parse(path, data)
+        return config.parse(path, data)
     table = _in_project(path, data)
     if table is None:
         raise UsageError(f"{path}: there is no table [tool.{TABLE}] in it")
@@ -88,14 +82,14 @@ def _table(path: str) -> Mapping[str, object]:
 
 
 def _in_project(path: str, data: bytes) -> Mapping[str, object] | None:
-    tool = parse(path, data).get("tool", {})
+    tool = config.parse(path, data).get("tool", {})
     if not isinstance(tool, dict):
         return None
     if "urdf_lint" in tool:
         raise UsageError(f"{path}: [tool.urdf_lint] is not read, write [tool.{TABLE}]")
     table = tool.get(TABLE)
     if table is not None and not isinstance(table, dict):
-        raise UsageError(f"{path}: tool.{TABLE} is {type_name(table)}, write [tool.{TABLE}]")
+        raise UsageError(f"{path}: tool.{TABLE} is {config.type_name(table)}, write [tool.{TABLE}]")
     return table
 
 

@@ -10,7 +10,7 @@ import errno
 import os
 import re
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import partial
 from itertools import chain, islice
 from math import inf
@@ -94,7 +94,13 @@ def _read(folder: str, most: int, path: str) -> Recording | InputError:
 
     tempfile.tempdir = folder
     try:
-        _check_metadata(path)
+        # What the reader's own parser might not survive.
+        metadata = os.path.join(path, METADATA)
+        if not os.path.isdir(path):
+            with open(path, "rb") as file:
+                refuse_others(file.read(_PART), path, BAG)
+        elif os.path.exists(metadata):
+            load_yaml(read_text(metadata), metadata, _REINDEX)
         limit_files(most)
         with Reader(path) as reader:
             return _recording(reader)
@@ -105,17 +111,6 @@ def _read(folder: str, most: int, path: str) -> Recording | InputError:
             return InputError(f"{path}: it unpacks to more than a bag may hold; leave it out")
         reason = one_line(str(error) or type(error).__name__)[:200].rstrip(".")
     return InputError(f"{path}: not a readable bag: {reason}; {_REINDEX}")
-
-
-def _check_metadata(path: str) -> None:
-    """Raise InputError for a file that the reader's own parser might not survive."""
-    if not os.path.isdir(path):
-        with open(path, "rb") as file:
-            refuse_others(file.read(_PART), path, BAG)
-        return
-    if os.path.exists(os.path.join(path, METADATA)):
-        metadata = os.path.join(path, METADATA)
-        load_yaml(read_text(metadata), metadata, _REINDEX)
 
 
 def _recording(reader: Reader) -> Recording:
@@ -130,7 +125,8 @@ def _recording(reader: Reader) -> Recording:
         if connections[0].msgtype == TF_TYPES[0]:
             found, unread = _transforms(reader, name, connections)
             transforms += found
-            caveats += [_unread(name)] * unread
+            what = f"messages on {name} are no TFMessage, or more than {TRANSFORMS:,}"
+            caveats += [Caveat("frames-not-read", True, f"{what}: not all were read")] * unread
     empty = [it.name for it in topics if not it.messages]
     if len(empty) == len(topics):
         text = (
@@ -138,11 +134,6 @@ def _recording(reader: Reader) -> Recording:
         )
         caveats.append(Caveat("empty-bag", True, text))
     return Recording(topics, tuple(transforms), max(0, reader.duration) / 1e9, tuple(caveats))
-
-
-def _unread(topic: str) -> Caveat:
-    text = f"messages on {topic} are no TFMessage, or more than {TRANSFORMS:,}: not all were read"
-    return Caveat("frames-not-read", True, text)
 
 
 def _topic(reader: Reader, name: str, connections: list[Connection]) -> RecordedTopic:
@@ -159,18 +150,13 @@ def _topic(reader: Reader, name: str, connections: list[Connection]) -> Recorded
         frames = dict.fromkeys(it for it in found if it is not None)
         pose = max((pose_in(type_, it) for it in read), key=lambda it: inf in it, default=())
     elif type_ == CLOCK_TYPE:
-        back = _back(_first(reader, connections, TRANSFORMS))
+        pace = Pace()
+        for data in _first(reader, connections, TRANSFORMS):
+            pace = pace.after(read_stamp(data) or 0.0)
+        back = round(pace.back, 1)
     offered = (getattr(it.ext, "offered_qos_profiles", ()) for it in connections)
     qos = tuple(map(_qos, chain.from_iterable(offered)))
     return RecordedTopic(name, type_, count, qos, tuple(frames), tuple(joints), back, pose)
-
-
-def _back(messages: Iterable[bytes]) -> float:
-    """By how many seconds a clock goes back, at most."""
-    pace = Pace()
-    for data in messages:
-        pace = pace.after(read_stamp(data) or 0.0)
-    return round(pace.back, 1)
 
 
 def _has_header(connection: Connection) -> bool:

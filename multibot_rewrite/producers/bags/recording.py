@@ -73,7 +73,12 @@ def as_snapshot(found: Recording, plan: System | None = None) -> System:
     )
     around = Environment(0, "OFF", (), ROSBAG, "", False, 0, QUIET, seconds, found.caveats)
     heard = tuple(one for it in found.topics for one in _heard(it))
-    return System((), tuple(_publishers(found.topics)), frames, around, heard)
+    ends = (
+        End(TOPIC, PUBLISHES, it.name, it.type, "", RECORDER, qos, "")
+        for it in found.topics
+        for qos in it.qos or (None,)
+    )
+    return System((), tuple(ends), frames, around, heard)
 
 
 def _heard(it: RecordedTopic) -> Iterable[Heard]:
@@ -86,9 +91,3 @@ def _heard(it: RecordedTopic) -> Iterable[Heard]:
 def counted(found: Recording) -> dict[str, int]:
     """How many messages were recorded of each topic."""
     return {it.name: it.messages for it in found.topics}
-
-
-def _publishers(topics: Iterable[RecordedTopic]) -> Iterable[End]:
-    for it in topics:
-        for qos in it.qos or (None,):
-            yield End(TOPIC, PUBLISHES, it.name, it.type, "", RECORDER, qos, "")

@@ -13,7 +13,7 @@ import re
 import sys
 import threading
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 from multibot_rewrite.producers.ros import ros
@@ -132,7 +132,9 @@ def _with_answer(state: Answer, asked: Question, answer: Any) -> Answer:
     if asked.type == GET_STATE:
         return state._replace(lifecycle=str(answer.current_state.label))
     if asked.type == GET_PARAMETERS:
-        return _with_parameters(state, asked, answer.values)
+        texts = zip(asked.parameters, map(_plain, answer.values), strict=False)
+        said = (Parameter(asked.node, name, text) for name, text in texts if text is not None)
+        return state._replace(parameters=tuple(sorted({*state.parameters, *said})))
     if asked.type == LIST_PARAMETERS:
         return state
     own = (
@@ -140,16 +142,6 @@ def _with_answer(state: Answer, asked: Question, answer: Any) -> Answer:
         for it in answer.controller
     )
     return state._replace(controllers=tuple(own))
-
-
-def _with_parameters(state: Answer, asked: Question, values: Sequence[Any]) -> Answer:
-    known = {
-        name: text
-        for name, value in zip(asked.parameters, values, strict=False)
-        if (text := _plain(value)) is not None
-    }
-    found = (Parameter(asked.node, name, text) for name, text in known.items())
-    return state._replace(parameters=tuple(sorted({*state.parameters, *found})))
 
 
 def _plain(value: Any) -> str | None:

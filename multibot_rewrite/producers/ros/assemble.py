@@ -236,17 +236,12 @@ def endpoints_with_process(
     endpoints: Iterable[End], processes: Mapping[str, Sequence[str]]
 ) -> list[End]:
     """Sorted, each with the process of its node where the node has only one."""
+    only = {node: own[0] for node, own in processes.items() if len(own) == 1}
+    placed = (it._replace(process=it.process or only.get(it.node, "")) for it in endpoints)
     return sorted(
-        (_with_process(end, processes.get(end.node, ())) for end in endpoints), key=_order
+        placed,
+        key=lambda it: (it.kind, it.name, it.role, it.node, it.process, it.type, repr(it.qos)),
     )
-
-
-def _with_process(end: End, processes: Sequence[str]) -> End:
-    return end._replace(process=processes[0]) if not end.process and len(processes) == 1 else end
-
-
-def _order(end: End) -> tuple[str, ...]:
-    return (end.kind, end.name, end.role, end.node, end.process, end.type, repr(end.qos))
 
 
 def numbers_of(transform: Any) -> tuple[float, ...]:

@@ -80,7 +80,10 @@ def observe(
     """
     began = time.monotonic()
     seen = _observe_once(request, environ, tell)
-    doubtful = _may_contain_dead_nodes(seen)
+    names = [node.name for node in seen.nodes]
+    # There may be dead nodes where a name occurs twice, or one is unknown.
+    nameless = any(UNKNOWN_NODE in end.node for end in seen.ends)
+    doubtful = nameless or len(set(names)) < len(names)
     # On a busy machine the first messages of the discovery may be lost: an empty view is doubted, too.
     if seen.nodes and not doubtful:
         return seen
@@ -88,19 +91,9 @@ def observe(
     left = request.timeout - (time.monotonic() - began)
     if left >= seen.environment.seconds:
         return _observe_once(request._replace(timeout=left), environ, tell)
-    return _with_caveat(seen, Caveat("no-second-look", True, NO_SECOND_LOOK)) if doubtful else seen
-
-
-def _with_caveat(seen: System, caveat: Caveat) -> System:
+    caveats = [Caveat("no-second-look", True, NO_SECOND_LOOK)] if doubtful else []
     around = seen.environment
-    return seen._replace(environment=around._replace(caveats=(*around.caveats, caveat)))
-
-
-def _may_contain_dead_nodes(seen: System) -> bool:
-    """Whether a view may have dead nodes: a node name occurs twice, or one is unknown."""
-    names = [node.name for node in seen.nodes]
-    nameless = any(UNKNOWN_NODE in end.node for end in seen.ends)
-    return nameless or len(set(names)) < len(names)
+    return seen._replace(environment=around._replace(caveats=(*around.caveats, *caveats)))
 
 
 def _observe_once(
@@ -186,21 +179,15 @@ def running(
         limit.daemon = True
         limit.start()
         try:
-            _send(process, order)
+            assert process.stdin is not None
+            # Where the child ended before it read the order, its exit code says why.
+            with suppress(BrokenPipeError):
+                process.stdin.write(f"{order}\n".encode())
+                process.stdin.flush()
             yield RosProcess(process, errors, environ)
         finally:
             limit.cancel()
             _stop(process)
-
-
-def _send(process: subprocess.Popen[bytes], order: str) -> None:
-    assert process.stdin is not None
-    try:
-        process.stdin.write(f"{order}\n".encode())
-        process.stdin.flush()
-    except BrokenPipeError:
-        # The child ended before it read the order: its exit code says why.
-        return
 
 
 def _stop(process: subprocess.Popen[bytes]) -> None:

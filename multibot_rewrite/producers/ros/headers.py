@@ -11,6 +11,7 @@ import math
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Set
+from functools import partial
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK, LISTENER
@@ -109,7 +110,9 @@ def sensor_topics(endpoints: Iterable[End]) -> Iterator[SensorTopic]:
     """The topics worth a subscription, sensors first."""
     found: dict[str, list[End]] = defaultdict(list)
     for end in endpoints:
-        if (end.kind, end.role) == (TOPIC, PUBLISHES) and (_names_a_frame(end) or _is_clock(end)):
+        # The clock of all: its time is where others have their stamp.
+        is_clock = (end.name, end.type) == (CLOCK, CLOCK_TYPE)
+        if (end.kind, end.role) == (TOPIC, PUBLISHES) and (_names_a_frame(end) or is_clock):
             found[end.name].append(end)
     for name, ends in sorted(found.items(), key=_rank):
         latched = all(it.qos and it.qos.durability == "TRANSIENT_LOCAL" for it in ends)
@@ -120,11 +123,6 @@ def _rank(topic: tuple[str, list[End]]) -> tuple[int, str]:
     name, ends = topic
     package = ends[0].type.partition("/")[0]
     return PACKAGES.index(package) if package in PACKAGES else -1, name
-
-
-def _is_clock(end: End) -> bool:
-    """The clock of all: its time is where others have their stamp."""
-    return (end.name, end.type) == (CLOCK, CLOCK_TYPE)
 
 
 def _names_a_frame(end: End) -> bool:
@@ -161,16 +159,11 @@ class HeaderSamples:
         self._left_out = len(new[room:])
         for topic in new[:room]:
             self._asked.add(topic.name)
-            self._add(topic)
-
-    def _add(self, topic: SensorTopic) -> None:
-        end = self._subscribe(
-            topic.name, topic.type, topic.latched, lambda *it: self._receive(topic, *it)
-        )
-        if end:
-            self._open[topic.name] = end
-            self._bodies.update([topic.name] if is_of_a_body(topic.type) else [])
-            self._began = self._since[topic.name] = time.monotonic()
+            receive = partial(self._receive, topic)
+            if end := self._subscribe(topic.name, topic.type, topic.latched, receive):
+                self._open[topic.name] = end
+                self._bodies.update([topic.name] if is_of_a_body(topic.type) else [])
+                self._began = self._since[topic.name] = time.monotonic()
 
     def _receive(self, topic: SensorTopic, data: bytes, mark: Mark = None) -> None:
         if topic.type == CLOCK_TYPE:
@@ -188,8 +181,9 @@ class HeaderSamples:
             told = Heard(topic.name, frame, age, child=child or "", joints=joints, pose=pose)
             own[said] = told
         more = topic.has_rate and self._spanned(topic, data, mark)
-        if not more and (topic.publishers == 1 or len(own) >= MOST_FRAMES):
-            self._close(topic.name)
+        done = not more and (topic.publishers == 1 or len(own) >= MOST_FRAMES)
+        if done and (end := self._open.pop(topic.name, None)):
+            end()
 
     def _spanned(self, topic: SensorTopic, data: bytes, mark: Mark) -> bool:
         """Count a message; whether more are wanted for a rate."""
@@ -200,11 +194,6 @@ class HeaderSamples:
         span = span._replace(last=mark, ended=stamp, messages=span.messages + 1)
         self._spans[topic.name] = span
         return not span.rate() and span.messages < MOST_MESSAGES
-
-    def _close(self, topic: str) -> None:
-        end = self._open.pop(topic, None)
-        if end:
-            end()
 
     def keep_waiting(self, seconds: float) -> bool:
         """Whether to wait for silent topics, until ``seconds`` after the last subscription, or for a

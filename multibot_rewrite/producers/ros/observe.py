@@ -37,7 +37,6 @@ from multibot_rewrite.producers.ros.request import (
     from_text,
     run_worker,
 )
-from multibot_rewrite.producers.ros.tf_subscriptions import TfSubscriptions
 from multibot_rewrite.system import environment
 from multibot_rewrite.system.environment import LOCALHOST
 from multibot_rewrite.system.json import to_json
@@ -53,7 +52,6 @@ from multibot_rewrite.system.records import (
     EXPECTED,
     QUIET,
     Caveat,
-    Edge,
     End,
     Environment,
     System,
@@ -216,17 +214,13 @@ def _wait_until_settled(
         idle = now - changed.all >= still or now >= timeout - TF_SECONDS[1]
         if idle and queried != seen:
             queried = seen
-            _query(session, cache, ears, now)
+            known, ends = view(session, cache)
+            ears.update(ends)
+            if request.shows:
+                shown = _snapshot(session, known, ends, ears, (CHANGING, now, ()))
+                session.tell(to_json(shown))
         spent = time.thread_time() - began
     return "", clock, (), ()
-
-
-def _query(session: GraphSession, cache: queries.TopicCache, ears: Ears, now: float) -> None:
-    """Ask for all that the graph has, listen to it, and show it where somebody watches."""
-    known, ends = view(session, cache)
-    ears.update(ends)
-    if session.request.shows:
-        session.tell(to_json(_snapshot(session, known, ends, ears, (CHANGING, now, ()))))
 
 
 class _Losses:
@@ -323,18 +317,16 @@ def _snapshot(
         round(seconds, 2),
         tuple(caveats),
     )
+    tf = ears.tf
+    edges = assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates(), tf.ages)
     return System(
         tuple(nodes),
         placed,
-        tuple(_frames(ears.tf, placed)),
+        tuple(edges),
         around,
         ears.headers.heard(),
         descriptions=ears.descriptions.found(),
     )
-
-
-def _frames(tf: TfSubscriptions, placed: Iterable[End]) -> Iterator[Edge]:
-    return assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates(), tf.ages)
 
 
 # States and parameters change without the graph: nodes are asked for them again after so long.

@@ -69,12 +69,9 @@ def make_room() -> None:
     160 datagrams, and what is lost comes again only after a heartbeat of 3 s."""
     for number in os.listdir(OPEN_HERE) if os.path.isdir(OPEN_HERE) else ():
         with suppress(OSError):
-            _widen(socket.socket(fileno=int(number)))
-
-
-def _widen(borrowed: socket.socket) -> None:
-    try:
-        if borrowed.type == socket.SOCK_DGRAM:
-            borrowed.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)
-    finally:
-        borrowed.detach()
+            borrowed = socket.socket(fileno=int(number))
+            try:
+                if borrowed.type == socket.SOCK_DGRAM:
+                    borrowed.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)
+            finally:
+                borrowed.detach()

@@ -82,7 +82,9 @@ Worker = Callable[[str, threading.Event, Send], int]
 
 def run_worker(run: Worker) -> int:
     """Run ``run(order, stop, send)``; ``stop`` is set when it has to end. Returns the exit code."""
-    result = _private_output()
+    # For messages; what libraries print to standard output goes to standard error.
+    result = os.dup(1)
+    os.dup2(2, 1)
     stop = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())
@@ -96,16 +98,11 @@ def run_worker(run: Worker) -> int:
     def send(data: bytes) -> None:
         # The command has ended; the input will be closed as well.
         with suppress(BrokenPipeError):
-            _write_all(result, framed(data))
+            left = memoryview(framed(data))
+            while left:
+                left = left[os.write(result, left) :]
 
     return run(order, stop, send)
-
-
-def _private_output() -> int:
-    """A descriptor for messages; what libraries print to standard output goes to standard error."""
-    result = os.dup(1)
-    os.dup2(2, 1)
-    return result
 
 
 def _read_order() -> str:
@@ -125,9 +122,3 @@ def _wait_for_end(stop: threading.Event) -> None:
         while os.read(0, 4096):
             pass
     stop.set()
-
-
-def _write_all(descriptor: int, data: bytes) -> None:
-    view = memoryview(data)
-    while view:
-        view = view[os.write(descriptor, view) :]

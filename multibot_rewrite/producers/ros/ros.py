@@ -140,7 +140,9 @@ def message_class(type_: str) -> tuple[Any, str]:
     try:
         found = getattr(import_module(f"{package}.{kind}"), name)
         # A type whose support library is missing fails only where it is used.
-        _check_support(kind, found)
+        from rclpy.type_support import check_for_type_support
+
+        check_for_type_support(found.Impl.FeedbackMessage if kind == "action" else found)
     except (*_BROKEN, NoTypeSupportImportedException, UnsupportedTypeSupport) as error:
         return None, str(error)
     return found, ""
@@ -156,18 +158,13 @@ def raw_message_class(type_: str) -> tuple[Any, str]:
     try:
         import_module(package)
         module = import_type_support(package)
-        parts = {
-            f"_{it.upper()}": getattr(module, _support_name(it, kind, name)) for it in _SUPPORT
-        }
+        # As rosidl_generator_py calls the parts of a type: ``tf_message`` for TFMessage.
+        ending = f"{kind}__{kind}__{_file_name(name)}"
+        parts = {f"_{it.upper()}": getattr(module, f"{it}_{ending}") for it in _SUPPORT}
     except (*_BROKEN, UnsupportedTypeSupport) as error:
         return None, str(error)
     # Where rclpy looks for it.
     return type(type_, (type,), parts)(name, (), {}), ""
-
-
-def _support_name(part: str, kind: str, name: str) -> str:
-    """How rosidl_generator_py calls a part of a type: ``tf_message`` for TFMessage."""
-    return f"{part}_{kind}__{kind}__{_file_name(name)}"
 
 
 def _file_name(name: str) -> str:
@@ -188,15 +185,6 @@ def begins_with_header(type_: str) -> bool:
             first = _FIRST_FIELD.search(text)
             return first is not None and first[1] == "std_msgs/Header"
     return False
-
-
-def _check_support(kind: str, type_: Any) -> None:
-    from rclpy.type_support import check_for_type_support
-
-    if kind == "action":
-        check_for_type_support(type_.Impl.FeedbackMessage)
-        return
-    check_for_type_support(type_)
 
 
 def subscribe(

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.wording import SEVERAL, shorten
@@ -101,25 +102,19 @@ class TfSubscriptions:
             if end.type in types and end.role == PUBLISHES and end.qos
         }
         for topic in self._open.keys() - topics:
-            self._remove(topic)
+            self._open.pop(topic)()
+            kept = (
+                it for it in self._received.items() if (it[0].topic, it[0].latched) != topic[::2]
+            )
+            self._received = dict(kept)
         for topic in sorted(topics - self._open.keys()):
-            self._add(topic)
-
-    def _add(self, topic: Topic) -> None:
-        name, type_, latched = topic
-        end = self._subscribe(name, type_, latched, lambda *it: self._receive(name, latched, *it))
-        if isinstance(end, str):
-            self._failed[name] = end
-        else:
-            self._open[topic] = end
-            self._began = time.monotonic()
-
-    def _remove(self, topic: Topic) -> None:
-        self._open.pop(topic)()
-        name, _, latched = topic
-        self._received = {
-            it: at for it, at in self._received.items() if (it.topic, it.latched) != (name, latched)
-        }
+            name, _, latched = topic
+            end = self._subscribe(*topic, partial(self._receive, name, latched))
+            if isinstance(end, str):
+                self._failed[name] = end
+            else:
+                self._open[topic] = end
+                self._began = time.monotonic()
 
     def _receive(self, topic: str, latched: bool, message: Any, mark: Mark) -> None:
         now = time.monotonic()

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.producers.rosgraph.reading import (
     DURABILITY,
@@ -54,7 +54,13 @@ def to_message(snapshot: System) -> dict[str, object]:
 
 
 def _node(name: str, ends: Sequence[End]) -> dict[str, object]:
-    parts = _action_parts(ends)
+    actions = {(it.role, it.name) for it in ends if it.kind == ACTION}
+    parts = {}
+    for end in ends:
+        whole, hidden, _ = end.name.partition("/_action/")
+        side = SERVES if end.role in (SERVES, PUBLISHES) else CALLS
+        if hidden and end.kind != ACTION and (side, whole) in actions:
+            parts[end] = side, whole
     plain = [it for it in ends if it not in parts]
 
     def of(kind: str, role: str) -> list[End]:
@@ -73,24 +79,8 @@ def _node(name: str, ends: Sequence[End]) -> dict[str, object]:
     }
 
 
-def _side(end: End) -> str:
-    return SERVES if end.role in (SERVES, PUBLISHES) else CALLS
-
-
 # A hidden endpoint of an action -> the action's role and name.
 _Parts = Mapping[End, tuple[str, str]]
-
-
-def _action_parts(ends: Iterable[End]) -> dict[End, tuple[str, str]]:
-    """The hidden endpoints of the actions that are listed."""
-    ends = list(ends)
-    actions = {(it.role, it.name) for it in ends if it.kind == ACTION}
-    found = {}
-    for end in ends:
-        name, hidden, _ = end.name.partition("/_action/")
-        if hidden and end.kind != ACTION and (_side(end), name) in actions:
-            found[end] = _side(end), name
-    return found
 
 
 def _action_message(action: End, parts: _Parts) -> dict[str, object]:

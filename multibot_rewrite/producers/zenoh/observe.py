@@ -104,11 +104,16 @@ def _look(session: RouterSession, request: Request, router: Router, started: flo
     seen = _read(keys)
     tf = ZenohTf(session, router.domain)
     tf.listen(tokens.endpoints(seen.tokens), request.timeout - (time.monotonic() - started))
-    settled = _settled(keys, request.expected)
-    caveats = [*_strays(session, seen.tokens, router)] if complete else [_cut_short(router)]
-    seconds = time.monotonic() - started
-    seen = seen._replace(tf=tf.subscriptions, settled=settled)
-    return _snapshot(router, seen, seconds, [*caveats, *tf.caveats(), *_absent(seen, request)])
+    settled = EXPECTED if _all_there(keys, request.expected) else TIMEOUT
+    text = f"the router at {router.address} did not answer in full; look again"
+    cut = Caveat("not-settled", True, text)
+    caveats = [*(_strays(session, seen.tokens, router) if complete else [cut]), *tf.caveats()]
+    absent = sorted({*request.expected} - _names(seen.tokens))
+    if absent and seen.tokens:
+        text = f"expected names not in the graph: {shorten(absent, SEVERAL)}"
+        caveats.append(Caveat(WAITED_FOR, True, f"{text}; is all started, are the names right?"))
+    seen = seen._replace(tf=tf.subscriptions, settled=settled if request.expected else QUIET)
+    return _snapshot(router, seen, time.monotonic() - started, caveats)
 
 
 def _read(keys: Iterable[str]) -> _Seen:
@@ -124,19 +129,6 @@ def _names(found: Iterable[Token]) -> set[str]:
 
 def _all_there(keys: Iterable[str], expected: Iterable[str]) -> bool:
     return _names(_read(keys).tokens).issuperset(expected)
-
-
-def _settled(keys: Iterable[str], expected: tuple[str, ...]) -> str:
-    if not expected:
-        return QUIET
-    return EXPECTED if _all_there(keys, expected) else TIMEOUT
-
-
-def _absent(seen: _Seen, request: Request) -> Iterator[Caveat]:
-    absent = sorted({*request.expected} - _names(seen.tokens))
-    if absent and seen.tokens:
-        text = f"expected names not in the graph: {shorten(absent, SEVERAL)}"
-        yield Caveat(WAITED_FOR, True, f"{text}; is all started, are the names right?")
 
 
 def _strays(session: RouterSession, found: Iterable[Token], router: Router) -> Iterator[Caveat]:
@@ -160,11 +152,6 @@ def _no_router(router: Router, error: NoRouter) -> Caveat:
     return Caveat("no-router", True, text)
 
 
-def _cut_short(router: Router) -> Caveat:
-    text = f"the router at {router.address} did not answer in full; look again"
-    return Caveat("not-settled", True, text)
-
-
 def _watch(
     session: RouterSession, request: Request, router: Router, started: float
 ) -> Iterator[System | None]:
@@ -178,6 +165,8 @@ def _watch(
     # At once, so that the first view is whole.
     there.update(session.tokens(router.key())[0])
     shown: object = None
+    text = f"the connection to the router at {router.address} is lost; is it still running?"
+    lost = Caveat("no-router", True, text)
     while (now := time.monotonic() - started) < request.timeout:
         session.deliver()
         connected = session.connected()
@@ -190,24 +179,26 @@ def _watch(
             seen = _read(there)
             tf.update(tokens.endpoints(seen.tokens))
             seen = seen._replace(tf=tf.subscriptions, settled=QUIET if quiet else CHANGING)
-            caveats = list(tf.caveats()) if connected else [_lost(router)]
+            caveats = list(tf.caveats()) if connected else [lost]
             yield _snapshot(router, seen, now, caveats)
         yield None
     end()
 
 
-def _lost(router: Router) -> Caveat:
-    text = f"the connection to the router at {router.address} is lost; is it still running?"
-    return Caveat("no-router", True, text)
-
-
 def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Caveat]) -> System:
     nodes = tuple(tokens.nodes(seen.tokens))
     ends = tuple(tokens.endpoints(seen.tokens))
-    tf = seen.tf
+    tf, caveats = seen.tf, [*caveats]
     heard = (
         frames(tf.transforms(), ends, tf.of_several(), tf.last, tf.rates(), tf.ages) if tf else ()
     )
+    if seen.strange:
+        text = f"{plural(len(seen.strange), 'token')} left out, not as rmw_zenoh writes them"
+        caveats.append(Caveat("strange-token", False, f"{text}: {shorten(seen.strange, FEW)}"))
+    twins = [name for name, times in Counter(it.name for it in nodes).items() if times > 1]
+    if twins:
+        text = f"several nodes have the name {shorten(twins, SEVERAL)}"
+        caveats.append(Caveat("same-name", False, text))
     around = Environment(
         router.domain,
         "",
@@ -218,21 +209,9 @@ def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Cav
         len({token.session for token in seen.tokens}),
         seen.settled,
         round(seconds, 2),
-        (*caveats, *_not_tokens(seen.strange), *_twins(node.name for node in nodes)),
+        tuple(caveats),
     )
     return System(nodes, ends, tuple(heard), around)
-
-
-def _not_tokens(keys: tuple[str, ...]) -> Iterator[Caveat]:
-    if keys:
-        text = f"{plural(len(keys), 'token')} left out, not as rmw_zenoh writes them"
-        yield Caveat("strange-token", False, f"{text}: {shorten(keys, FEW)}")
-
-
-def _twins(names: Iterable[str]) -> Iterator[Caveat]:
-    twins = [name for name, times in Counter(names).items() if times > 1]
-    if twins:
-        yield Caveat("same-name", False, f"several nodes have the name {shorten(twins, SEVERAL)}")
 
 
 # tf has 10 Hz or more: all that a publisher sends has come twice. A silent one is waited for longer.

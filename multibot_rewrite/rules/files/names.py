@@ -175,7 +175,10 @@ def unknown_uses(file: NamedFile) -> Iterator[Finding]:
 def _guessed(file: NamedFile) -> Iterator[Finding]:
     """Parameters of a node that is not known, taken for names by their own: one remark a section."""
     for section, names in (it for it in file.pages if is_guessed(it[0])):
-        taken = [it for it in names.sites if _is_taken(file, it)]
+        # Names of the graph, and others where the guess changes the value.
+        taken = [
+            it for it in names.sites if it.kind in GRAPH or renamed(file.context, it) != it.text
+        ]
         doubt = in_doubt(file.context, section, names)
         left = [it for it in taken if it.kind in doubt]
         if guessed := [it for it in taken if not it.is_sure and it not in left]:
@@ -194,11 +197,6 @@ def _keys(sites: Iterable[Site]) -> str:
 def _unknown(site: Site, node: str, told: str) -> Finding:
     hint = "describe the node in a file under nodes:"
     return remark(site, f"node {node} is not known; {told}", hint)
-
-
-def _is_taken(file: NamedFile, site: Site) -> bool:
-    """Does the guess change the value?"""
-    return site.kind in GRAPH or renamed(file.context, site) != site.text
 
 
 def _renamed(file: NamedFile) -> frozenset[str]:

@@ -20,15 +20,10 @@ from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.checks.problem import Problem, fault
 from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.rules.schema import versions
 from multibot_rewrite.rules.schema.described import WORDS, SdfPart, SdfRow, chunks, described
 from multibot_rewrite.rules.schema.sdf_values import QUATERNION, TURN, misread, number_in
 from multibot_rewrite.rules.schema.sections import is_own, shortened
-from multibot_rewrite.rules.schema.versions import (
-    SDFORMAT,
-    may_be_classics,
-    read_version,
-    reader_of,
-)
 
 # What the converter takes out of the block of a joint; the others are for links, and static for
 # neither.
@@ -58,7 +53,7 @@ CLASSIC = (1, 9)
 
 def version_of_release(release: str) -> Version:
     """The version of SDF that Gazebo reads in a release."""
-    found = read_version(reader_of(release, SDFORMAT).reads)
+    found = versions.read_version(versions.reader_of(release, versions.SDFORMAT).reads)
     assert found
     return tuple(found)
 
@@ -81,7 +76,7 @@ def model_faults(root: _Element, release: str) -> tuple[Problem, ...]:
 
 def _by_reader(found: tuple[Problem, ...], root: _Element, release: str) -> tuple[Problem, ...]:
     """libsdformat 9 has no ranges (a friction of -1 is endless), and reads what it can of a vector."""
-    if not any(it.code in _MILD for it in found) or not may_be_classics(root, release):
+    if not any(it.code in _MILD for it in found) or not versions.may_be_classics(root, release):
         return found
     return tuple(it._replace(level=_MILD.get(it.code, it.level)) for it in found)
 

@@ -173,7 +173,12 @@ def _not_as_planned(seen: Index) -> Iterator[Finding]:
 
 def _is_timed(seen: Index, node: str) -> bool:
     """Does a node compare times, by its name without the robot's?"""
-    return not is_viewer(node) and bool(_IS_TIMED.fullmatch(last_word(seen.plain(node))))
+    return not is_viewer(node) and compares_times(last_word(seen.plain(node)))
+
+
+def compares_times(name: str) -> bool:
+    """Does a node of this name, without its namespace, compare the time of messages with its own?"""
+    return bool(_IS_TIMED.fullmatch(name))
 
 
 def _mixed(robot: str, others: list[str], simulated: str) -> Finding:

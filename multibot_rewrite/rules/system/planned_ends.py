@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import EVERYBODYS
-from multibot_rewrite.base.findings.finding import ERROR, Finding, Rule
+from multibot_rewrite.base.findings.finding import ERROR, Finding, Remap, Rule
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.rules.declaration import planned_rule
@@ -19,6 +19,7 @@ from multibot_rewrite.rules.system.causes import (
     how_to_remap,
     names_without_rules,
     plugin_of,
+    remap_rule,
     use_absolute,
     why_not_remapped,
 )
@@ -238,7 +239,8 @@ def _why_besides(plan: Index, end: End, other: str) -> Cause:
         return caused(f"{plugin} has no namespace or remap rule for it, see {place}", place)
     target = f"{name}/{robot}" if plan.of_names.robot_is_last else f"/{robot}{name}"
     rule = how_to_pass(plan, node, f"{name}:={target}")
-    return Cause(f"an absolute name in its code or parameters; pass {rule}")
+    hint = f"an absolute name in its code or parameters; pass {rule}"
+    return Cause(hint, remaps=(Remap(node, name, target),))
 
 
 def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
@@ -256,7 +258,9 @@ def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
     instead = f"it {DOES[planned.role]} {used} instead"
     if used in names_without_rules(plan, planned):
         why = why_not_remapped(plan, planned)
-        return why._replace(hint=f"{instead}: {why.hint}{how_to_remap(plan, planned)}")
+        remaps = (Remap(planned.node, used, planned.name),) if remap_rule(planned) else ()
+        hint = f"{instead}: {why.hint}{how_to_remap(plan, planned)}"
+        return why._replace(hint=hint, remaps=remaps)
     return _why_remapped(plan, planned, used, instead)
 
 

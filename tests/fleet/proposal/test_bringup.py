@@ -14,6 +14,7 @@ from rule_examples import DESCRIPTION
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.bringup import Robot, bringup_of
+from multibot_rewrite.producers.launch import child
 
 IMPORTS = "; ".join(
     f"from {it} import *"
@@ -517,3 +518,22 @@ def test_what_the_launch_file_asks_of_the_machine_is_named(package: Path) -> Non
     fleet_of(package, "--launch", path)
     text = (package.parent / "fleet.yaml").read_text()
     assert "#   rover/launch/up.launch.py:1: it looks at /dev of the machine" in text
+
+
+def test_a_launch_file_that_is_taken_is_not_read_again_to_be_tried(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each reading starts a process: one for all launch files, one for those that may be it."""
+    write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}", "other": DRIVER})
+    started: list[int] = []
+    popen = child.subprocess.Popen
+
+    def counted(*words: Any, **options: Any) -> Any:
+        started.append(1)
+        return popen(*words, **options)
+
+    monkeypatch.setattr(child.subprocess, "Popen", counted)
+    file = package.parent / "fleet.yaml"
+    assert main(["init", str(package), "--yes", "-q", "--force", "-o", str(file)]) == 0
+    assert yaml.safe_load(file.read_text())["launch"] == "rover/launch/up.launch.py"
+    assert len(started) == 2

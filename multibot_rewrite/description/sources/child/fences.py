@@ -19,14 +19,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
 from typing import NamedTuple, NoReturn
 
-from multibot_rewrite.description.sources.child import seccomp
-from multibot_rewrite.description.sources.child.frames import (
-    AUDIT,
-    FENCES,
-    LANDLOCK,
-    LIMITS,
-    SECCOMP,
-)
+from multibot_rewrite.description.sources.child import frames, seccomp
 from multibot_rewrite.description.sources.child.system import SYSTEM, no_new_privileges, undumpable
 
 # The same numbers on every architecture (since Linux 5.13).
@@ -101,12 +94,12 @@ def put_up(wanted: Collection[str], seconds: float, files: Files | None = None) 
     can be opened."""
     memory = _memory()
     ways: Mapping[str, Callable[[], bool]] = {
-        LIMITS: lambda: limit(seconds, memory, files is not None),
-        LANDLOCK: lambda: enclose(*(files or ())),
-        SECCOMP: lambda: seccomp.enclose(files is not None),
-        AUDIT: refuse_all,
+        frames.LIMITS: lambda: limit(seconds, memory, files is not None),
+        frames.LANDLOCK: lambda: enclose(*(files or ())),
+        frames.SECCOMP: lambda: seccomp.enclose(files is not None),
+        frames.AUDIT: refuse_all,
     }
-    return [name for name in FENCES if name in wanted and ways[name]()]
+    return [name for name in frames.FENCES if name in wanted and ways[name]()]
 
 
 def limit(seconds: float, memory: int, files: bool = False) -> bool:

@@ -19,20 +19,10 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.description.sources.packages import (
-    package_folder,
-    packages_below,
-    sources_around,
-)
+from multibot_rewrite.description.sources import packages
+from multibot_rewrite.rules.description.references import duplicates
 from multibot_rewrite.rules.description.references.control import misspelt_interfaces
-from multibot_rewrite.rules.description.references.duplicates import (
-    sensors_elsewhere,
-    sensors_of_joints,
-)
-from multibot_rewrite.rules.description.structure.joints import (
-    limits_in_degrees,
-    origins_in_degrees,
-)
+from multibot_rewrite.rules.description.structure import joints
 from multibot_rewrite.rules.description.structure.mimic import unreadable_numbers
 from multibot_rewrite.rules.facts.faults import faults
 from multibot_rewrite.rules.facts.memo import CAMERAS, LIDARS, lacking, number_at
@@ -56,8 +46,8 @@ not_read = rule("MB111", "not-read", NOTE, formats=(URDF, PARAMS))(partial(fault
 def misplaced(subject: Subject) -> Iterator[Problem]:
     """By what each reader looks for where, and sensors that no block of a link has."""
     yield from faults("misplaced", subject)
-    yield from sensors_of_joints(subject)
-    yield from sensors_elsewhere(subject)
+    yield from duplicates.sensors_of_joints(subject)
+    yield from duplicates.sensors_elsewhere(subject)
 
 
 @rule("MB115", "missing", ERROR, formats=(URDF, SRDF, PARAMS, MOVEIT))
@@ -115,8 +105,8 @@ def out_of_range(subject: Subject) -> Iterator[Problem]:
 def angle_in_degrees(subject: Subject) -> Iterator[Problem]:
     """Values below <gazebo> and of plugins, and limits."""
     yield from faults("degrees", subject)
-    yield from origins_in_degrees(subject)
-    yield from limits_in_degrees(subject)
+    yield from joints.origins_in_degrees(subject)
+    yield from joints.limits_in_degrees(subject)
 
 
 # No lidar sees as far, in metres, and none is blind for as long.
@@ -255,8 +245,8 @@ def misspelt_hardware(subject: Subject) -> Iterator[Problem]:
 
 def _is_in_sources(subject: Subject, package: str) -> bool:
     file = subject.document.file
-    around = packages_below((sources_around(file), *subject.settings.roots))
-    return package in around or bool(package_folder(package, file, subject.settings.roots))
+    around = packages.packages_below((packages.sources_around(file), *subject.settings.roots))
+    return package in around or bool(packages.package_folder(package, file, subject.settings.roots))
 
 
 @rule("MB172", "library-of-ignition", WARNING)

@@ -11,33 +11,13 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.checks.poses import length_of, quaternion
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.convert import (
-    Spanned,
-    as_rpy,
-    capsule_edits,
-    capsules,
-    lowered,
-    one_rotation,
-    raised,
-    rotated_origins,
-    text_of,
-)
+from multibot_rewrite.rules import convert
 from multibot_rewrite.rules.facts.faults import faults, urdf_faults
 from multibot_rewrite.rules.facts.memo import memoized
-from multibot_rewrite.rules.schema.versions import (
-    CAPSULE,
-    KNOWN,
-    RVIZ,
-    URDFDOM,
-    Version,
-    highest_version,
-    read_version,
-    reader_of,
-    version_of,
-)
+from multibot_rewrite.rules.schema import versions
 from multibot_rewrite.rules.subject import Subject
 
-QUATERNIONS = KNOWN[1]
+QUATERNIONS = versions.KNOWN[1]
 # What makes another version another file than the one that is read now.
 _REFUSED = ("word", "missing", "value", "range", "rotation-twice")
 
@@ -46,15 +26,15 @@ _REFUSED = ("word", "missing", "value", "range", "rotation-twice")
 def rotation_twice(subject: Subject) -> Iterator[Problem]:
     """With a fix where both are the same."""
     for it in faults("rotation-twice", subject):
-        yield it._replace(edits=one_rotation(_text(subject), it.element, "rpy"))
+        yield it._replace(edits=convert.one_rotation(_text(subject), it.element, "rpy"))
 
 
 @rule("MB127", "no-rotation", WARNING)
 def no_rotation(subject: Subject) -> Iterator[Problem]:
     """Quaternions that cannot be made one of length 1."""
-    if version_of(subject.document.root) < QUATERNIONS:
+    if versions.version_of(subject.document.root) < QUATERNIONS:
         return
-    for origin in rotated_origins(subject.document.root):
+    for origin in convert.rotated_origins(subject.document.root):
         turn = quaternion(origin)
         if turn is not None and not 0 < length_of(turn) < float("inf"):
             message = f"quat_xyzw is {origin.get('quat_xyzw')!r}, which is no rotation"
@@ -73,18 +53,18 @@ def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:
     """The edits that make the release's urdfdom read an element of a later version."""
     text = _text(subject)
     link = next(element.iterancestors("link"), None)
-    if element.tag == CAPSULE:
-        return () if link is None else capsule_edits(text, link)
+    if element.tag == versions.CAPSULE:
+        return () if link is None else convert.capsule_edits(text, link)
     if element.get("rpy") is None and _reads(subject) >= QUATERNIONS:
         return _raised(subject)
-    return as_rpy(text, element)
+    return convert.as_rpy(text, element)
 
 
 @rule("MB129", "ignored-limit", NOTE)
 def ignored_limit(subject: Subject) -> Iterator[Problem]:
     """Limits that came with version 1.2; one finding for a <limit>."""
-    newest = KNOWN[-1]
-    read = min(version_of(subject.document.root), _reads(subject)) >= newest
+    newest = versions.KNOWN[-1]
+    read = min(versions.version_of(subject.document.root), _reads(subject)) >= newest
     for joint in subject.robot.joints if not read else ():
         limit = joint.parts.get("limit")
         given = () if limit is None else limit.keys()
@@ -99,9 +79,9 @@ def ignored_limit(subject: Subject) -> Iterator[Problem]:
 def version_of_release(subject: Subject) -> Iterator[Problem]:
     """With a fix where the file means the same in URDF 1.0."""
     root = subject.document.root
-    declared, reads = read_version(root.get("version", "")), _reads(subject)
-    if root.tag == "robot" and declared in KNOWN and declared > reads:
-        reader = reader_of(subject.settings.distro, URDFDOM)
+    declared, reads = versions.read_version(root.get("version", "")), _reads(subject)
+    if root.tag == "robot" and declared in versions.KNOWN and declared > reads:
+        reader = versions.reader_of(subject.settings.distro, versions.URDFDOM)
         message = f"URDF {declared} is not read by {reader}, which rejects the file"
         edits = _lowered(subject)
         more = "; --fix does it" if edits else " and what that version has"
@@ -116,15 +96,15 @@ def capsule_in_gazebo(subject: Subject) -> Iterator[Problem]:
         return
     for link, shapes in _links_with_capsules(subject):
         message = f"Gazebo reads no <capsule> of link {link.get('name')!r}"
-        yield Problem(shapes[0], message, None, "", capsule_edits(_text(subject), link))
+        yield Problem(shapes[0], message, None, "", convert.capsule_edits(_text(subject), link))
 
 
 @rule("MB135", "capsule-in-rviz", NOTE)
 def capsule_in_rviz(subject: Subject) -> Iterator[Problem]:
     """One finding for a link."""
-    reader = reader_of(subject.settings.distro, RVIZ)
+    reader = versions.reader_of(subject.settings.distro, versions.RVIZ)
     for link, shapes in _links_with_capsules(subject, "visual"):
-        if reader.reads != CAPSULE:
+        if reader.reads != versions.CAPSULE:
             message = f"{reader} draws no <capsule> of link {link.get('name')!r}"
             yield Problem(shapes[0], message)
 
@@ -133,12 +113,12 @@ def capsule_in_rviz(subject: Subject) -> Iterator[Problem]:
 def quaternion_in_mujoco(subject: Subject) -> Iterator[Problem]:
     """With a fix; what urdfdom does not read or refuses, other rules report."""
     root = subject.document.root
-    if "mjcf" not in subject.settings.targets or version_of(root) < QUATERNIONS:
+    if "mjcf" not in subject.settings.targets or versions.version_of(root) < QUATERNIONS:
         return
-    for origin in rotated_origins(root):
+    for origin in convert.rotated_origins(root):
         if origin.get("rpy") is None:
             message = f"quat_xyzw is {origin.get('quat_xyzw')!r}, which MuJoCo does not read"
-            edits = as_rpy(_text(subject), origin)
+            edits = convert.as_rpy(_text(subject), origin)
             yield Problem(origin, message, "quat_xyzw", "write rpy", edits)
 
 
@@ -146,30 +126,32 @@ def _links_with_capsules(
     subject: Subject, *holders: str
 ) -> Iterator[tuple[_Element, list[_Element]]]:
     """The links with capsules that urdfdom reads, and those in ``holders`` if any are named."""
-    if version_of(subject.document.root) < QUATERNIONS or _reads(subject) < QUATERNIONS:
+    if versions.version_of(subject.document.root) < QUATERNIONS or _reads(subject) < QUATERNIONS:
         return
     for link in subject.document.root.iterchildren("link"):
-        shapes = [it for it, holder in capsules(link) if not holders or holder.tag in holders]
+        shapes = [
+            it for it, holder in convert.capsules(link) if not holders or holder.tag in holders
+        ]
         if shapes:
             yield link, shapes
 
 
-def _reads(subject: Subject) -> Version:
+def _reads(subject: Subject) -> versions.Version:
     """The highest version that the release's urdfdom reads."""
-    return highest_version(subject.settings.distro)
+    return versions.highest_version(subject.settings.distro)
 
 
 @memoized
-def _text(subject: Subject) -> Spanned:
-    return text_of(subject.document)
+def _text(subject: Subject) -> convert.Spanned:
+    return convert.text_of(subject.document)
 
 
 @memoized
 def _raised(subject: Subject) -> tuple[Edit, ...]:
-    return raised(_text(subject), QUATERNIONS)
+    return convert.raised(_text(subject), QUATERNIONS)
 
 
 @memoized
 def _lowered(subject: Subject) -> tuple[Edit, ...]:
     refused = any(it.code in _REFUSED and it.level != WARNING for it in urdf_faults(subject))
-    return () if refused else lowered(_text(subject))
+    return () if refused else convert.lowered(_text(subject))

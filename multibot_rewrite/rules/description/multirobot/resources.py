@@ -44,17 +44,12 @@ def _one_device(subject: Subject) -> Iterator[Problem]:
             text = (element.text or "").strip()
             message = f"parameter {element.get('name', '')!r} is {text!r} for every robot"
             yield Problem(element, message, "", "make it a xacro argument")
-    yield from _usual_device(subject)
-
-
-def _usual_device(subject: Subject) -> Iterator[Problem]:
-    """Addresses and files that hardware opens where the description names none."""
+    # Addresses and files that hardware opens where the description names none.
     for part in hardware_parts(subject.document.root, subject.tree.vocabulary):
-        if part.section is not None:
-            for kind, value, path in opened(part.element, part.section):
-                if kind != RELATIVE and not any(given_at(part.element, path)):
-                    message = f"{value!r} is the {kind} of every robot: {path} is not given"
-                    yield Problem(part.element, message, "", "make it a xacro argument")
+        for kind, value, path in opened(part.element, part.section) if part.section else ():
+            if kind != RELATIVE and not any(given_at(part.element, path)):
+                message = f"{value!r} is the {kind} of every robot: {path} is not given"
+                yield Problem(part.element, message, "", "make it a xacro argument")
 
 
 one_device = declaration.ONE_DEVICE._replace(

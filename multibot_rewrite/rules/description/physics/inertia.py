@@ -255,7 +255,9 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
     lost: set[str] = set()
     for name, sum_ in mass.items():
         link = robot.link.get(name)
-        if link is None or sum_ > 0 or name in lost or name == WORLD or _negative(link):
+        if link is None or sum_ > 0 or name in lost or name == WORLD:
+            continue
+        if link.inertial is not None and (link.inertial.mass or 0) < 0:
             continue
         if name not in robot.above and name not in robot.below:
             continue  # no joint has it: MB501
@@ -309,10 +311,6 @@ def mass_tiny(subject: Subject) -> Iterator[Problem]:
             message = f"link {name!r} moves and weighs {mass:g} kg"
             level = WARNING if subject.settings.distro == OF_OLD else ""
             yield Problem(inertial.element, message, level=level)
-
-
-def _negative(link: Link) -> bool:
-    return link.inertial is not None and (link.inertial.mass or 0) < 0
 
 
 def _masses(robot: Robot) -> dict[str, float]:

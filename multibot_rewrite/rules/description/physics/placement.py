@@ -17,13 +17,7 @@ from multibot_rewrite.description.checks.poses import Pose, is_same, length, min
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, placed_box
 from multibot_rewrite.rules.description.meshes.lookup import box_of
-from multibot_rewrite.rules.description.physics.inertia import (
-    SHAPES,
-    inertials,
-    moves,
-    part_of,
-    sizes_of,
-)
+from multibot_rewrite.rules.description.physics import inertia
 from multibot_rewrite.rules.facts.elements import Elements
 from multibot_rewrite.rules.facts.memo import memoized, parts
 from multibot_rewrite.rules.subject import Subject
@@ -39,7 +33,7 @@ def visual_without_collision(subject: Subject) -> Iterator[Problem]:
     if root.tag != "robot" or not robot.joints:
         return
     touch, seen = _bodies_with(subject, "collision"), _bodies_with(subject, "visual")
-    bare = [it for it in seen if it not in touch and moves(robot, it) and it in robot.link]
+    bare = [it for it in seen if it not in touch and inertia.moves(robot, it) and it in robot.link]
     if not touch and bare[1:]:
         yield Problem(root, "no link has a <collision>: the robot cannot touch anything")
         return
@@ -69,7 +63,7 @@ def shape_units(subject: Subject) -> Iterator[Problem]:
 def shape_missing(subject: Subject) -> Iterator[Problem]:
     """Elements without a shape that urdfdom reads."""
     # MB128 reports a capsule in a file of URDF 1.0.
-    known = {*SHAPES, "mesh", "capsule"}
+    known = {*inertia.SHAPES, "mesh", "capsule"}
     for link, element, geometry, shape in (
         parts(subject) if subject.document.root.tag == "robot" else ()
     ):
@@ -100,7 +94,7 @@ def mesh_scale(subject: Subject) -> Iterator[Problem]:
 @memoized
 def _sized_shapes(subject: Subject) -> list[tuple[_Element, tuple[float, ...]]]:
     """The boxes, cylinders and spheres of a URDF whose sizes are numbers, and those."""
-    read = ((it, sizes_of(it)) for it in _geometries(subject.elements, *SHAPES))
+    read = ((it, inertia.sizes_of(it)) for it in _geometries(subject.elements, *inertia.SHAPES))
     return [(shape, sizes) for shape, sizes in read if sizes]
 
 
@@ -243,7 +237,7 @@ def _moved(subject: Subject, seen: _Shapes, hard: _Shapes) -> float:
 @rule("MB632", "centre-of-mass-outside", WARNING)
 def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
     """Links whose shapes have a known size; others only where the centre is metres away from all."""
-    for link, inertial in inertials(subject.robot):
+    for link, inertial in inertia.inertials(subject.robot):
         if (inertial.mass or 0) < LIGHT:
             continue
         origin = subject.elements.first("origin").get(inertial.element)
@@ -252,7 +246,7 @@ def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
             continue
         if way := _outside(subject, link, centre):
             message = f"the centre of mass of link {link.name!r} is {way:.3g} m outside of it"
-            yield Problem(part_of(inertial, "origin"), message, "xyz")
+            yield Problem(inertia.part_of(inertial, "origin"), message, "xyz")
 
 
 def _outside(subject: Subject, link: Link, centre: Vector) -> float:

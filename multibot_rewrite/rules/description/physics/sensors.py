@@ -21,6 +21,7 @@ from multibot_rewrite.description.checks.poses import (
 )
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.shapes import shapes_of, way_out
+from multibot_rewrite.rules.facts import simulators
 from multibot_rewrite.rules.facts.memo import (
     CAMERAS,
     LIDARS,
@@ -28,13 +29,6 @@ from multibot_rewrite.rules.facts.memo import (
     link_poses,
     number_at,
     sensors,
-)
-from multibot_rewrite.rules.facts.simulators import (
-    CLASSIC,
-    GAZEBO,
-    library_of,
-    simulated,
-    simulator_plugins,
 )
 from multibot_rewrite.rules.facts.support import ground_of
 from multibot_rewrite.rules.subject import Subject
@@ -174,10 +168,12 @@ def _way_out(sensor: Sensor) -> float:
 @rule("MB637", "lidar-without-rays", WARNING)
 def lidar_without_rays(subject: Subject) -> Iterator[Problem]:
     """Lidars beside what only Gazebo loads, where nothing is for Gazebo Classic."""
-    libraries = {library_of(it) for it in simulator_plugins(subject)}
-    hardware = {simulator.name for _, _, simulator in simulated(subject)}
-    gazebo = GAZEBO.name in hardware or any(it.startswith(_GAZEBOS) for it in libraries)
-    classic = CLASSIC.name in hardware or any(it.startswith(_CLASSICS) for it in libraries)
+    libraries = {simulators.library_of(it) for it in simulators.simulator_plugins(subject)}
+    hardware = {simulator.name for _, _, simulator in simulators.simulated(subject)}
+    gazebo = simulators.GAZEBO.name in hardware or any(it.startswith(_GAZEBOS) for it in libraries)
+    classic = simulators.CLASSIC.name in hardware or any(
+        it.startswith(_CLASSICS) for it in libraries
+    )
     for it in subject.elements.every("sensor") if gazebo and not classic else ():
         if it.get("type") in _RAYS and it.find("plugin") is None:
             message = f"Gazebo simulates no sensor of type {it.get('type')!r}"

@@ -156,7 +156,8 @@ def zero_limit(subject: Subject) -> Iterator[Problem]:
         if joint.type not in ONE_AXIS or "mimic" in joint.parts:
             continue
         zero = [it for it in ("effort", "velocity") if value_of(limit, it) == 0]
-        if zero and not _cannot_move(joint, limit):
+        bounds = {value_of(limit, it, 0.0) for it in ("lower", "upper")}
+        if zero and not (joint.type in BOUNDED and len(bounds) == 1):
             verb = "are" if zero[1:] else "is"
             message = f"joint {joint.name!r}: {' and '.join(zero)} {verb} 0"
             weak = zero[0] == "effort" and joint.name in commanded(subject)
@@ -237,10 +238,6 @@ def _bounds(subject: Subject) -> list[tuple[Joint, _Element, float, float]]:
             if lower is not None and upper is not None:
                 found.append((joint, limit, lower, upper))
     return found
-
-
-def _cannot_move(joint: Joint, limit: _Element) -> bool:
-    return joint.type in BOUNDED and value_of(limit, "lower", 0.0) == value_of(limit, "upper", 0.0)
 
 
 @rule("MB532", "soft-limits", WARNING)
