@@ -120,12 +120,11 @@ def _unknown(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> UsageEr
 
 def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     """One line a section."""
-    columns = ("type", "name", "ROS", "also called", "rows", "source")
     rows = [
         (it.type, it.names[0], it.ros, shorten(it.names[1:], 1), str(len(it.sites)), it.source)
         for it in sections
     ]
-    yield Grid(columns, rows)
+    yield Grid(("type", "name", "ROS", "also called", "rows", "source"), rows)
 
 
 def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
