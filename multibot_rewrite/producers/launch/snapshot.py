@@ -101,7 +101,10 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     bridged = bridged_domains(nodes)
     every_note = (*graph.notes, *notes, *bridged.notes)
     caveats = (
-        *_caveats(graph.stood_in, every_note, nodes, refused, inside),
+        *([Caveat(NOT_WHOLE, False, STOOD_IN)] if graph.stood_in else ()),
+        *_refused(refused),
+        *_caveats(every_note, nodes),
+        *_of_bridges(nodes, inside),
         *of_simulator(graph, models),
     )
     system = System(
@@ -200,17 +203,7 @@ def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
         yield Caveat(REFUSED, True, text)
 
 
-def _caveats(
-    stood_in: bool,
-    notes: Iterable[LaunchNote],
-    nodes: Sequence[Run],
-    refused: Sequence[str],
-    inside: Sent,
-) -> Iterator[Caveat]:
-    """What of the launch is not known."""
-    if stood_in:
-        yield Caveat(NOT_WHOLE, False, STOOD_IN)
-    yield from _refused(refused)
+def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Caveat]:
     # What several nodes lack is said once, where the first one does.
     first: dict[str, Place] = {}
     for note in (it for it in notes if not it.fails):
@@ -235,6 +228,8 @@ def _caveats(
         text = f"the description is not known, so neither are its frames: {shorten(treeless)}"
         yield Caveat(NO_TREE, True, text)
 
+
+def _of_bridges(nodes: Sequence[Run], inside: Sent) -> Iterator[Caveat]:
     bridges = [it.full_name for it in nodes if not {*_tf_topics(it)} <= inside.keys()]
     if bridges:
         text = f"the transforms that the simulator sends are not known: {shorten(bridges)}"
