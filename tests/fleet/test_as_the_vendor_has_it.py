@@ -191,3 +191,28 @@ def test_a_controller_of_the_vendor_that_lacks_an_interface_is_told_and_built(
     assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
     (told,) = (it for it in capsys.readouterr().err.splitlines() if "MB229" in it)
     assert "warning: MB229" in told and "for one robot, too" in told
+
+
+CLASSIC = (
+    """<gazebo><plugin filename="libgazebo_ros_planar_move.so" name="planar_move"/></gazebo>"""
+)
+SIMULATED = """IncludeLaunchDescription([FindPackageShare('gazebo_ros'), '/launch/gazebo.launch.py'],
+            launch_arguments={'world': str(ROBOT.parent / 'office.world')}.items()),
+        ekf('ekf_map'"""
+
+
+def test_a_world_that_the_vendor_has_not_is_told_and_built(
+    fleet: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """His simulator ends without it, for one robot as for two."""
+    text = f"from launch.actions import *\nfrom launch_ros.substitutions import *\n{LAUNCH}"
+    (fleet.parent / "up.launch.py").write_text(text.replace("ekf('ekf_map'", SIMULATED))
+    mass = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    link = f'<link name="base_link">{mass}</inertial></link>'
+    (fleet.parent / "robot.urdf").write_text(f'<robot name="r">{link}{CLASSIC}</robot>')
+    fleet.write_text(
+        fleet.read_text().replace("simulator: none", "simulator: gazebo").replace("jazzy", "humble")
+    )
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
+    (told,) = (it for it in capsys.readouterr().err.splitlines() if "MG713" in it)
+    assert "warning: MG713" in told and "for one robot, too" in told

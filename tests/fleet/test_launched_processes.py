@@ -908,3 +908,28 @@ def test_a_simulator_is_started_once_by_its_launch_file(file: str, tmp_path: Pat
     found = actions(tmp_path, body, more="simulator: gazebo")
     assert [it.kind for it in found].count("IncludeLaunchDescription") == 1
     assert "gzserver" not in told(found)
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (
+            ["ros2", "control", "load_controller", "--set-state", "active", "arm"],
+            [*("ros2", "control", "load_controller", "-c", "{}"), "--set-state", "active", "arm"],
+        ),
+        (["ros2 control list_controllers; date"], ["ros2 control list_controllers -c {}; date"]),
+        (
+            ["ros2", "control", "load_controller", "arm", "-c", "/controller_manager"],
+            ["ros2", "control", "load_controller", "arm", "-c", "{}"],
+        ),
+    ],
+)
+@pytest.mark.parametrize("layout", ["both", "postfix"])
+def test_a_command_asks_for_the_manager_of_its_robot(
+    layout: str, words: list[str], expected: list[str], tmp_path: Path
+) -> None:
+    """ros2 control asks for /controller_manager where none is named, which is no robot's."""
+    found = actions(tmp_path, f"ExecuteProcess(cmd={words!r}),", layout=layout)
+    manager = "/controller_manager_robot2" if layout == "postfix" else "/robot2/controller_manager"
+    (told,) = (it.values["cmd"] for it in found if it.kind == "ExecuteProcess")
+    assert told == [it.format(manager) for it in expected]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 from multibot_rewrite.base.conventions import BY_HAND
@@ -87,6 +87,7 @@ _OF_MOVEIT = ("move_group", "servo_node")
 # What of MoveIt's parameters has names of joints, links and controllers.
 _NAMED = ("robot_description", "moveit_simple_controller_manager", "moveit_ros_control_interface")
 # The words of ros2 behind which nodes stand, and those with topics, services and actions.
+_CONTROL, MANAGER_IN_ROOT = "control", "/controller_manager"
 _OF_NODES, _OF_NAMES = ("lifecycle", "param", "control", "node"), ("topic", "service", "action")
 # Where the first name stands behind ros2, its verb and what that does; what ends a command of a shell.
 _FIRST, _NEXT = 3, ("&&", "||", ";", "|", "&")
@@ -295,14 +296,33 @@ def _of_one(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
                 verb = part if os.path.basename(before) == "ros2" else verb
                 verb = "" if part in _NEXT or before.endswith(";") else verb
                 parts[number] = _named_for(part, verb, space, naming)
-            found.append("".join(parts))
+            found.append("".join(_asking_its_manager(parts, " ", space, naming)))
             continue
         verb = word if at == 1 and os.path.basename(words[0]) == "ros2" else verb
         # ros2 takes a name without a slash for one in the root.
-        own = word if at != _FIRST or word[:1] in ("-", "/") or not verb else f"/{word}"
+        is_name = at == _FIRST and verb not in ("", _CONTROL) and word[:1] not in ("-", "/")
+        own = f"/{word}" if is_name else word
         named = _named_for(own, verb, space, naming)
         found.append(word if named == own else named)
-    return tuple(found)
+    return tuple(_asking_its_manager(found, "", space, naming))
+
+
+def _asking_its_manager(
+    words: Sequence[str], between: str, space: str, naming: Naming
+) -> Iterator[str]:
+    """Yield the words of a command; ``ros2 control`` asks for a manager in the root where none is named
+    (ros2controlcli, add_controller_mgr_parsers)."""
+    own = [it for it in words if not it.isspace()]
+    is_open = not {*own} & {"-c", "--controller-manager"}
+    spaced = [between, "-c", between, _named_for(MANAGER_IN_ROOT, _CONTROL, space, naming)]
+    before = ["", "", ""]
+    for word in words:
+        before = before if word.isspace() else [*before[1:], word]
+        asks = is_open and os.path.basename(before[0]) == "ros2" and before[1] == _CONTROL
+        bare = word.rstrip(";") if asks else word
+        yield bare
+        yield from filter(None, (*spaced, word[len(bare) :]) if asks else ())
+        is_open = is_open and not asks
 
 
 def _named_for(word: str, verb: str, space: str, naming: Naming) -> str:

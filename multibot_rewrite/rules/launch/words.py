@@ -104,7 +104,7 @@ def not_there(launched: Launched) -> Iterator[Finding]:
             continue
         if note.parameters and note.file:
             told.add((note.place.file, note.place.line, note.file))
-            yield at(not_there, note.place, note.message, _PATH)
+            yield at(not_there, note.place, note.message, _PATH, names=(note.file,))
     named = [
         (it.full_name, it.place, str(it.values[parameter].value))
         for it in launched.nodes
@@ -120,7 +120,8 @@ def not_there(launched: Launched) -> Iterator[Finding]:
         is_meant = os.path.isabs(path) and _is_ours(path)
         if is_meant and not os.path.exists(path) and key not in told:
             told.add(key)
-            yield at(not_there, place, f"{who} is given {path}, which is not there", _PATH)
+            message = f"{who} is given {path}, which is not there"
+            yield at(not_there, place, message, _PATH, names=(path,))
 
 
 @launch_rule("MG715", "include-argument-not-read")
