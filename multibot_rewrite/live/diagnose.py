@@ -113,7 +113,7 @@ def _carried_across(each: Mapping[int, Diagnosis]) -> Iterator[Finding]:
             drivers = [it for it in readers if it not in carriers]
             for node in sorted(carriers) if drivers and senders and obeyed else ():
                 yield command_for_several_robots.finding(
-                    f"{node} carries {name} of {min(senders)} from domain {at} to domain {other}:"
+                    f"{node} bridges {name} of {min(senders)} from domain {at} to domain {other}:"
                     f" {drivers[0]} obeys it here, {obeyed[0]} there",
                     f"leave {name} out of the topics of {node}, or give it another name there",
                     node=node, names=(name,),
