@@ -19,7 +19,8 @@ from multibot_rewrite.base.other_words import other_words
 def test_topics_that_robots_share() -> None:
     """rclcpp: every node logs, sends parameter events and reads the clock with use_sim_time."""
     every = ("/clock", "/rosout", "/parameter_events", "/diagnostics", "/diagnostics_agg", "/bond")
-    assert every == conventions.EVERYBODYS
+    # slam_toolbox for several robots: each reads the scans of all.
+    assert (*every, "/localized_scan") == conventions.EVERYBODYS
     assert conventions.SENT_BY_EVERY_NODE == ("/rosout", "/parameter_events")
     assert conventions.READ_BY_EVERY_NODE == ("/clock", "/parameter_events")
     assert conventions.OF_EVERY_NODE == ("/clock", "/rosout", "/parameter_events")

@@ -12,7 +12,7 @@ import pytest
 from counted_steps import growth, steps
 from fleet_folder import fleet_folder
 from graph_cases import GRAPHS as SAVED
-from graph_examples import read_example, read_system
+from graph_examples import read_example, read_looks, read_system
 from growing import GROWING, description
 from growing_files import FLEETS, GRAPHS, LAUNCHED, copies, graph_of, launch_file, message, written
 from launched_here import read_here
@@ -347,6 +347,9 @@ def test_what_is_wrong_with_each_robot_costs_what_the_robots_do(code: str, kind:
         if "planned: " in text:
             pair = read_example(text)
             return lambda: check(*pair)
+        if "as before: " in text:
+            before, graph = read_looks(text)
+            return lambda: check(before, graph, before=before)
         seen = read_system(text)
         return lambda: judge(seen)
 

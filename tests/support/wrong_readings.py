@@ -10,7 +10,7 @@ from wrong_plans import NOTE, Fault, Wrong
 
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.steps import verify as proof
+from multibot_rewrite.description.steps import strip, verify as proof
 from multibot_rewrite.description.steps.collect import Inventory
 
 # ---------------------------------------------------------------- readings of the source
@@ -172,9 +172,9 @@ VALUES = (
 READINGS = [
     *(Fault(about, by, pipeline, "collect", wrong) for about, by, wrong in INPUTS),
     *(Fault(about, by, proof, "collect", wrong) for about, by, wrong in OUTPUTS),
-    *(Fault(about, "strips_to_source", proof, "strip_edits", wrong) for about, wrong in STRIPS),
+    *(Fault(about, "strips_to_source", strip, "strip_edits", wrong) for about, wrong in STRIPS),
     *(
-        Fault(about, "strips_to_source", proof, "stripped", wrong, "model")
+        Fault(about, "strips_to_source", strip, "stripped", wrong, "model")
         for about, wrong in VALUES
     ),
 ]
