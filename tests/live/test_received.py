@@ -174,8 +174,11 @@ def test_the_age_of_a_transform_is_that_of_its_youngest_message(tmp_path: Path) 
     session.update(ends, False)
     for number, behind in enumerate((31.0, 30.0, 33.0)):
         receive[0](read_tf(transform("odom", "base_link", time.time() - behind)), number)
-    (edge,) = frames(session.transforms(), ends, ages=session.ages)
-    assert 29.9 <= edge.age <= 30.9
+    # One that is ahead is not the younger for it.
+    for number, behind in enumerate((2.0, -10.0)):
+        receive[0](read_tf(transform("map", "odom", time.time() - behind)), number)
+    edge, other = sorted(frames(session.transforms(), ends, ages=session.ages))
+    assert 29.9 <= edge.age <= 30.9 and 1.9 <= other.age <= 2.9
     (tmp_path / "a.json").write_bytes(to_json(System(edges=(edge._replace(age=math.inf),))))
     assert read_snapshot(str(tmp_path / "a.json")).edges[0].age == math.inf
 

@@ -20,6 +20,7 @@ from multibot_rewrite.system.records import NOWHERE, TOPIC, Edge, End, Heard, Pl
 _ODOMETRY = "nav_msgs/msg/Odometry"
 _MEASURED = ("sensor_msgs/", _ODOMETRY, "stereo_msgs/", "radar_msgs/")
 
+_IMU = "sensor_msgs/msg/Imu"
 # Of no use without a frame.
 _PLACED = (
     "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", _ODOMETRY, "nav_msgs/msg/OccupancyGrid",
@@ -211,8 +212,8 @@ def _readers(seen: Index, topic: str) -> Sequence[End]:
 
 
 def _is_placed_by_readers(seen: Index, it: _Message) -> bool:
-    """Do nodes read what is of no use to them without its place?"""
-    return it.type in _PLACED and bool(_readers(seen, it.topic))
+    """Do nodes read what is of no use to them without its place? Filters turn that of an IMU."""
+    return it.type in (*_PLACED, _IMU) and bool(_readers(seen, it.topic))
 
 
 def _unsaid(it: Heard, type_: str) -> str:

@@ -293,7 +293,7 @@ def _silent(seen: Index) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-@system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="missing")
+@system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="leak")
 def driver_missing(seen: Index) -> Iterator[Finding]:
     """By its readers, and by another robot that has it, however much the two differ: all that one node
     of the other robot does is one finding."""
