@@ -78,6 +78,8 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         meant = _meant(seen, frame, own)
         elsewhere = _where(seen).get(frame, ())
         topics = shorten([it.topic for it in messages])
+        # Next to what a launch file starts there may be what sends the transform.
+        needed = seen.is_live and any(map(read, messages))
         yield frame_id_unknown.finding(
             f"{messages[0].field} of {topics} is {frame}, which is in no transform of"
             f" {robot or 'tf'}; sent by"
@@ -86,7 +88,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
             or _remedy(senders, meant or _alike(frame, own) or _of_its_kind(messages, own))
             or _sent_there(seen, frame, robot, elsewhere)
             or f"send a transform for it, or set the frame of {_who(senders)} to one that is in tf",
-            level=ERROR if meant or elsewhere or any(map(read, messages)) else WARNING,
+            level=ERROR if meant or elsewhere or needed else WARNING,
             robot=robot, node=senders[0], names=(frame,), **where(messages[:1]),
         )  # fmt: skip
 
