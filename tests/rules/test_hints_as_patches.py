@@ -94,9 +94,11 @@ def test_many_faults_have_such_a_hint_by_their_plan() -> None:
 def test_rules_of_a_hint_by_the_plan_mend_the_fault(
     fault: Fault, plan: System, found: list[Finding]
 ) -> None:
+    """What two robots have alike is one finding to its reader, and its rules are given to both."""
     graph = fault.change(fault.system())
     for it in (one for one in found if one.remaps):
-        after = check(plan, remapped(graph, it.remaps))
+        rules = [rule for one in found if one.code == it.code for rule in one.remaps]
+        after = check(plan, remapped(graph, rules))
         assert (it.code, it.robot, it.node) not in about(after), it
         # That its node is not planned is said with the fault until then.
         new = {one for one in about(after) - about(found) if one[0] != "MG108"}

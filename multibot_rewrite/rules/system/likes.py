@@ -323,20 +323,21 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
 
 
 def _who_does(seen: Index, ends: Ends, role: str) -> str:
-    """The node of another robot that does this with its own topic of that name; empty for none."""
-    robot, plain = seen.robot(ends.name), seen.plain(ends.name)
-    for other in (it for it in seen.robots if it != robot):
-        there = seen.of_robot(other, ends.kind, plain)
-        if there and there.type == ends.type:
-            sides = {
-                PUBLISHES: there.publishers,
-                SUBSCRIBES: there.subscribers,
-                SERVES: there.servers,
-            }
-            own = at_work(sides[role])
-            if node := next((it.node for it in own if seen.robot(it.node) == other), ""):
-                return node
-    return ""
+    """The first node of another robot that does this with its own topic of that name, or empty."""
+    return _first_to_do(seen).get((ends.kind, seen.plain(ends.name), ends.type, role), "")
+
+
+@once
+def _first_to_do(seen: Index) -> Mapping[tuple[str, str, str, str], str]:
+    """The first node that does something with a name of its own robot: by kind, the name without the
+    robot's, type and role."""
+    first: dict[tuple[str, str, str, str], str] = {}
+    for ends in seen.by_name.values():
+        robot = seen.robot(ends.name) if ends.kind in (TOPIC, ACTION) else ""
+        for end in at_work((*ends.publishers, *ends.subscribers, *ends.servers)) if robot else ():
+            if seen.robot(end.node) == robot:
+                first.setdefault((ends.kind, seen.plain(ends.name), ends.type, end.role), end.node)
+    return first
 
 
 def _missed_side(seen: Index, ends: Ends) -> str:

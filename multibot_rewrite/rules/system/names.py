@@ -342,10 +342,23 @@ def _waits(seen: Index, end: End) -> bool:
     own = seen.robot(end.node)
     others = len(seen.robots) > 1 and not (own and own == seen.robot(end.name))
     # What all robots call in vain is so by their make; goals that another robot takes are MG322.
-    same = [seen.of_robot(it, end.kind, seen.plain(end.name)) for it in seen.robots if it != own]
-    others = others or any(it and it.clients and not it.servers for it in same)
-    others = others or any(it and it.servers and end.kind == ACTION for it in same)
+    vain, served = _called_by_robots(seen).get((end.kind, seen.plain(end.name)), ((), ()))
+    others = others or any(it != own for it in (*vain, *(served if end.kind == ACTION else ())))
     return not (doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
+
+
+@once
+def _called_by_robots(seen: Index) -> Mapping[tuple[str, str], tuple[list[str], list[str]]]:
+    """By kind and name without the robot's: the robots whose service or action is called in vain, and
+    those whose one is served."""
+    found: dict[tuple[str, str], tuple[list[str], list[str]]] = defaultdict(lambda: ([], []))
+    for ends in seen.by_name.values():
+        robot = seen.robot(ends.name) if ends.clients or ends.servers else ""
+        if robot:
+            robots = found[ends.kind, seen.plain(ends.name)][bool(ends.servers)]
+            # Two tell whether another than one of them is there.
+            robots += [robot] * (len(robots) < 2)
+    return dict(found)
 
 
 def _node_like(seen: Index, listed: str) -> str:
