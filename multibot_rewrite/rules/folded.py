@@ -4,10 +4,17 @@ below it, and what several nodes do alike, or one node does often, is one line."
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import (
+    ERROR,
+    INCONCLUSIVE,
+    NOTE,
+    WARNING,
+    Finding,
+    Remap,
+)
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.system.index import TF, Index, ends_of
 from multibot_rewrite.system.records import PUBLISHES, SERVES
@@ -136,7 +143,14 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
     same = (one for one in explained if one.names == it.names)
     remaps = (*it.remaps, *(rule for one in same for rule in one.remaps)) if it.remaps else ()
     hint = f"{it.hint}; {told}" if it.hint else told
-    return it._replace(hint=hint, level=level, remaps=tuple(dict.fromkeys(remaps)))
+    return it._replace(hint=hint, level=level, remaps=of_one_target(remaps))
+
+
+def of_one_target(rules: Iterable[Remap]) -> tuple[Remap, ...]:
+    """The rules without those that lead one name of a node to two: it serves several robots."""
+    each = tuple(dict.fromkeys(rules))
+    targets = Counter((it.node, it.old) for it in each)
+    return tuple(it for it in each if targets[it.node, it.old] == 1)
 
 
 def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
@@ -163,7 +177,7 @@ def _one_of(own: Sequence[Finding], code: str) -> Finding:
         same = unique(it.node for it in others if it.node != first.node)
     else:
         same = unique(it.names[0] for it in others if it.names)
-    remaps = tuple(dict.fromkeys(rule for it in own for rule in it.remaps))
+    remaps = of_one_target(rule for it in own for rule in it.remaps)
     if any(not it.remaps for it in own):
         remaps = first.remaps
     return first._replace(

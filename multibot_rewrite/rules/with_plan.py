@@ -14,6 +14,7 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Remap, Rule
 from multibot_rewrite.base.wording import shorten, unique
+from multibot_rewrite.rules.folded import of_one_target
 from multibot_rewrite.rules.system.changed import untold
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS, unexplained
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
@@ -152,7 +153,7 @@ def _hint(
         if one.node != first.node
     )
     same = f"; the same for {shorten(more)}" if more else ""
-    remaps = tuple(dict.fromkeys(rule for one in by_plan for rule in one.remaps))
+    remaps = of_one_target(rule for one in by_plan for rule in one.remaps)
     if not all(one.remaps for one in by_plan):
         remaps = ()
     return f"by the plan {who} {first.message}: {first.hint}{same}", remaps
