@@ -23,6 +23,7 @@ from waiting import wait_until
 
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.snapshot_file import read_snapshot
+from multibot_rewrite.system.parameters import GET_PARAMETERS
 from multibot_rewrite.system.records import System, clocks
 
 pytestmark = pytest.mark.live
@@ -151,10 +152,12 @@ def test_what_nodes_send_and_answer(needed: Mapping[str, str], tmp_path: Path) -
     heard = {("/robot1/scan", "laser"), ("/robot2/image", "robot1/laser"), ("/map", "map")}
 
     def look() -> System | None:
-        """What is seen once all was heard: a look waits for a message 1.5 s, a busy machine longer."""
+        """What is seen once all was heard and announced: a look waits for a message 1.5 s, a busy
+        machine longer."""
         live_commands.multibot("snapshot", "--state", "-o", file, "--timeout", "40", env=env)
         seen = read_snapshot(file)
-        return seen if heard <= {it[:2] for it in seen.heard} else None
+        served = ("/robot1/hangs", GET_PARAMETERS) in {(it.node, it.type) for it in seen.ends}
+        return seen if served and heard <= {it[:2] for it in seen.heard} else None
 
     with live_fleet.running(domain, nodes, hangs, **needed):
         seen = wait_until(look, 60)
