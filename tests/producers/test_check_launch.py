@@ -7,7 +7,7 @@ code of the nodes and of tf2_ros.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import pytest
@@ -735,7 +735,7 @@ def test_a_controller_has_the_type_of_its_own_section(
 
 
 TELEOP = "teleop_twist_keyboard/teleop_twist_keyboard"
-UNTOLD = ParameterText("", "", "stamped")
+UNTOLD = ParameterText("", "", untold="stamped")
 
 
 @pytest.mark.parametrize(
