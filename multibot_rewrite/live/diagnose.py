@@ -161,6 +161,8 @@ def _layout(
 def survey(seen: Diagnosis) -> Iterator[str]:
     """What there is, in a few lines: the robots, the layout, who is on which tf topic."""
     names = [robot.name for robot in seen.robots]
+    if not (names or seen.graph.nodes or is_recorded(seen.graph)):
+        return
     if not names:
         nodes = "a recording" if is_recorded(seen.graph) else plural(len(seen.graph.nodes), "node")
         yield f"{nodes}, no name of a robot in them: one robot, or several that share all names"

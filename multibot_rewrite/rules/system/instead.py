@@ -310,6 +310,9 @@ def meant(seen: Index, end: End) -> Ends | None:
         words_of = {last_word(seen.plain(it)): it for it in alike}
         near = nearest(last_word(seen.plain(end.name)), words_of, alike=_SLIP)
         return alike.get(words_of.get(near, ""))
+    if end.type.startswith(_PLAIN_DATA) and not last:
+        own_words = _words(seen, end.name)
+        alike = {name: it for name, it in alike.items() if own_words & _words(seen, name)}
     return alike.get(nearest(end.name, last or alike, alike=0.0))
 
 
