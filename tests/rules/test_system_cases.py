@@ -68,6 +68,26 @@ def test_which_command_a_reader_may_have_meant(reader: str, senders: str, meant:
     assert found == [f"MG303 {level} /robot1/{node}: {miss}; {there}"] * bool(meant)
 
 
+@pytest.mark.parametrize(
+    ("reader", "sender", "is_meant"),
+    [
+        ("docking_server detected_dock_pose", "following_server filtered_dynamic_pose", False),
+        ("docking_server detected_dock_pose", "finder dock_location", True),
+        ("docking_server detected_dock_pose", "finder other/detected_dock_pose", True),
+    ],
+)
+def test_of_plain_data_the_names_have_something_in_common(
+    reader: str, sender: str, is_meant: bool
+) -> None:
+    pose = "geometry_msgs/msg/PoseStamped"
+    (one, asked), (other, sent) = reader.split(), sender.split()
+    found = said(
+        f"/robot1/{one} subscribes /robot1/{asked} {pose} as {asked}",
+        f"/robot1/{other} publishes /robot1/{sent} {pose} as {sent}",
+    )
+    assert any(it.startswith("MG303") for it in found) is is_meant
+
+
 PAIR = (f"/robot1/amcl subscribes /clock {CLOCK}", f"/robot2/amcl subscribes /clock {CLOCK}")
 BRIDGE = f"/ros_gz_bridge publishes /clock {CLOCK}"
 
