@@ -73,24 +73,29 @@ def _is_beside(source: Source) -> bool:
 
 
 def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
+    from multibot_rewrite.cli.undo_options import (  # a rewrite needs none of it
+        more_to_undo,
+        with_missing_options,
+    )
+
     (robot,) = names
     # Read once: it may be a pipe, and --diff shows it again.
     given = filled(xacro_args(options), robot)
     read = read_whole(source, {} if options.xacro else given, options.trust)
     beside = read_whole(options.xacro, given, options.trust).read if options.xacro else ()
-    try:
-        stripped = _strip(options, read.data, robot)
-    except RewriteRefused as error:
-        from multibot_rewrite.cli.undo_options import (
-            with_missing_options,  # a mistake alone needs it
-        )
 
-        raise with_missing_options(
-            error, options, lambda other: _strip(other, read.data, robot)
-        ) from None
+    def undo(other: argparse.Namespace) -> bytes:
+        return _strip(other, read.data, robot)
+
+    try:
+        stripped = undo(options)
+    except RewriteRefused as error:
+        raise with_missing_options(error, options, undo, robot) from None
     check_unread(options, [robot], (*read.read, *beside))
     deliver(options, [(robot, read.data, stripped)], 1)
     tell(options, f"{robot} taken out, proved by rewriting again")
+    if words := more_to_undo(stripped, options, undo, robot):
+        tell(options, f"warning: {robot} is in all links still; was the file made with {words}?")
     return DONE
 
 
