@@ -149,8 +149,8 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
         fields["launch"] = tuple(it.file for it in launch)
     above = ((it, [one for one in named[:at] if one in files]) for at, it in enumerate(named))
     follows = tuple((it, before[-1]) for it, before in above if it in meant and before)
-    beside = {"meant": tuple(meant), "follows": follows, "named": tuple(launch)}
-    return Found(**fields, **beside, folders=tuple(homes))
+    fields |= {"meant": tuple(meant), "follows": follows, "named": tuple(launch)}
+    return Found(**fields, folders=tuple(homes))
 
 
 def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
