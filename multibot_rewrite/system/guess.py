@@ -35,9 +35,9 @@ BODY = (
 _TF = frozenset(("tf", "tf_static"))
 # Topics that a whole robot has; a lidar alone has a scan, and a camera sends tf.
 _WHOLE = frozenset(("cmd_vel", "odom", "joint_states", "robot_description"))
-# Namespaces with topics like a robot's that are only a part of one.
+# Namespaces with topics like a robot's that are only a part of one; two_finger_arm is an arm.
 _PART = re.compile(
-    r".*(cam|costmap|lidar|laser|scan|sensor|imu|gps|realsense|zed|oakd?$|velodyne|ouster|sick|wheel|motor"
+    r"(?!.*(?:arm|bot)_?[0-9]*$).*(cam|costmap|lidar|laser|scan|sensor|imu|gps|realsense|zed|oakd?$|velodyne|ouster|sick|wheel|motor"
     r"|gripper|controller|manager|server|caster|steering|finger|torso).*"
 )
 _NUMBER = re.compile(r"\d+")

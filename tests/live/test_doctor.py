@@ -82,6 +82,10 @@ def test_parts_of_a_robot_are_no_robots() -> None:
         ends = [(PUBLISHES, f"/{part}/{it}", TWIST) for it in ("odom", "joint_states")]
         graph = with_node(graph, f"/{part}/node", *ends)
     assert guess_robots(graph) == ()
+    for arm in ("two_finger_arm1", "two_finger_arm2"):
+        ends = [(PUBLISHES, f"/{arm}/{it}", TWIST) for it in ("robot_description", "joint_states")]
+        graph = with_node(graph, f"/{arm}/node", *ends)
+    assert [it.name for it in guess_robots(graph)] == ["two_finger_arm1", "two_finger_arm2"]
 
 
 def test_a_robot_that_has_just_started_is_one_by_its_number() -> None:
