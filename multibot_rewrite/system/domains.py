@@ -5,10 +5,10 @@ so what has one name in two of them is no clash. What was seen of them -> one vi
 from __future__ import annotations
 
 import re
-from collections import defaultdict
 from collections.abc import Mapping, Set
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, unique
 from multibot_rewrite.system.merging import WORST_LAST
 from multibot_rewrite.system.ownership import whose_by_plan
@@ -45,9 +45,7 @@ def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
     numbers, robot = domain_of(plan), whose_by_plan(plan).robot
     planned = {it.name: it.robot for it in plan.nodes}
     in_use = {numbers[it] for it in planned.values()}
-    theirs: dict[str, list[str]] = defaultdict(list)
-    for it in seen.ends:
-        theirs[it.node].append(robot(it.name))
+    theirs = lists_by_key((it.node, robot(it.name)) for it in seen.ends)
 
     def domain(node: str) -> int:
         if node in planned:

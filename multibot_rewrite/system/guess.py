@@ -17,6 +17,7 @@ from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, USUAL_FRAMES
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.system.ownership import SEPARATORS, Whose
 from multibot_rewrite.system.records import TOPIC, Edge, System
 from multibot_rewrite.system.tool_nodes import is_tool
@@ -175,10 +176,7 @@ def _last_words(graph: System) -> list[str]:
 
 def _parents(edges: Iterable[Edge]) -> Mapping[str, Set[str]]:
     """The frames on which each hangs."""
-    direct: dict[str, set[str]] = defaultdict(set)
-    for edge in edges:
-        direct[edge.child].add(edge.parent)
-    return direct
+    return sets_by_key((edge.child, edge.parent) for edge in edges)
 
 
 def _above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:

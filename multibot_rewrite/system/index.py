@@ -9,6 +9,7 @@ from functools import wraps
 from typing import Any, NamedTuple, TypeVar, cast
 
 from multibot_rewrite.base.conventions import EVERYBODYS
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.system import words
 from multibot_rewrite.system.ownership import NameOwnership, Whose
@@ -194,10 +195,7 @@ class Index(NamedTuple):
     @once
     def by_node(self) -> Mapping[str, Sequence[End]]:
         """The ends of each node, hidden ones as well."""
-        found: dict[str, list[End]] = defaultdict(list)
-        for end in self.system.ends:
-            found[end.node].append(end)
-        return found
+        return lists_by_key((end.node, end) for end in self.system.ends)
 
     @property
     @once

@@ -7,10 +7,11 @@ any look has seen it.
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.system.environment import UNFINISHED, participants, unfinished
 from multibot_rewrite.system.records import (
@@ -121,10 +122,9 @@ def _endpoints(looks: Sequence[Sequence[End]]) -> list[End]:
 
 
 def _by_owner(endpoints: Iterable[End]) -> dict[tuple[str, ...], list[End]]:
-    found: dict[tuple[str, ...], list[End]] = defaultdict(list)
-    for end in endpoints:
-        found[end.kind, end.name, end.role, end.node, end.process].append(end)
-    return found
+    return lists_by_key(
+        ((end.kind, end.name, end.role, end.node, end.process), end) for end in endpoints
+    )
 
 
 def _detail(ends: Sequence[End]) -> tuple[int, int, int]:
@@ -134,9 +134,7 @@ def _detail(ends: Sequence[End]) -> tuple[int, int, int]:
 
 def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
     """Each transform once a topic, with the publishers that any look has seen."""
-    found: dict[tuple[str, str, str], list[Edge]] = defaultdict(list)
-    for frame in frames:
-        found[frame.topic, frame.parent, frame.child].append(frame)
+    found = lists_by_key(((frame.topic, frame.parent, frame.child), frame) for frame in frames)
     for (topic, parent, child), same in sorted(found.items()):
         publishers = {node for frame in same for node in frame.publishers}
         static = any(frame.static for frame in same)

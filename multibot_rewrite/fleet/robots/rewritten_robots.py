@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding, Rule, declare
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names, with_srdf
@@ -138,9 +139,7 @@ def read_jobs(
         return read_in(text, beside, path if path in made else "")
 
     found: dict[Sources, Jobs] = {}
-    given_to: dict[str, list[tuple[Arguments, Sequence[str]]]] = {}
-    for it in robots:
-        given_to.setdefault(it.description, []).append((it.arguments, it.words))
+    given_to = lists_by_key((it.description, (it.arguments, it.words)) for it in robots)
     common = {source: common_to(each) for source, each in given_to.items()}
     for it in robots:
         if it.sources not in found:
@@ -189,9 +188,7 @@ def rewrite_robots(
 
     Raises as ``rewrite_all``.
     """
-    groups: dict[Sources, list[RobotSpec]] = {}
-    for robot in robots:
-        groups.setdefault(robot.sources, []).append(robot)
+    groups = lists_by_key((robot.sources, robot) for robot in robots)
     made = (it for key, group in groups.items() for it in _rewritten(group, jobs[key]))
     found = {it.spec.name: it for it in made}
     return [found[robot.name] for robot in robots]

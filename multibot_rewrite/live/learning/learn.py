@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import TF_TOPICS
@@ -92,9 +93,7 @@ def learn(
     for an endpoint that no node can have.
     """
     base = namespace_prefix(namespace)
-    ends: dict[str, list[End]] = defaultdict(list)
-    for end in graph.ends:
-        ends[end.node].append(end)
+    ends = lists_by_key((end.node, end) for end in graph.ends)
     helpers = helpers_of(graph, names)
     return tuple(
         _learn_node(name, base, ends, helpers.get(name, Helpers()), library) for name in names

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import OF_EVERY_NODE
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import DOES
@@ -155,9 +156,7 @@ def _transforms(before: System, seen: Index) -> Iterator[_Change]:
             yield _Change("", f"{sent} is elsewhere than it was", (child,))
     known = {(child, topic) for _, child, topic in old}
     fresh = [it for it in new if it not in old and it[1:] not in known]
-    by_topic: dict[str, list[_Place]] = defaultdict(list)
-    for it in fresh:
-        by_topic[it[2]].append(it)
+    by_topic = lists_by_key((it[2], it) for it in fresh)
     for topic, places in by_topic.items():
         listed = shorten(f"{parent} -> {child}" for parent, child, _ in places)
         senders = [it for place in places for it in new[place].publishers]

@@ -12,6 +12,7 @@ from math import inf, isinf
 
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
@@ -96,10 +97,7 @@ def _times(seen: Index, node: str) -> int:
 @once
 def _processes(seen: Index) -> Mapping[str, Set[str]]:
     """The processes of all nodes of a name."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for it in seen.system.nodes:
-        found[it.name].add(it.process)
-    return found
+    return sets_by_key((it.name, it.process) for it in seen.system.nodes)
 
 
 @system_rule("MG504", "clock-stands-or-goes-back", ERROR, absence=True)
@@ -135,9 +133,7 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
     asked = {node for node in seen.nodes if _is_timed(seen, node) and node not in untold}
     timed = asked - planned_clocks(seen).keys()
     first, their = min(simulated), {*map(seen.robot, simulated)}
-    by_robot: dict[str, list[str]] = defaultdict(list)
-    for node in sorted(timed):
-        by_robot[seen.robot(node)].append(node)
+    by_robot = lists_by_key((seen.robot(node), node) for node in sorted(timed))
     for robot, own in by_robot.items():
         others = [node for node in own if node not in simulated]
         if others and robot in their:

@@ -14,6 +14,7 @@ from multibot_rewrite.base.conventions import (
     team,
 )
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
@@ -137,20 +138,16 @@ def _moving(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends
     senders = {it.node for ends in moving for it in ends.publishers}
     asked = (it for it in moving if it.publishers or not is_from_outside(it.name))
     relays = senders.intersection(it.node for ends in asked for it in ends.subscribers)
-    found: dict[str, list[Ends]] = defaultdict(list)
-    for it in moving:
-        found[seen.robot(it.name)].append(it)
+    found = lists_by_key((seen.robot(it.name), it) for it in moving)
     return senders, relays, found
 
 
 @once
 def _goals(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
     """The orders that somebody obeys, by type and robot."""
-    found: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for it in seen.orders.values():
-        if _obeyed(it):
-            found[it.type, seen.robot(it.name)].append(it.name)
-    return found
+    return lists_by_key(
+        ((it.type, seen.robot(it.name)), it.name) for it in seen.orders.values() if _obeyed(it)
+    )
 
 
 def _waits_for_sure(end: End) -> bool:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
@@ -175,9 +176,7 @@ def _parts(seen: Index) -> _Values:
 
 
 def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterator[Finding]:
-    by_robot: dict[str, list[tuple[_Told, _Told]]] = defaultdict(list)
-    for robot, own, other in odd:
-        by_robot[robot].append((own, other))
+    by_robot = lists_by_key((robot, (own, other)) for robot, own, other in odd)
     for robot, pairs in by_robot.items():
         listed = (f"{own.name} {own.value}, not {other.value}" for own, other in pairs)
         like = seen.robot(pairs[0][1].node) or seen.frame_robot(pairs[0][1].name)
@@ -211,7 +210,6 @@ def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
 @once
 def _frames(seen: Index) -> Mapping[str, Mapping[str, str]]:
     """By robot: its frames by their names without its own."""
-    found: dict[str, dict[str, str]] = defaultdict(dict)
-    for robot, it in _edges_of(seen):
-        found[robot][seen.plain_frame(it.child)] = it.child
-    return found
+    return dicts_by_key(
+        (robot, seen.plain_frame(it.child), it.child) for robot, it in _edges_of(seen)
+    )

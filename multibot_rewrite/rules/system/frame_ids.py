@@ -9,6 +9,7 @@ from functools import cache, partial
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule, where
@@ -126,11 +127,9 @@ def _robot_of_joint(seen: Index, joint: str) -> str:
 @once
 def _that_send(seen: Index) -> Mapping[str, Set[str]]:
     """The robots on whose topics each joint is."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for it in seen.system.heard:
-        for joint in it.joints:
-            found[joint].add(seen.robot(it.topic))
-    return found
+    return sets_by_key(
+        (joint, seen.robot(it.topic)) for it in seen.system.heard for joint in it.joints
+    )
 
 
 @once
@@ -147,11 +146,7 @@ def _by_topic(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
 @once
 def _where(seen: Index) -> Mapping[str, Sequence[str]]:
     """The topics that each frame is on."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for tree in seen.trees:
-        for it in frames_in(tree.edges):
-            found[it].append(tree.topic)
-    return found
+    return lists_by_key((it, tree.topic) for tree in seen.trees for it in frames_in(tree.edges))
 
 
 @once
@@ -279,10 +274,7 @@ def _of_its_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str]:
 
 def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Message]]:
     """Frame, robot and senders -> the messages; a camera has several topics, and one fault."""
-    found: dict[tuple[str, str, tuple[str, ...]], list[_Message]] = defaultdict(list)
-    for it in _messages(seen):
-        found[it.frame, it.robot, it.senders].append(it)
-    return found
+    return lists_by_key(((it.frame, it.robot, it.senders), it) for it in _messages(seen))
 
 
 def _messages(seen: Index) -> Iterator[_Message]:
@@ -308,11 +300,11 @@ def trees_of(seen: Index, robot: str) -> list[Tree]:
 @once
 def _trees_by_robot(seen: Index) -> Mapping[str, Set[int]]:
     """The places of the trees on a robot's own topic or at its nodes; of those of all by ""."""
-    found: dict[str, set[int]] = defaultdict(set)
-    for at, it in enumerate(seen.trees):
-        for robot in (seen.robot(it.topic), *robots_of(seen, (*it.senders, *it.listeners))):
-            found[robot].add(at)
-    return found
+    return sets_by_key(
+        (robot, at)
+        for at, it in enumerate(seen.trees)
+        for robot in (seen.robot(it.topic), *robots_of(seen, (*it.senders, *it.listeners)))
+    )
 
 
 def frames_in(edges: Iterable[Edge]) -> set[str]:

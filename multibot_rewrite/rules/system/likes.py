@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, SENT_FRAMES, chooses
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
@@ -140,9 +141,7 @@ def _lost_ends(
 ) -> Iterator[Finding]:
     """Those of a node in one finding."""
     like = next(it for it in likes if it != robot)
-    by_node: dict[str, list[_Key]] = defaultdict(list)
-    for key in gone:
-        by_node[key[0]].append(key)
+    by_node = lists_by_key((key[0], key) for key in gone)
     for plain, keys in by_node.items():
         own, node = _waiting(seen, made, robot, keys), made[robot].nodes[plain]
         if not own:
@@ -213,11 +212,11 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
 
 def _of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
     """Name without the robot's -> robot -> name, of the topics whose messages were counted."""
-    found: dict[str, dict[str, str]] = defaultdict(dict)
-    for name in seen.known.messages:
-        if robot := seen.robot(name):
-            found[seen.plain(name)][robot] = name
-    return found
+    return dicts_by_key(
+        (seen.plain(name), robot, name)
+        for name in seen.known.messages
+        if (robot := seen.robot(name))
+    )
 
 
 def _slow(seen: Index) -> Iterator[Finding]:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import caused, plugin_of
@@ -108,9 +109,7 @@ def _all_types(ends: Iterable[End]) -> set[tuple[str, str]]:
 
 def _apart(ends: Iterable[End], given: set[tuple[str, str]]) -> Mapping[str, Sequence[End]]:
     """By node: the ends that connect with none of the types, where all of its own are known."""
-    by_node: dict[str, list[End]] = defaultdict(list)
-    for end in ends if given else ():
-        by_node[end.node].append(end)
+    by_node = lists_by_key((end.node, end) for end in (ends if given else ()))
     return {
         node: own
         for node, own in by_node.items()

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses, is_from_outside, team
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import see, system_rule, where
@@ -165,29 +166,24 @@ def _of_a_robot_without(seen: Index, end: End, published: Mapping[str, Ends]) ->
 @once
 def _with_node(seen: Index) -> Mapping[str, Set[str]]:
     """The robots that have a node, by its name without theirs."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for it in seen.nodes:
-        found[seen.plain(it)].add(seen.robot(it))
-    return found
+    return sets_by_key((seen.plain(it), seen.robot(it)) for it in seen.nodes)
 
 
 @once
 def _by_plain(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
     """The published topics of each robot, by their name without it."""
-    found: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for it in (one for own in _published(seen).values() for one in own):
-        found[seen.robot(it.name), seen.plain(it.name)].append(it.name)
-    return found
+    return lists_by_key(
+        ((seen.robot(it.name), seen.plain(it.name)), it.name)
+        for it in (one for own in _published(seen).values() for one in own)
+    )
 
 
 @once
 def _published(seen: Index) -> Mapping[str, Sequence[Ends]]:
     """The topics with a publisher, by their type."""
-    found: dict[str, list[Ends]] = defaultdict(list)
-    for (kind, _), it in seen.by_name.items():
-        if kind == TOPIC and it.publishers:
-            found[it.type].append(it)
-    return found
+    return lists_by_key(
+        (it.type, it) for (kind, _), it in seen.by_name.items() if kind == TOPIC and it.publishers
+    )
 
 
 def _written_out(node: str, name: str) -> Iterator[str]:
@@ -295,10 +291,7 @@ def _served(seen: Index) -> Mapping[tuple[str, str], _Served]:
 
 
 def _plainly(seen: Index, names: Iterable[str]) -> Mapping[str, Sequence[str]]:
-    found: dict[str, list[str]] = defaultdict(list)
-    for it in names:
-        found[seen.plain(it)].append(it)
-    return found
+    return lists_by_key((seen.plain(it), it) for it in names)
 
 
 def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
@@ -416,11 +409,7 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
 @once
 def _named_by_robots(seen: Index) -> Mapping[str, Sequence[str]]:
     """The names of robots, by their name without a robot's."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for _, name in seen.by_name:
-        if seen.robot(name):
-            found[seen.plain(name)].append(name)
-    return found
+    return lists_by_key((seen.plain(name), name) for _, name in seen.by_name if seen.robot(name))
 
 
 @system_rule("MG305", "service-of-two-nodes", ERROR, meant=(SERVES,))

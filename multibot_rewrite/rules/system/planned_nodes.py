@@ -11,6 +11,7 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.rules.declaration import planned_rule, system_rule
 from multibot_rewrite.rules.system.causes import DOES, Cause, caused, plugin_of, why_other_name
@@ -278,9 +279,7 @@ def bridged_topic_missing(plan: Index, seen: Index) -> Iterator[Finding]:
         running = not all(is_absent(plan, seen, it.name) for it in plan.system.robots)
         yield from [_not_carried(plan, seen, "", missing, WARNING)] * running
         return
-    by_robot: dict[str, list[tuple[Topic, str]]] = defaultdict(list)
-    for topic, role in missing:
-        by_robot[plan.robot(topic.name)].append((topic, role))
+    by_robot = lists_by_key((plan.robot(topic.name), (topic, role)) for topic, role in missing)
     for robot, own in by_robot.items():
         if not (robot and is_absent(plan, seen, robot)):
             yield _not_carried(plan, seen, robot, own, ERROR)
@@ -318,8 +317,6 @@ def _bridges_there(plan: Index, seen: Index, robot: str) -> str:
 @once
 def _bridges(plan: Index, seen: Index) -> Mapping[str, Sequence[str]]:
     """The bridges that run, by their robot."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for it in seen.nodes:
-        if it.rpartition("/")[2].endswith(_BRIDGES):
-            found[plan.robot(it)].append(it)
-    return found
+    return lists_by_key(
+        (plan.robot(it), it) for it in seen.nodes if it.rpartition("/")[2].endswith(_BRIDGES)
+    )

@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.system.environment import machines
@@ -32,10 +33,7 @@ def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _by_node(parameters: Iterable[Parameter]) -> dict[str, list[Parameter]]:
-    found: dict[str, list[Parameter]] = defaultdict(list)
-    for it in parameters:
-        found[it.node].append(it)
-    return found
+    return lists_by_key((it.node, it) for it in parameters)
 
 
 def _differences(

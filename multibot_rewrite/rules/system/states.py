@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.wording import SEVERAL, and_then, shorten
 from multibot_rewrite.rules import declaration
@@ -31,7 +32,6 @@ from multibot_rewrite.system.records import (
     SIM_TIME,
     Controller,
     Interface,
-    Place,
     clocks,
 )
 from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
@@ -117,9 +117,7 @@ def _is_of(claim: Interface, name: str, controllers: Iterable[Controller]) -> bo
 @system_rule("MG513", "no-controller-active", WARNING)
 def no_controller_active(seen: Index) -> Iterator[Finding]:
     """Some inactive ones beside active ones are usual."""
-    kept: dict[str, list[Controller]] = defaultdict(list)
-    for it in seen.system.controllers:
-        kept[it.manager].append(it)
+    kept = lists_by_key((it.manager, it) for it in seen.system.controllers)
     for manager, own in kept.items():
         if all(it.state != ACTIVE for it in own):
             listed = shorten((f"{it.name} ({it.state})" for it in own), SEVERAL)
@@ -161,9 +159,7 @@ def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
     """Many of them are one finding: two robots."""
     times = seen.nodes
     twins = [name for name, count in times.items() if count > 1 and _counts(seen, name)]
-    by_robot: dict[str, list[str]] = defaultdict(list)
-    for name in twins:
-        by_robot[seen.robot(name)].append(name)
+    by_robot = lists_by_key((seen.robot(name), name) for name in twins)
     for robot, names in by_robot.items():
         if len(names) >= MANY:
             yield _two_robots(robot, names)
@@ -256,18 +252,13 @@ interface_not_exported = declaration.NOT_EXPORTED._replace(check=_not_exported)
 
 
 def _by_robot(seen: Index) -> dict[str, list[Interface]]:
-    found: dict[str, list[Interface]] = defaultdict(list)
-    for it in seen.system.interfaces:
-        found[seen.robot(it.node)].append(it)
-    return found
+    return lists_by_key((seen.robot(it.node), it) for it in seen.system.interfaces)
 
 
 def missing(known: Sequence[Interface]) -> Iterator[Missing]:
     """The claims without an export among the interfaces of one robot, by controller and place."""
     exports = {(it.kind, it.name): it for it in known if it.role == EXPORTS}
-    opened: dict[tuple[str, Place], list[Interface]] = defaultdict(list)
-    for it in open_claims(known):
-        opened[it.node, it.place].append(it)
+    opened = lists_by_key(((it.node, it.place), it) for it in open_claims(known))
     hints = Guesses()
     for first, *more in opened.values():
         near = hints.nearest(first.name, [name for kind, name in exports if kind == first.kind])

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.system.causes import Cause, caused
@@ -25,10 +26,7 @@ def sent_by_robot(plan: Index, robot: Robot) -> list[Sent]:
 
 @once
 def _sent_by_robot(plan: Index) -> Mapping[str, Sequence[Sent]]:
-    found: dict[str, list[Sent]] = defaultdict(list)
-    for it in plan.sent:
-        found[plan.robot_of.get(it.node, "")].append(it)
-    return found
+    return lists_by_key((plan.robot_of.get(it.node, ""), it) for it in plan.sent)
 
 
 def state_publisher(plan: Index, robot: Robot) -> str:

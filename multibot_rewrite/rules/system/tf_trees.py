@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.chains import chain_ends
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.records import OFF, PUBLISHES, Edge, Robot
@@ -16,10 +17,7 @@ from multibot_rewrite.system.tf_copies import tree_topic
 @once
 def homes(plan: Index) -> Mapping[str, Sequence[str]]:
     """By tf topic: the robots whose it is by the layout."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for robot in plan.system.robots:
-        found[tree_topic(robot.tf_topic)].append(robot.name)
-    return found
+    return lists_by_key((tree_topic(robot.tf_topic), robot.name) for robot in plan.system.robots)
 
 
 def home_of(plan: Index, tree: Tree) -> Sequence[str]:

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Remap
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import Cause
@@ -43,17 +44,11 @@ def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
 
 
 def _by_child(tree: Tree) -> dict[str, list[Edge]]:
-    found: dict[str, list[Edge]] = defaultdict(list)
-    for edge in tree.edges:
-        found[edge.child].append(edge)
-    return found
+    return lists_by_key((edge.child, edge) for edge in tree.edges)
 
 
 def _parents(tree: Tree) -> dict[str, set[str]]:
-    found: dict[str, set[str]] = defaultdict(set)
-    for edge in tree.edges:
-        found[edge.child].add(edge.parent)
-    return found
+    return sets_by_key((edge.child, edge.parent) for edge in tree.edges)
 
 
 def _senders(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
@@ -105,9 +100,9 @@ def collide(seen: Index, tree: Tree) -> str:
     robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
     if bare and not seen.robot(tree.topic) and _may_meet(seen, tree):
-        named: dict[str, set[str]] = defaultdict(set)
-        for it in tree.edges:
-            named[seen.frame_robot(it.child)].add(seen.plain_frame(it.child))
+        named = sets_by_key(
+            (seen.frame_robot(it.child), seen.plain_frame(it.child)) for it in tree.edges
+        )
         nameless = [it for it in robots if len(named.get(it, bare - bare) & bare) < len(bare)]
         of_all = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
         without = {robot for robot in robots if robot not in named}
@@ -198,10 +193,7 @@ def tf_cycle(seen: Index) -> Iterator[Finding]:
 def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
     """Circles that have no frame in common, each from the parent to the child."""
     left = {child: set(above) & parents.keys() for child, above in parents.items()}
-    below: dict[str, list[str]] = {}
-    for child, above in left.items():
-        for parent in above:
-            below.setdefault(parent, []).append(child)
+    below = lists_by_key((parent, child) for child, above in left.items() for parent in above)
     _take_away(left, below, [child for child, above in left.items() if not above])
     for start in sorted(left):
         while start in left:
@@ -256,9 +248,7 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
         if collide(seen, tree):
             continue
         edges = _sent_twice(tree)
-        by_robot: dict[str, list[Edge]] = defaultdict(list)
-        for it in edges:
-            by_robot[seen.frame_robot(it.child)].append(it)
+        by_robot = lists_by_key((seen.frame_robot(it.child), it) for it in edges)
         for robot, own in by_robot.items():
             listed = shorten(unique(f"{it.parent} -> {it.child}" for it in own))
             message = f"several nodes send {listed} on {tree.topic}"
@@ -287,9 +277,7 @@ def _is_fixed(edge: Edge) -> bool:
 
 def _sent_twice(tree: Tree) -> list[Edge]:
     """The transforms of which several senders are heard, or known."""
-    known: dict[tuple[str, ...], set[tuple[str, ...]]] = defaultdict(set)
-    for it in tree.edges:
-        known[it.parent, it.child, it.topic].add(it.publishers)
+    known = sets_by_key(((it.parent, it.child, it.topic), it.publishers) for it in tree.edges)
     return [it for it in tree.edges if it.several or len(known[it.parent, it.child, it.topic]) > 1]
 
 

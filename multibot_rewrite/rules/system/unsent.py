@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule, where
@@ -46,9 +47,7 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
     """All names of a robot are one finding; without those that others have under another name."""
     left = [it for it in open_ends(seen) if not meant(seen, it)]
     left = _without_missed(seen, left) if left else left
-    by_robot: dict[str, set[str]] = defaultdict(set)
-    for it in left:
-        by_robot[seen.robot(it.node)].add(it.name)
+    by_robot = sets_by_key((seen.robot(it.node), it.name) for it in left)
     for robot, names in by_robot.items():
         yield from _told(seen, robot, sorted(names))
 
@@ -99,11 +98,11 @@ def _frames(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
 @once
 def _given(seen: Index) -> Mapping[str, Sequence[str]]:
     """What is sent or served by its name without a robot's, the last one first."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for (_, name), ends in reversed([*seen.by_name.items()]):
-        if ends.publishers or ends.servers:
-            found[seen.plain(name)].append(name)
-    return found
+    return lists_by_key(
+        (seen.plain(name), name)
+        for (_, name), ends in reversed([*seen.by_name.items()])
+        if ends.publishers or ends.servers
+    )
 
 
 def _without_missed(seen: Index, ends: Iterable[End]) -> list[End]:
