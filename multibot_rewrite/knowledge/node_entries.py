@@ -7,10 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.rosnames import (
-    check_name_in_code,
-    check_node_name,
-)
+from multibot_rewrite.base.rosnames import check_name_in_code, check_node_name
 from multibot_rewrite.knowledge.conditions import CHOSEN, OPEN_KIND, words_in
 from multibot_rewrite.knowledge.parameter_entries import has_default
 from multibot_rewrite.knowledge.records import (

@@ -11,11 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.base.conventions import (
-    READ_BY_EVERY_NODE,
-    SENT_BY_EVERY_NODE,
-    tool_patterns,
-)
+from multibot_rewrite.base.conventions import READ_BY_EVERY_NODE, SENT_BY_EVERY_NODE, tool_patterns
 from multibot_rewrite.base.grouping import dicts_by_key, sets_by_key
 from multibot_rewrite.system.records import (
     ACTION,

@@ -12,19 +12,9 @@ from multibot_rewrite.base.releases import chosen_release, why_told
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_of_all
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart, apart_of
-from multibot_rewrite.fleet.file.fleet_data import (
-    FleetSource,
-    listed,
-    nodl_files,
-    read_data,
-)
+from multibot_rewrite.fleet.file.fleet_data import FleetSource, listed, nodl_files, read_data
 from multibot_rewrite.fleet.file.robot_choice import ALL, Choice, with_robots
-from multibot_rewrite.fleet.file.robot_spec import (
-    WORLD_LINK,
-    RobotSpec,
-    is_simulated,
-    robot_spec,
-)
+from multibot_rewrite.fleet.file.robot_spec import WORLD_LINK, RobotSpec, is_simulated, robot_spec
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, zenoh_of
 
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
