@@ -21,6 +21,7 @@ from multibot_rewrite.system.records import (
     SERVES,
     SUBSCRIBES,
     TOPIC,
+    UNKNOWN_NODES,
     Edge,
     End,
     Node,
@@ -201,7 +202,22 @@ class Index(NamedTuple):
     @once
     def by_name(self) -> Mapping[tuple[str, str], Ends]:
         """The ends of each kind and name, without hidden ones."""
-        return {(it.kind, it.name): it for it in _ends(self.system.ends)}
+        found: dict[tuple[str, str], tuple[list[End], ...]] = {}
+        for end in self.system.ends:
+            if "/_" in end.name:
+                continue
+            key = end.kind, end.name
+            if key not in found:
+                found[key] = ([], [], [], [])
+            found[key][_PLACE[end.role]].append(end)
+        return {
+            key: Ends(*key, next(filter(None, sides))[0].type, *map(tuple, sides))
+            for key, sides in found.items()
+        }
+
+    def ends_at(self, kind: str, name: str) -> Ends:
+        """The ends of a kind and name; of an unknown name there are none."""
+        return self.by_name.get((kind, name)) or Ends(kind, name, "", (), (), (), ())
 
     @property
     @once
@@ -238,6 +254,11 @@ class Index(NamedTuple):
     def is_live(self) -> bool:
         """Was it seen running? Next to what launch files start there may be more."""
         return not any(it.place.file for it in self.system.nodes)
+
+    @property
+    def in_doubt(self) -> bool:
+        """May nodes run that no source names, such as a driver?"""
+        return any(it.code == UNKNOWN_NODES for it in self.system.environment.caveats)
 
     def is_tool(self, node: str) -> bool:
         """Is the node none of the robots', but one that comes and goes beside any?"""
@@ -305,42 +326,18 @@ def spaces(it: Index) -> Set[str]:
 
 def ends_of(it: Index, name: str) -> Iterator[End]:
     """All ends of a name, whatever their kind."""
-    for kind in KINDS:
-        found = it.by_name.get((kind, name))
-        if found:
-            yield from (end for side in found[3:] for end in side)
-
-
-def _ends(endpoints: Iterable[End]) -> Iterator[Ends]:
-    found: dict[tuple[str, str], tuple[list[End], ...]] = {}
-    for end in endpoints:
-        key = (end.kind, end.name)
-        if "/_" in end.name:
-            continue
-        sides = found.get(key)
-        if sides is None:
-            sides = found[key] = ([], [], [], [])
-        sides[_PLACE[end.role]].append(end)
-    for (kind, name), sides in found.items():
-        first = next(filter(None, sides))[0]
-        yield Ends(kind, name, first.type, *map(tuple, sides))
+    return (end for kind in KINDS for side in it.ends_at(kind, name)[3:] for end in side)
 
 
 def _trees(system: System, names: Iterable[Ends]) -> Iterator[Tree]:
-    topics: dict[str, list[Ends]] = defaultdict(list)
-    edges: dict[str, list[Edge]] = defaultdict(list)
-    for ends in names:
-        if ends.type == TF:
-            topics[tree_topic(ends.name)].append(ends)
-    for frame in system.edges:
-        if "/_" not in frame.topic and frame.sure != OFF:
-            edges[tree_topic(frame.topic)].append(_without_slash(frame))
+    topics = lists_by_key((tree_topic(it.name), it) for it in names if it.type == TF)
+    known = (it for it in system.edges if "/_" not in it.topic and it.sure != OFF)
+    edges = lists_by_key((tree_topic(it.topic), _without_slash(it)) for it in known)
     for topic in dict.fromkeys((*edges, *topics)):
-        own = topics.get(topic, ())
-        heard = (node for frame in edges.get(topic, ()) for node in frame.publishers)
+        own, heard = topics[topic], (node for it in edges[topic] for node in it.publishers)
         senders = (*(end.node for it in own for end in it.publishers), *heard)
         listeners = (end.node for it in own if it.name == topic for end in it.subscribers)
-        yield Tree(topic, tuple(edges.get(topic, ())), unique(senders), unique(listeners))
+        yield Tree(topic, tuple(edges[topic]), unique(senders), unique(listeners))
 
 
 def _without_slash(frame: Edge) -> Edge:
@@ -363,8 +360,8 @@ def at_work(ends: Iterable[End]) -> list[End]:
 
 def sent_on(it: Index, topic: str) -> tuple[str, tuple[str, ...]]:
     """The type of a topic, and the nodes that publish it and do more than look; empty without."""
-    ends = it.by_name.get((TOPIC, topic))
-    return (ends.type, nodes_of(at_work(ends.publishers))) if ends else ("", ())
+    ends = it.ends_at(TOPIC, topic)
+    return ends.type, nodes_of(at_work(ends.publishers))
 
 
 def robots_of(it: Index, nodes: Iterable[str]) -> tuple[str, ...]:

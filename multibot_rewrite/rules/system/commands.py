@@ -298,8 +298,7 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
 
 def _is_unplanned(seen: Index, node: str, name: str) -> bool:
     """Has the plan other senders of a command than this one?"""
-    planned = seen.expected.by_name.get((TOPIC, name)) if seen.expected else None
-    senders = nodes_of(planned.publishers) if planned else ()
+    senders = nodes_of(seen.expected.ends_at(TOPIC, name).publishers) if seen.expected else ()
     return bool(senders) and node not in senders
 
 

@@ -15,7 +15,7 @@ from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule, where
 from multibot_rewrite.system.index import Index, Tree, at_work, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
-from multibot_rewrite.system.records import NOWHERE, TOPIC, Edge, End, Heard, Place
+from multibot_rewrite.system.records import NOWHERE, TOPIC, Edge, Heard, Place
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _ODOMETRY = "nav_msgs/msg/Odometry"
@@ -67,7 +67,7 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
 @system_rule("MG412", "frame-id-unknown", ERROR, absence=True)
 def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     """Where no transform was received at all nothing is known; others say that."""
-    frames, read = _by_topic(seen), partial(_is_placed_by_readers, seen)
+    frames = _by_topic(seen)
     yield from _nameless(seen)
     yield from _with_slash(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
@@ -76,17 +76,23 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         if there or _is_of_another(seen, frame, robot, messages):
             continue
         own = sorted({it for tree in heard for who in ("", robot) for it in tree.get(who, ())})
-        meant = _meant(seen, frame, own)
+        # Those of the robot that have this name beside the robot's, or without it.
+        last = frame.rpartition("/")[2]
+        meant = sorted(it for it in own if seen.plain_frame(it) in (frame, last) or it == last)
+        alike = [*filter(None, [nearest(frame, own, MISTYPED)])]
         elsewhere = _where(seen).get(frame, ())
-        topics = shorten([it.topic for it in messages])
-        # Next to what a launch file starts there may be what sends the transform.
-        needed = seen.is_live and any(map(read, messages))
+        topics, link = shorten([it.topic for it in messages]), messages[0].link
+        # Of no use to their readers without a place; filters turn that of an IMU. Next to what a launch
+        # file starts there may be what sends the transform.
+        placed = [it.topic for it in messages if it.type in (*_PLACED, _IMU)]
+        needed = seen.is_live and any(_is_read(seen, it) for it in placed)
         yield frame_id_unknown.finding(
             f"{messages[0].field} of {topics} is {frame}, which is in no transform of"
             f" {robot or 'tf'}; sent by"
             f" {_who(senders)}",
-            _in_the_sensor(messages[0])
-            or _remedy(senders, meant or _alike(frame, own) or _of_its_kind(messages, own))
+            # A sensor in a simulator sends what its description says, else a name that is in no tf.
+            (f"write <gz_frame_id>{link}</gz_frame_id> in the sensor" if link else "")
+            or _remedy(senders, meant or alike or _of_its_kind(messages, own))
             or _sent_there(seen, frame, robot, elsewhere)
             or f"send a transform for it, or set the frame of {_who(senders)} to one that is in tf",
             level=ERROR if meant or elsewhere or needed else WARNING,
@@ -196,21 +202,15 @@ def _with_slash(seen: Index) -> Iterator[Finding]:
             f"messages on {shorten(topics)} are in {named}: tf2 refuses to look up a frame with a slash"
             f" in front; sent by {_who(senders)}",
             f"leave the slash out of the frames of {_who(senders)}",
-            level=ERROR if any(_readers(seen, it) for it in topics) else WARNING,
+            level=ERROR if any(_is_read(seen, it) for it in topics) else WARNING,
             robot=seen.robot(topic) or only(robots_of(seen, senders)),
             node=senders[0], names=tuple(topics),
         )  # fmt: skip
 
 
-def _readers(seen: Index, topic: str) -> Sequence[End]:
-    """The ends of nodes that do more than look."""
-    ends = seen.by_name.get((TOPIC, topic))
-    return at_work(ends.subscribers) if ends else ()
-
-
-def _is_placed_by_readers(seen: Index, it: _Message) -> bool:
-    """Do nodes read what is of no use to them without its place? Filters turn that of an IMU."""
-    return it.type in (*_PLACED, _IMU) and bool(_readers(seen, it.topic))
+def _is_read(seen: Index, topic: str) -> bool:
+    """Do nodes read it that do more than look?"""
+    return bool(at_work(seen.ends_at(TOPIC, topic).subscribers))
 
 
 def _unsaid(it: Heard, type_: str) -> str:
@@ -218,11 +218,6 @@ def _unsaid(it: Heard, type_: str) -> str:
         return "frame_id"
     # Its pose is known where all of the message was read.
     return "child_frame_id" if type_ == _ODOMETRY and it.pose and not it.child else ""
-
-
-def _in_the_sensor(it: _Message) -> str:
-    """A sensor in a simulator sends what its description says, else a name that is in no tf."""
-    return f"write <gz_frame_id>{it.link}</gz_frame_id> in the sensor" if it.link else ""
 
 
 def _remedy(senders: Sequence[str], meant: Sequence[str]) -> str:
@@ -242,17 +237,6 @@ def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -
     if elsewhere:
         return f"it is on {shorten(elsewhere)}: who sends it there is to send it here, too"
     return ""
-
-
-def _meant(seen: Index, frame: str, own: Sequence[str]) -> list[str]:
-    """The frames of the robot that have this name beside the robot's, or without it."""
-    last = frame.rpartition("/")[2]
-    return sorted(it for it in own if seen.plain_frame(it) in (frame, last) or it == last)
-
-
-def _alike(frame: str, own: Sequence[str]) -> list[str]:
-    found = nearest(frame, own, MISTYPED)
-    return [found] if found else []
 
 
 # What frames of sensors of a type are called.

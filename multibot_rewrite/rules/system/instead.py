@@ -20,7 +20,6 @@ from multibot_rewrite.system.records import (
     RUNS,
     SERVICE,
     SUBSCRIBES,
-    UNKNOWN_NODES,
     End,
 )
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
@@ -57,8 +56,7 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
     if known := meant(seen, end):
         return known
     # Where nodes may run that are not known, one of them may send it, or read the other.
-    doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
-    if doubt or is_viewer(end.node) or not end.type:
+    if seen.in_doubt or is_viewer(end.node) or not end.type:
         return None
     if end.role == CALLS:
         return _nearest(end, list(_served(seen, end)))

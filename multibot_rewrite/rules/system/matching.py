@@ -237,8 +237,7 @@ def not_latched(seen: Index) -> Iterator[Finding]:
 
 def _offered_otherwise(seen: Index, name: str, qos: Iterable[tuple[str, str]]) -> Iterator[Finding]:
     """Where it is known what is offered; a policy of which no word is known is as planned."""
-    ends = seen.by_name.get((TOPIC, name))
-    for end in ends.publishers if ends else ():
+    for end in seen.ends_at(TOPIC, name).publishers:
         offered = [(policy, word, getattr(end.qos, policy)) for policy, word in qos if end.qos]
         known = (it for it in offered if it[2] not in (it[1], "UNKNOWN", "SYSTEM_DEFAULT"))
         if different := [f"{policy} {there}, the plan has {word}" for policy, word, there in known]:

@@ -32,7 +32,7 @@ from multibot_rewrite.system.index import (
     robots_of,
     spaces,
 )
-from multibot_rewrite.system.records import ACTION, RUNS, SERVES, SERVICE, TOPIC, UNKNOWN_NODES, End
+from multibot_rewrite.system.records import ACTION, RUNS, SERVES, SERVICE, TOPIC, End
 from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
 
 ABSENT = "is that robot started, and is its name right?"
@@ -328,7 +328,6 @@ def _waits(seen: Index, end: End) -> bool:
     """Is it an own program that calls what nobody serves? Nav2's and MoveIt's nodes, tools and what
     every node serves are left out, and a view in which nodes are missing. What is known by code alone
     is told by ``nothing_known_sends``."""
-    doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
     # Beside other robots it may be one that is not started yet, if it is not its own.
@@ -337,7 +336,9 @@ def _waits(seen: Index, end: End) -> bool:
     # What all robots call in vain is so by their make; goals that another robot takes are MG322.
     vain, served = _called_by_robots(seen).get((end.kind, seen.plain(end.name)), ((), ()))
     others = others or any(it != own for it in (*vain, *(served if end.kind == ACTION else ())))
-    return not (doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
+    return (
+        not (seen.in_doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
+    )
 
 
 @once

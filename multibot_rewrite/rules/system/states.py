@@ -78,18 +78,17 @@ def _active_at_another(seen: Index, node: str) -> str:
 
 def _manager(seen: Index, node: str) -> str:
     """The node that changes the state of another one; empty for none."""
-    ends = seen.by_name.get((SERVICE, f"{node}/change_state"))
-    clients = (end.node for end in ends.clients) if ends else ()
+    clients = (end.node for end in seen.ends_at(SERVICE, f"{node}/change_state").clients)
     return min((it for it in clients if not _asks_for_a_person(seen, it)), default="")
 
 
 @system_rule("MG512", "interface-commanded-twice", ERROR)
 def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
     """A running manager refuses the second of its own controllers."""
-    claims: dict[tuple[str, str], list[Controller]] = defaultdict(list)
-    for it in (one for one in seen.system.controllers if one.state == ACTIVE):
-        for interface in it.claims:
-            claims[seen.robot(it.manager), interface].append(it)
+    active = (it for it in seen.system.controllers if it.state == ACTIVE)
+    claims = lists_by_key(
+        ((seen.robot(it.manager), interface), it) for it in active for interface in it.claims
+    )
     reported = set()
     for (robot, interface), found in claims.items():
         names = tuple((it.manager, it.name) for it in found)
@@ -109,9 +108,8 @@ def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
 
 def _is_of(claim: Interface, name: str, controllers: Iterable[Controller]) -> bool:
     """Is it the claim of an interface by one of these controllers?"""
-    if (claim.role, claim.kind, claim.name) != (CLAIMS, COMMAND, name):
-        return False
-    return any(last_word(claim.node) == it.name for it in controllers)
+    is_claimed = (claim.role, claim.kind, claim.name) == (CLAIMS, COMMAND, name)
+    return is_claimed and any(last_word(claim.node) == it.name for it in controllers)
 
 
 @system_rule("MG513", "no-controller-active", WARNING)
@@ -158,24 +156,24 @@ _CHANGE_STATE = "/change_state"
 def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
     """Many of them are one finding: two robots."""
     times = seen.nodes
-    twins = [name for name, count in times.items() if count > 1 and _counts(seen, name)]
+    # Tools may run twice. Of two containers each gets the components of the other.
+    twins = [
+        name
+        for name, count in times.items()
+        if count > 1 and (not seen.is_tool(name) or name.endswith("_container"))
+    ]
     by_robot = lists_by_key((seen.robot(name), name) for name in twins)
     for robot, names in by_robot.items():
         if len(names) >= MANY:
             yield _two_robots(robot, names)
             continue
         for name in names:
-            message = f"{times[name]} nodes have the name {name}"
-            cause = (
+            yield nodes_of_one_name.finding(
+                f"{times[name]} nodes have the name {name}",
                 "started twice, or two robots without a namespace of their own; a node that was"
-                " killed stays visible for 20 s"
-            )
-            yield nodes_of_one_name.finding(message, cause, robot=robot, node=name)
-
-
-def _counts(seen: Index, node: str) -> bool:
-    """Tools may run twice. Of two containers each gets the components of the other."""
-    return not seen.is_tool(node) or node.endswith("_container")
+                " killed stays visible for 20 s",
+                robot=robot, node=name,
+            )  # fmt: skip
 
 
 def _two_robots(robot: str, names: Sequence[str]) -> Finding:
@@ -194,13 +192,15 @@ def _two_robots(robot: str, names: Sequence[str]) -> Finding:
 @system_rule("MG302", "managed-twice", ERROR)
 def managed_twice(seen: Index) -> Iterator[Finding]:
     """One finding for all nodes that the same managers have; an operator's tool is none."""
-    managed: dict[tuple[str, ...], list[str]] = defaultdict(list)
-    for (kind, name), ends in seen.by_name.items():
-        if kind == SERVICE and name.endswith(_CHANGE_STATE):
-            clients = nodes_of(
-                end for end in ends.clients if not _asks_for_a_person(seen, end.node)
-            )
-            managed[clients].append(name.removesuffix(_CHANGE_STATE))
+    asked = [it for it in seen.by_name.values() if it.kind == SERVICE]
+    managed = lists_by_key(
+        (
+            nodes_of(it for it in ends.clients if not _asks_for_a_person(seen, it.node)),
+            ends.name.removesuffix(_CHANGE_STATE),
+        )
+        for ends in asked
+        if ends.name.endswith(_CHANGE_STATE)
+    )
     for managers, nodes in managed.items():
         if len(managers) > 1:
             message = f"{and_then(managers)} all manage the life cycle of {shorten(sorted(nodes))}"
@@ -232,27 +232,23 @@ class Missing(NamedTuple):
 
 def _not_exported(seen: Index) -> Iterator[Finding]:
     """Nothing is said where no hardware is known: another description may have it."""
-    for robot, known in _by_robot(seen).items():
+    by_robot = lists_by_key((seen.robot(it.node), it) for it in seen.system.interfaces)
+    for robot, known in by_robot.items():
         for it in missing(known):
             first, *more = it.claims
             does, needed, gives = _WORDS.get(first.kind, _OF_HARDWARE)
             also = f" and {len(more)} more" if more else ""
             near = [it.near] if it.near else []
-            cause = f"name one that is there{see((*near, first))}"
-            if it.meant:
-                cause = f"did you mean {it.meant}{see((*near, first))}"
+            cause = f"did you mean {it.meant}" if it.meant else "name one that is there"
             yield interface_not_exported.finding(
-                f"{does} {first.kind}{needed} {first.name}{also}, which {gives}", cause,
+                f"{does} {first.kind}{needed} {first.name}{also}, which {gives}",
+                cause + see((*near, first)),
                 level=NOTE if first.kind == JOINT else WARNING,
                 robot=robot, node=first.node, names=(first.name,), **where([first]),
             )  # fmt: skip
 
 
 interface_not_exported = declaration.NOT_EXPORTED._replace(check=_not_exported)
-
-
-def _by_robot(seen: Index) -> dict[str, list[Interface]]:
-    return lists_by_key((seen.robot(it.node), it) for it in seen.system.interfaces)
 
 
 def missing(known: Sequence[Interface]) -> Iterator[Missing]:

@@ -25,7 +25,7 @@ from multibot_rewrite.rules.system.tf_trees import (
     sent_elsewhere,
 )
 from multibot_rewrite.system.index import Index, Tree, robots_of
-from multibot_rewrite.system.records import NOWHERE, OFF, UNKNOWN_NODES, Edge
+from multibot_rewrite.system.records import NOWHERE, OFF, Edge
 from multibot_rewrite.system.tf_copies import tree_topic
 from multibot_rewrite.system.tool_nodes import last_word
 
@@ -53,7 +53,7 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
 def _by_usual_names(seen: Index) -> Iterator[Finding]:
     """Where nodes may run that are not known, one of them may join what is in pieces."""
     yield from told_not_to(seen)
-    if any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats):
+    if seen.in_doubt:
         for tree in seen.trees:
             yield from _senders_apart(seen, tree)
         return

@@ -6,7 +6,7 @@ transform that nodes ask tf for, and nothing sends.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
@@ -29,7 +29,6 @@ from multibot_rewrite.system.records import (
     SERVES,
     SUBSCRIBES,
     TOPIC,
-    UNKNOWN_NODES,
     Edge,
     End,
     Lookup,
@@ -46,7 +45,9 @@ _MISSES = (topic_names_miss, server_names_miss)
 def nothing_known_sends(seen: Index) -> Iterator[Finding]:
     """All names of a robot are one finding; without those that others have under another name."""
     left = [it for it in open_ends(seen) if not meant(seen, it)]
-    left = _without_missed(seen, left) if left else left
+    rules = [it for it in _MISSES if it.check] if left else ()
+    missed = {found.names[0] for it in rules if it.check for found in it.check(seen)}
+    left = [it for it in left if it.name not in missed]
     by_robot = sets_by_key((seen.robot(it.node), it.name) for it in left)
     for robot, names in by_robot.items():
         yield from _told(seen, robot, sorted(names))
@@ -63,15 +64,14 @@ def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
     rest = tuple(it for it in names if it not in lacked)
     if lacked:
         others = shorten([elsewhere[seen.plain(it)] for it in lacked], _LISTED)
-        message = f"no node sends {shorten(lacked, _LISTED)}, and one sends {others}"
-        hint = "start what sends it for the other robot"
         yield nothing_known_sends.finding(
-            message, hint, level=ERROR, robot=robot, names=tuple(lacked)
-        )
+            f"no node sends {shorten(lacked, _LISTED)}, and one sends {others}",
+            "start what sends it for the other robot", level=ERROR, robot=robot, names=lacked,
+        )  # fmt: skip
     if rest:
         hint = "name a stack or nodes that do, if no driver of its own does"
         message = f"no known node sends {shorten(rest, _LISTED)}"
-        yield nothing_known_sends.finding(message, hint, robot=robot, names=tuple(rest))
+        yield nothing_known_sends.finding(message, hint, robot=robot, names=rest)
 
 
 def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
@@ -105,12 +105,6 @@ def _given(seen: Index) -> Mapping[str, Sequence[str]]:
     )
 
 
-def _without_missed(seen: Index, ends: Iterable[End]) -> list[End]:
-    """The ends without those that are a finding with the other side's name."""
-    missed = {it.names[0] for rule in _MISSES if rule.check for it in rule.check(seen)}
-    return [it for it in ends if it.name not in missed]
-
-
 def no_longer_sent(end: End) -> Finding:
     """The finding about one end that nothing sends any more."""
     does, gives = ("subscribes to", "publishes") if end.kind == TOPIC else ("calls", "serves")
@@ -132,8 +126,8 @@ def open_ends(seen: Index) -> list[End]:
 
 
 def _is_status(seen: Index, kind: str, name: str) -> bool:
-    served = seen.by_name.get((ACTION, name.removesuffix(_STATUS)))
-    return kind == TOPIC and name.endswith(_STATUS) and served is not None and bool(served.servers)
+    served = seen.ends_at(ACTION, name.removesuffix(_STATUS)).servers
+    return kind == TOPIC and name.endswith(_STATUS) and bool(served)
 
 
 _MAP = "map"
@@ -167,7 +161,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     # Without a robot's name before it, it is sent.
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
     sender = _sender(seen, it.node, edges) if usual else None
-    if sender is None and usual and edges and not _in_doubt(seen) and _listens(seen, it.node):
+    if sender is None and usual and edges and not seen.in_doubt and _listens(seen, it.node):
         message = f"reads frame {it.frame}, but no known node sends it"
         return _finding(seen, it, message, "name the node or stack that sends it", NOTE)
     if sender is None:
@@ -195,17 +189,13 @@ def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
     known where only nodes without one send any, and others may run."""
     own = [it for it in edges if not is_of_description(seen, it) or _is_of_a_node(seen, it)]
     placed = [it for it in own if it.place != NOWHERE]
-    found, robot = placed if placed or _in_doubt(seen) else own, seen.robot(node)
+    found, robot = placed if placed or seen.in_doubt else own, seen.robot(node)
     return min(found, key=lambda it: robot not in map(seen.robot, it.publishers), default=None)
 
 
 def _listens(seen: Index, node: str) -> bool:
     """Does it hear transforms? Another one writes the frame into messages, or into what it sends."""
     return any(it.type == TF and it.role == SUBSCRIBES for it in seen.by_node.get(node, ()))
-
-
-def _in_doubt(seen: Index) -> bool:
-    return any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
 
 
 def _is_of_a_node(seen: Index, edge: Edge) -> bool:
