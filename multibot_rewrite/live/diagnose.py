@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.naming import LAYOUTS, Layout
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
@@ -67,7 +68,10 @@ def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosi
     known = Known(messages=messages, seconds=graph.environment.seconds)
     seen = index(graph, whose_by_guess(robots), known)
     found = inconclusive_where_in_doubt(judge(seen), graph)
-    tf = tuple(_tf_senders(surely(graph)))
+    # The nodes that publish on each tf topic or its tf_static.
+    sent = (it for it in surely(graph).ends if (it.kind, it.role) == (TOPIC, PUBLISHES))
+    nodes = sets_by_key((tree_topic(it.name), it.node) for it in sent if it.type == TF)
+    tf = tuple((topic, tuple(sorted(nodes[topic]))) for topic in sorted(nodes))
     return Diagnosis(graph, robots, seen, _layout(robots, seen, tf), tf, tuple(found))
 
 
@@ -133,15 +137,6 @@ def _sent_elsewhere(
             hint = f"{sender} of domain {other} has it: start both in one domain, or bridge it"
             return it._replace(hint=hint)
     return it
-
-
-def _tf_senders(graph: System) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """The nodes that publish on each tf topic or its tf_static."""
-    nodes: dict[str, set[str]] = {}
-    for end in graph.ends:
-        if (end.kind, end.role, end.type) == (TOPIC, PUBLISHES, TF):
-            nodes.setdefault(tree_topic(end.name), set()).add(end.node)
-    return ((topic, tuple(sorted(nodes[topic]))) for topic in sorted(nodes))
 
 
 def _layout(

@@ -289,15 +289,11 @@ def staged(
         for _ in range(LOOKS):
             graph = observe(request, environ)
             if _has_all(graph, started):
-                return _nothing_is_late(graph), started.replaced
+                # All nodes that run here were seen whole, so the machine is not too busy.
+                here = graph.environment
+                caveats = tuple(it for it in here.caveats if it.code != BUSY_MACHINE)
+                return graph._replace(environment=here._replace(caveats=caveats)), started.replaced
     return graph, started.replaced
-
-
-def _nothing_is_late(graph: System) -> System:
-    """The graph without what is said of a busy machine: all nodes that run here were seen whole."""
-    here = graph.environment
-    caveats = tuple(it for it in here.caveats if it.code != BUSY_MACHINE)
-    return graph._replace(environment=here._replace(caveats=caveats))
 
 
 def _has_all(graph: System, started: Started) -> bool:

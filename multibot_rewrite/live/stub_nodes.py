@@ -136,7 +136,14 @@ def _create_publisher(
     static = endpoint.name.rpartition("/")[2] == STATIC
     publisher = ros.publish(node, type_, endpoint.name, static)
     own = [edge for edge in edges if edge.static == static]
-    messages = _messages(type_, own)
+    # One message with all transforms, or one for each where tf's own type is not installed.
+    transform = _installed("geometry_msgs/msg/TransformStamped")
+    made = []
+    for edge in own:
+        one = transform(child_frame_id=edge.child)
+        one.header.frame_id = edge.parent
+        made.append(one)
+    messages = made if type_ is transform or not made else [type_(transforms=made)]
     if endpoint.type != TF or not messages:
         return
     stubs.frames.update(edge.child for edge in own)
@@ -153,19 +160,6 @@ def _publish(publisher: Any, messages: Iterable[Any]) -> None:
             stamp = it.header.stamp
             stamp.sec, stamp.nanosec = divmod(time.time_ns(), 10**9)
         publisher.publish(message)
-
-
-def _messages(type_: Any, edges: list[Edge]) -> list[Any]:
-    """One message with all transforms, or one for each where tf's own type is not installed."""
-    transform = _installed("geometry_msgs/msg/TransformStamped")
-    made = []
-    for edge in edges:
-        one = transform(child_frame_id=edge.child)
-        one.header.frame_id = edge.parent
-        made.append(one)
-    if type_ is transform or not made:
-        return made
-    return [type_(transforms=made)]
 
 
 if __name__ == "__main__":

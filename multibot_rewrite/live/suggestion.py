@@ -7,7 +7,7 @@ The description has the frames that were heard, and nothing else: it stands in f
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from xml.sax.saxutils import quoteattr
 
 from multibot_rewrite.base import editors
@@ -22,7 +22,6 @@ from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.spelling.plan import to_yaml as plan_to_yaml
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.guess import GuessedRobot
-from multibot_rewrite.system.records import Edge
 from multibot_rewrite.system.tool_nodes import is_tool
 
 STACK = "seen"
@@ -97,8 +96,13 @@ def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str
 def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     """The frames of a robot below its base, as links and joints."""
     plain = seen.whose.plain_frame
+    # Those with the robot's name; where frames have none, those on its topic or on all.
+    whose = seen.whose
+    named = [it for it in seen.graph.edges if whose.frame_robot(it.child) == robot.name]
+    bare = [it for it in seen.graph.edges if not whose.frame_robot(it.child)]
+    own = [it for it in bare if whose.robot(it.topic) == robot.name]
     edges = {
-        plain(it.child): it for it in _edges(seen, robot) if plain(it.parent) not in WORLD_FRAMES
+        plain(it.child): it for it in (named or own or bare) if plain(it.parent) not in WORLD_FRAMES
     }
     edges = {child: it for child, it in edges.items() if plain(it.parent) != "odom"}
     parents = {child: plain(it.parent) for child, it in edges.items()}
@@ -107,7 +111,11 @@ def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     yield "<!-- The frames that were heard on tf: put your own description in its place. -->"
     yield '<robot name="seen">'
     yield f"  <link name={quoteattr(root)}/>"
-    for child in _below(root, parents):
+    # The frames below one, parents first, each once.
+    found = [root]
+    for frame in found:
+        found += [it for it, above in parents.items() if above == frame and it not in found]
+    for child in found[1:]:
         yield f"  <link name={quoteattr(child)}/>"
         kind = "fixed" if edges[child].static else "continuous"
         yield f'  <joint name={quoteattr(child + "_joint")} type="{kind}">'
@@ -116,26 +124,9 @@ def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     yield "</robot>"
 
 
-def _edges(seen: Diagnosis, robot: GuessedRobot) -> list[Edge]:
-    """Those with the robot's name; where frames have none, those on its topic or on all."""
-    whose = seen.whose
-    named = [it for it in seen.graph.edges if whose.frame_robot(it.child) == robot.name]
-    bare = [it for it in seen.graph.edges if not whose.frame_robot(it.child)]
-    own = [it for it in bare if whose.robot(it.topic) == robot.name]
-    return named or own or bare
-
-
 def _base(parents: Mapping[str, str]) -> str:
     """The frame to begin with: the root of the tree that has a usual base, else any root."""
     known = {*parents, *parents.values()}
     base = next((it for it in BODY_FRAMES if it in known), "")
     root = root_of(base, parents) if base else ""
     return root or min((it for it in known if it not in parents), default=BODY_FRAMES[1])
-
-
-def _below(root: str, parents: Mapping[str, str]) -> Iterable[str]:
-    """The frames below one, parents first, each once."""
-    found = [root]
-    for frame in found:
-        found += [it for it, above in parents.items() if above == frame and it not in found]
-    return found[1:]

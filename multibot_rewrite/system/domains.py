@@ -12,7 +12,7 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, unique
 from multibot_rewrite.system.merging import WORST_LAST
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.records import Environment, System
+from multibot_rewrite.system.records import System
 
 # That of nodes of all robots, where a plan does not say another.
 USUAL_DOMAIN = 0
@@ -105,6 +105,7 @@ def side_by_side(seen: Mapping[int, System]) -> System:
     first = views[0]
     if len(views) == 1:
         return first
+    looks = [it.environment for it in seen.values()]
     return first._replace(
         nodes=tuple(it for one in views for it in one.nodes),
         ends=tuple(it for one in views for it in one.ends),
@@ -113,7 +114,16 @@ def side_by_side(seen: Mapping[int, System]) -> System:
         descriptions=tuple(it for one in views for it in one.descriptions),
         parameters=tuple(it for one in views for it in one.parameters),
         controllers=tuple(it for one in views for it in one.controllers),
-        environment=_around(seen),
+        environment=looks[0]._replace(
+            participants=sum(it.participants for it in looks),
+            settled=max((it.settled for it in looks), key=WORST_LAST.index),
+            seconds=max(it.seconds for it in looks),
+            caveats=tuple(
+                it._replace(message=f"domain {number}: {it.message}")
+                for number, one in seen.items()
+                for it in one.environment.caveats
+            ),
+        ),
     )
 
 
@@ -154,17 +164,3 @@ def unnamed(it: Finding) -> Finding:
 
 def _said(text: str) -> str:
     return _SHORT.sub(r"domain \1", _FULL.sub(r"\2 of domain \1", text))
-
-
-def _around(seen: Mapping[int, System]) -> Environment:
-    looks = [it.environment for it in seen.values()]
-    return looks[0]._replace(
-        participants=sum(it.participants for it in looks),
-        settled=max((it.settled for it in looks), key=WORST_LAST.index),
-        seconds=max(it.seconds for it in looks),
-        caveats=tuple(
-            it._replace(message=f"domain {number}: {it.message}")
-            for number, one in seen.items()
-            for it in one.environment.caveats
-        ),
-    )

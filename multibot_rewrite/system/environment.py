@@ -71,10 +71,16 @@ class DiscoverySettings(NamedTuple):
 
 def settings(environ: Mapping[str, str]) -> DiscoverySettings:
     """Read the variables as rcl does; raises UsageError for values at which rcl exits."""
+    text = environ.get("ROS_STATIC_PEERS", "")
+    peers = tuple(filter(None, text.split(";")))
+    for peer in peers:
+        if _NOT_IN_PEER.search(peer):
+            hint = "give host names or IPv4 addresses with only ; between them"
+            raise UsageError(f"ROS_STATIC_PEERS={text!r}: {peer!r} is not a host, {hint}")
     return DiscoverySettings(
         _domain(environ.get("ROS_DOMAIN_ID", "")),
         _range(environ),
-        _peers(environ.get("ROS_STATIC_PEERS", "")),
+        peers,
         environ.get("RMW_IMPLEMENTATION", ""),
         environ.get("ROS_DISCOVERY_SERVER", ""),
         environ.get("ROS_SUPER_CLIENT", "").lower() in ("true", "1"),
@@ -97,15 +103,6 @@ def _domain(text: str) -> int:
             " ports that Linux uses itself)"
         )
     return domain
-
-
-def _peers(text: str) -> tuple[str, ...]:
-    peers = tuple(filter(None, text.split(";")))
-    for peer in peers:
-        if _NOT_IN_PEER.search(peer):
-            hint = "give host names or IPv4 addresses with only ; between them"
-            raise UsageError(f"ROS_STATIC_PEERS={text!r}: {peer!r} is not a host, {hint}")
-    return peers
 
 
 def _range(environ: Mapping[str, str]) -> str:

@@ -82,7 +82,8 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     words = _last_words(graph)
     if words:
         return tuple(with_frames((GuessedRobot(it, "") for it in words), frames))
-    return tuple(_by_frames(frames - parts, _parents(graph.edges)))
+    parents = sets_by_key((it.child, it.parent) for it in graph.edges)
+    return tuple(_by_frames(frames - parts, parents))
 
 
 def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
@@ -172,11 +173,6 @@ def _last_words(graph: System) -> list[str]:
         for word, topics in found.items()
         if len(topics) > 1 and any(node.endswith(f"_{word}") for node in nodes)
     )
-
-
-def _parents(edges: Iterable[Edge]) -> Mapping[str, Set[str]]:
-    """The frames on which each hangs."""
-    return sets_by_key((edge.child, edge.parent) for edge in edges)
 
 
 def _above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:

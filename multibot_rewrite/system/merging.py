@@ -96,7 +96,9 @@ def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
         totals |= Counter(node.name for node in nodes)
         for node in nodes:
             key = node.name, node.process
-            best[key] = _fuller(best.get(key, node), node)
+            best[key] = Node._make(
+                mine or theirs for mine, theirs in zip(best.get(key, node), node, strict=True)
+            )
     known = Counter(name for name, process in most.elements() if process)
     for (name, process), times in sorted(most.items()):
         # The process was not known to one look, and is to another.
@@ -104,27 +106,19 @@ def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
         yield from [best[name, process]] * new
 
 
-def _fuller(one: Node, other: Node) -> Node:
-    """With what the other look knows and this one leaves empty."""
-    return Node._make(mine or theirs for mine, theirs in zip(one, other, strict=True))
-
-
 def _endpoints(looks: Sequence[Sequence[End]]) -> list[End]:
     """Each endpoint once, from the look that knows most of it."""
     best: dict[tuple[str, ...], list[End]] = {}
     for endpoints in looks:
-        for key, ends in _by_owner(endpoints).items():
+        found = lists_by_key(
+            ((it.kind, it.name, it.role, it.node, it.process), it) for it in endpoints
+        )
+        for key, ends in found.items():
             if key not in best or _detail(ends) > _detail(best[key]):
                 best[key] = ends
     placed = {key[:-1] for key in best if key[-1]}
     kept = [ends for key, ends in best.items() if key[-1] or key[:-1] not in placed]
     return sorted((end for ends in kept for end in ends), key=repr)
-
-
-def _by_owner(endpoints: Iterable[End]) -> dict[tuple[str, ...], list[End]]:
-    return lists_by_key(
-        ((end.kind, end.name, end.role, end.node, end.process), end) for end in endpoints
-    )
 
 
 def _detail(ends: Sequence[End]) -> tuple[int, int, int]:

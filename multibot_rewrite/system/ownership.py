@@ -48,9 +48,6 @@ class NameOwnership(NamedTuple):
             if above in self.nodes:
                 return self.nodes[above]
             above = above.rpartition("/")[0]
-        return self._robot_by_tag(name)
-
-    def _robot_by_tag(self, name: str) -> str:
         at_its_place = self.robot_at_its_place(name)
         if at_its_place:
             return at_its_place

@@ -111,10 +111,14 @@ def _learn_node(
     known = library.nodes.get(node)
     place = _SeenPlace(base, node)
     if known:
+        # Full names of what the code of a node that stands apart writes without a slash.
+        names = (end.name for end in known.endpoints if known.apart and end.name[0] not in "/~<")
         place = _SeenPlace(
-            base, node, frozenset(_literal_names(known)), frozenset(_relative_names(known))
+            base, node, frozenset(_literal_names(known)), frozenset(f"/{name}" for name in names)
         )
-    usual = _on_every_node(library)
+    # The endpoints of every node, by role and name; without the clock, which some do not use.
+    every = {(end.role, end.name) for end in library.parts[EVERY_NODE] if end.name != CLOCK}
+    usual = frozenset({*every, SINCE_JAZZY})
     found = _with_helpers(name, ends, helpers, place)
     rest, parts = fold_parts(found.values(), library.parts, not base and "/" not in node)
     own = sorted((end for end in rest if (end.role, end.name) not in usual), key=_order)
@@ -132,12 +136,6 @@ def _order(end: Endpoint) -> tuple[int, str]:
     return ROLES.index(end.role), end.name
 
 
-def _on_every_node(library: NodeLibrary) -> frozenset[_Slot]:
-    """The endpoints of every node, by role and name; without the clock, which some do not use."""
-    every = {(end.role, end.name) for end in library.parts[EVERY_NODE] if end.name != CLOCK}
-    return frozenset({*every, SINCE_JAZZY})
-
-
 def _full_name(name: str, node: str) -> str:
     """The full name of a name in the code of ``node``, with the robot in the root namespace."""
     above, _, own = node.rpartition("/")
@@ -150,12 +148,6 @@ def _literal_names(known: NodeFacts) -> Iterator[str]:
         full = _full_name(end.name, known.name)
         if end.name.startswith("/") or (end.name[0] != "~" and full.startswith(f"/{known.name}/")):
             yield full
-
-
-def _relative_names(known: NodeFacts) -> Iterator[str]:
-    """Full names of what the code of a node that stands apart writes without a slash."""
-    names = (end.name for end in known.endpoints if known.apart and end.name[0] not in "/~<")
-    return (f"/{name}" for name in names)
 
 
 def _endpoints(ends: Iterable[End], place: _SeenPlace) -> dict[_Slot, Endpoint]:

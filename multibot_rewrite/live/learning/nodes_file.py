@@ -58,27 +58,23 @@ def _lines(learned: Sequence[LearnedNode], stack: str) -> Iterator[str]:
     yield from _comment(f"Of: {' '.join(node.seen for node in learned)}", "")
     yield from ("", "nodes:")
     for node in learned:
-        yield from _node(node)
+        facts = node.facts
+        for remark in node.remarks:
+            yield from _comment(remark, "  ")
+        yield f"  {_scalar(facts.name)}:"
+        yield f"    note: {_scalar(facts.note)}"
+        yield from ["    apart: true"] * facts.apart
+        if node.parts:
+            yield f"    with: {_flow(list(node.parts))}"
+        for role in ROLES:
+            own = [end for end in node.own if end.role == role]
+            if own:
+                yield f"    {role}:"
+            yield from (f"      {_scalar(end.name)}: {_value(end)}" for end in own)
         yield ""
     yield from ("stacks:", f"  {_scalar(stack)}:", "    about: Learned from a running graph")
     yield "    nodes:"
     yield from (f"      - {_scalar(node.facts.name)}" for node in learned)
-
-
-def _node(node: LearnedNode) -> Iterator[str]:
-    facts = node.facts
-    for remark in node.remarks:
-        yield from _comment(remark, "  ")
-    yield f"  {_scalar(facts.name)}:"
-    yield f"    note: {_scalar(facts.note)}"
-    yield from ["    apart: true"] * facts.apart
-    if node.parts:
-        yield f"    with: {_flow(list(node.parts))}"
-    for role in ROLES:
-        own = [end for end in node.own if end.role == role]
-        if own:
-            yield f"    {role}:"
-        yield from (f"      {_scalar(end.name)}: {_value(end)}" for end in own)
 
 
 def _value(end: Endpoint) -> str:

@@ -78,13 +78,6 @@ def untold(found: Iterable[Finding]) -> list[Finding]:
 
 
 def _changes(before: System, seen: Index) -> Iterator[_Change]:
-    yield from _ends(before, seen)
-    yield from _transforms(before, seen)
-    yield from _frames(before, seen)
-    yield from _parameters(before, seen)
-
-
-def _ends(before: System, seen: Index) -> Iterator[_Change]:
     old, new = _by_key(before.ends), _by_key(seen.system.ends)
     nodes = {it.name for it in before.nodes}
     for key, end in new.items():
@@ -101,6 +94,9 @@ def _ends(before: System, seen: Index) -> Iterator[_Change]:
         if key not in new and end.node in seen.nodes and not seen.is_tool(end.node):
             what = f"{DOES[end.role]} {end.name} no more"
             yield _Change(end.node, what, (end.name,))
+    yield from _transforms(before, seen)
+    yield from _frames(before, seen)
+    yield from _parameters(before, seen)
 
 
 def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:

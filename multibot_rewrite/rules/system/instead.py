@@ -59,7 +59,9 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
     if seen.in_doubt or is_viewer(end.node) or not end.type:
         return None
     if end.role == CALLS:
-        return _nearest(end, list(_served(seen, end)))
+        # The one with the likest name.
+        given = {it.name: it for it in _served(seen, end)}
+        return given.get(nearest(end.name, given, alike=0.0)) or next(iter(given.values()), None)
     if end.role != SUBSCRIBES or chooses(end.node):
         return None
     return _data(seen, end) or _orphan(seen, end)
@@ -69,7 +71,12 @@ def _orphan(seen: Index, end: End) -> Ends | None:
     """What is sent of its very type and read by no node, where that is one topic, or one of them has a
     word in common with it: of a plain type, and of what a person may send, always."""
     robot = seen.robot(end.name)
-    merges = _has_another(seen, end) and not _reads_another_robots(seen, end)
+    # Does its node read the same of another robot, from which it comes?
+    merges = _has_another(seen, end) and not any(
+        it.name != end.name and seen.plain(it.name) == seen.plain(end.name)
+        for it in seen.by_node[end.node]
+        if it.role == SUBSCRIBES and it.name in seen.published
+    )
     if merges or seen.robot(end.node) not in ("", robot):
         return None
     given = [
@@ -126,15 +133,6 @@ def _unread(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
         if senders and not at_work(it.subscribers):
             found[it.type, seen.robot(it.name)].append(it)
     return found
-
-
-def _reads_another_robots(seen: Index, end: End) -> bool:
-    """Does its node read the same of another robot, from which it comes?"""
-    return any(
-        it.name != end.name and seen.plain(it.name) == seen.plain(end.name)
-        for it in seen.by_node[end.node]
-        if it.role == SUBSCRIBES and it.name in seen.published
-    )
 
 
 def _begin_alike(one: str, other: str) -> bool:
@@ -251,13 +249,6 @@ def _nobodys(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
         if it.servers and not seen.robot(it.name):
             found[it.kind, it.type, last_word(it.name)].append(it)
     return found
-
-
-def _nearest(end: End, given: Sequence[Ends]) -> Ends | None:
-    """The one with the likest name."""
-    by_name = {it.name: it for it in given}
-    likest: Callable[[str], Ends | None] = by_name.get
-    return likest(nearest(end.name, by_name, alike=0.0)) or next(iter(given), None)
 
 
 def in_other_namespace(seen: Index, end: End) -> str:

@@ -196,7 +196,13 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
     yield from _silent(seen)
     yield from _slow(seen)
     yield from _slow_transforms(seen)
-    for there in _of_each(seen).values():
+    # Name without the robot's -> robot -> name, of the topics whose messages were counted.
+    counted = dicts_by_key(
+        (seen.plain(name), robot, name)
+        for name in seen.known.messages
+        if (robot := seen.robot(name))
+    )
+    for there in counted.values():
         best = max(there.values(), key=lambda it: seen.known.messages[it])
         most = seen.known.messages[best]
         for robot, name in there.items() if most >= ENOUGH else ():
@@ -208,15 +214,6 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
                 slow, usual = (f"{it / seen.known.seconds:.1f} Hz" for it in (count, most))
                 message = f"{name} came at {slow}, {best} at {usual}"
                 yield less_than_another_robot.finding(message, robot=robot, names=(name,))
-
-
-def _of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
-    """Name without the robot's -> robot -> name, of the topics whose messages were counted."""
-    return dicts_by_key(
-        (seen.plain(name), robot, name)
-        for name in seen.known.messages
-        if (robot := seen.robot(name))
-    )
 
 
 def _slow(seen: Index) -> Iterator[Finding]:
@@ -301,7 +298,8 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
         robot = seen.robot(ends.name)
         role = _missed_side(seen, ends) if robot else ""
-        if role and (node := _who_does(seen, ends, role)):
+        what = ends.kind, seen.plain(ends.name), ends.type, role
+        if role and (node := _first_to_do(seen).get(what)):
             lost[robot, node].append(ends)
     for (robot, node), missed in lost.items():
         names, plain = tuple(it.name for it in missed), seen.plain(node)
@@ -309,21 +307,18 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
         users = nodes_of(end for own in using for end in at_work(own))
         vain = f"{shorten(users, SEVERAL)} in vain"
         there = nodes_of_each(seen)[robot].get(plain, "")
-        what = (
+        message = (
             f"{robot} has no {plain.strip('/')}, as {seen.robot(node)} has ({node});"
             f" {shorten(names, SEVERAL)} is used by {vain}"
         )
         hint = "start it for this robot too"
         if there:
-            what = f"lacks {shorten(names, SEVERAL)}, which {node} has; it is used by {vain}"
+            message = f"lacks {shorten(names, SEVERAL)}, which {node} has; it is used by {vain}"
             hint = "see its log; a remap rule, a parameter or a version of its own?"
-        level = ERROR if seen.is_live else WARNING
-        yield driver_missing.finding(what, hint, level=level, robot=robot, node=there, names=names)
-
-
-def _who_does(seen: Index, ends: Ends, role: str) -> str:
-    """The first node of another robot that does this with its own topic of that name, or empty."""
-    return _first_to_do(seen).get((ends.kind, seen.plain(ends.name), ends.type, role), "")
+        yield driver_missing.finding(
+            message, hint, level=ERROR if seen.is_live else WARNING,
+            robot=robot, node=there, names=names,
+        )  # fmt: skip
 
 
 @once

@@ -110,11 +110,17 @@ def _all_types(ends: Iterable[End]) -> set[tuple[str, str]]:
 def _apart(ends: Iterable[End], given: set[tuple[str, str]]) -> Mapping[str, Sequence[End]]:
     """By node: the ends that connect with none of the types, where all of its own are known."""
     by_node = lists_by_key((end.node, end) for end in (ends if given else ()))
+    # Both sides have a version of a type; one without a hash may be any.
     return {
         node: own
         for node, own in by_node.items()
         if all(end.type for end in own)
-        and not _meet((it for end in own for it in _types(end)), given)
+        and not any(
+            one == other and (hash_ == its or not (hash_ and its))
+            for end in own
+            for one, hash_ in _types(end)
+            for other, its in given
+        )
     }
 
 
@@ -123,15 +129,6 @@ def _types(end: End) -> Iterator[tuple[str, str]]:
     if end.type:
         yield end.type, end.type_hash if end.type_hash.startswith(HASH) else ""
     yield from ((it, "") for it in end.also)
-
-
-def _meet(asked: Iterable[tuple[str, str]], given: set[tuple[str, str]]) -> bool:
-    """Have both sides a version of a type? One without a hash may be any."""
-    return any(
-        one == other and (hash_ == its or not (hash_ and its))
-        for one, hash_ in asked
-        for other, its in given
-    )
 
 
 def _difference(

@@ -221,12 +221,6 @@ def _without_own_name(end: End) -> str:
     return f"{end.node.rpartition('/')[0]}/{last}" if end.name == f"{end.node}/{last}" else ""
 
 
-def _is_doubled(name: str, meant: str) -> bool:
-    """Is it the other name with a namespace of it once more in front?"""
-    front = name.removesuffix(meant)
-    return front != name and meant.startswith(f"{front}/")
-
-
 def _missed_topic(
     seen: Index, end: End, other: Ends, level: str, more: Sequence[End] = ()
 ) -> Finding:
@@ -238,8 +232,10 @@ def _missed_topic(
     )
     remaps = tuple(Remap(it.node, end.name, other.name) for it in (end, *more))
     each = " to each" if more else ""
-    # The side in the wrong place is the one whose name has no robot, or is below the node.
-    if _is_doubled(other.name, end.name):
+    # The side in the wrong place is the one whose name has no robot, is below the node, or has a
+    # namespace of the other name once more in front.
+    front = other.name.removesuffix(end.name)
+    if front != other.name and end.name.startswith(f"{front}/"):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
         remaps = (Remap(sender, other.name, end.name),)
     elif seen.robot(end.name) and not seen.robot(other.name) and other.name not in EVERYBODYS:
@@ -303,7 +299,11 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
         sure = near or end.kind == ACTION
         yield _missed_server(seen, end, lost, other, ERROR if sure else WARNING)
     elif listed and end.name.endswith("/change_state"):
-        meant = _node_like(seen, listed)
+        # A node that runs and is called nearly so: a letter wrong, or without the namespace.
+        same = (it for it in seen.nodes if it == f"/{last_word(listed)}")
+        space = listed.rpartition("/")[0]
+        others = [it for it in seen.nodes if it.rpartition("/")[0] == space]
+        meant = next(same, "") or nearest(listed, others, MISTYPED)
         instead = f"; {meant} runs" if meant else ""
         yield server_names_miss.finding(
             f"{lost}: {listed} is in its list, and does not run{instead}",
@@ -353,14 +353,6 @@ def _called_by_robots(seen: Index) -> Mapping[tuple[str, str], tuple[list[str], 
             # Two tell whether another than one of them is there.
             robots += [robot] * (len(robots) < 2)
     return dict(found)
-
-
-def _node_like(seen: Index, listed: str) -> str:
-    """A node that runs and is called nearly so: a letter wrong, or without the namespace."""
-    same = (it for it in seen.nodes if it == f"/{last_word(listed)}")
-    space = listed.rpartition("/")[0]
-    others = [it for it in seen.nodes if it.rpartition("/")[0] == space]
-    return next(same, "") or nearest(listed, others, MISTYPED)
 
 
 def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> Finding:

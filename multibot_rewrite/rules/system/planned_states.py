@@ -24,16 +24,12 @@ def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
     told = (it for it in seen.system.parameters if (it.name, it.value) != (SIM_TIME, UNTOLD))
     values = {(it.node, it.name): it.value for it in told}
-    for node, planned in _by_node(plan.system.parameters).items():
+    for node, planned in lists_by_key((it.node, it) for it in plan.system.parameters).items():
         found = [*_differences(planned, values)]
         # What makes it an error comes first.
         found.sort(key=lambda it: not _is_serious(plan, it[0]))
         if found:
             yield _differs(plan, node, found)
-
-
-def _by_node(parameters: Iterable[Parameter]) -> dict[str, list[Parameter]]:
-    return lists_by_key((it.node, it) for it in parameters)
 
 
 def _differences(
@@ -68,7 +64,12 @@ def _differs(plan: Index, node: str, found: Sequence[Difference]) -> Finding:
     robot, (first, _) = plan.robot_of.get(node, ""), found[0]
     file = first.place.file
     start = f"start it with {file}" if file else "change it, or states of the plan"
-    other = _whose(plan, node, found)
+    # The robot whose node of that name is planned to have these values.
+    plain, having = plan.of_names.without_robot(node, plan.robot_of.get(node, "")), _having(plan)
+    wanted = [having.get((plain, it.name, value), {}) for it, value in found]
+    # What few have first: most have most values.
+    few, *others = sorted(wanted, key=len)
+    other = next((it for it in few if all(it in having for having in others)), "")
     hint = f"has it the parameters of {other}? {start}" if other else start
     serious = _is_serious(plan, first)
     level = ERROR if serious else WARNING
@@ -81,15 +82,6 @@ def _differs(plan: Index, node: str, found: Sequence[Difference]) -> Finding:
 
 def _at(it: Parameter) -> str:
     return f" ({it.place})" if it.place.file else ""
-
-
-def _whose(plan: Index, node: str, found: Sequence[Difference]) -> str:
-    """The robot whose node of that name is planned to have these values."""
-    plain, having = plan.of_names.without_robot(node, plan.robot_of.get(node, "")), _having(plan)
-    wanted = [having.get((plain, it.name, value), {}) for it, value in found]
-    # What few have first: most have most values.
-    few, *others = sorted(wanted, key=len)
-    return next((it for it in few if all(it in having for having in others)), "")
 
 
 @once

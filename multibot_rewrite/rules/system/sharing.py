@@ -63,11 +63,6 @@ def outsiders(seen: Index, ends: Iterable[End]) -> list[str]:
 @system_rule("MG320", "topic-of-several-robots", ERROR, drawn="leak", meant=(PUBLISHES, SUBSCRIBES))
 def topic_of_several_robots(seen: Index) -> Iterator[Finding]:
     """Reports and orders of a fleet are none: only what belongs to one robot."""
-    yield from _sent_by_several(seen)
-    yield from _read_by_several(seen)
-
-
-def _sent_by_several(seen: Index) -> Iterator[Finding]:
     for ends in seen.topics:
         if len(ends.publishers) < 2:
             continue
@@ -78,6 +73,19 @@ def _sent_by_several(seen: Index) -> Iterator[Finding]:
         orders = words.moves(plain, ends.type) and bool(seen.robot(ends.name))
         if len(robots) > 1 and words.is_of_one_robot(plain, ends.type) and not orders:
             message = f"{and_then(robots)} publish on {ends.name}: {shorten(nodes)}"
+            cause = own_names(seen, ends, robots)._asdict()
+            yield topic_of_several_robots.finding(
+                message, **cause, node=nodes[0], names=(ends.name,)
+            )
+    # Of a topic without a robot's name; that of a robot is for those who follow it.
+    for ends in seen.topics:
+        if not words.is_of_a_body(ends.type) or seen.robot(ends.name):
+            continue
+        nodes = nodes_of(at_work(ends.subscribers))
+        robots = robots_of(seen, nodes)
+        senders = robots_of(seen, nodes_of(ends.publishers))
+        if len(robots) > 1 and len(senders) < 2:
+            message = f"{and_then(robots)} all read {ends.name}: {shorten(nodes)}"
             cause = own_names(seen, ends, robots)._asdict()
             yield topic_of_several_robots.finding(
                 message, **cause, node=nodes[0], names=(ends.name,)
@@ -119,22 +127,6 @@ def _topics_by_robot(seen: Index) -> dict[tuple[str, str], Ends]:
         for ends in seen.topics
         if ends.publishers and (robot := seen.robot(ends.name))
     }
-
-
-def _read_by_several(seen: Index) -> Iterator[Finding]:
-    """Of a topic without a robot's name; that of a robot is for those who follow it."""
-    for ends in seen.topics:
-        if not words.is_of_a_body(ends.type) or seen.robot(ends.name):
-            continue
-        nodes = nodes_of(at_work(ends.subscribers))
-        robots = robots_of(seen, nodes)
-        senders = robots_of(seen, nodes_of(ends.publishers))
-        if len(robots) > 1 and len(senders) < 2:
-            message = f"{and_then(robots)} all read {ends.name}: {shorten(nodes)}"
-            cause = own_names(seen, ends, robots)._asdict()
-            yield topic_of_several_robots.finding(
-                message, **cause, node=nodes[0], names=(ends.name,)
-            )
 
 
 @system_rule("MG323", "two-maps", ERROR, meant=(PUBLISHES,))
