@@ -148,9 +148,8 @@ def _layout(
     own_frames = any(robot.before or robot.behind for robot in robots)
     namespaces = any(robot.namespace for robot in robots)
     wanted = (own_frames, own_tf, namespaces)
-    return next(
-        (it for it in LAYOUTS if wanted == (it.frames, it.tf_per_robot, it.namespaced)), None
-    )
+    fitting = (it for it in LAYOUTS if wanted == (it.frames, it.tf_per_robot, it.namespaced))
+    return next(fitting, None)
 
 
 def survey(seen: Diagnosis) -> Iterator[str]:
@@ -163,7 +162,9 @@ def survey(seen: Diagnosis) -> Iterator[str]:
         where = _where(seen.robots)
         yield f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
         yield f"layout: {_layout_line(seen)}"
-    own = [topic for topic, nodes_ in seen.tf if _is_its_own(seen, topic, nodes_)]
+    # Topics of a robot, on which only nodes of that robot send.
+    robot = seen.whose.robot
+    own = [topic for topic, nodes_ in seen.tf if {robot(topic)} == {*map(robot, nodes_)} != {""}]
     if len(own) > MOST_OWN:
         yield f"tf on {shorten(own, MOST_OWN)}: each of the nodes of its robot"
     for topic, nodes_ in seen.tf:
@@ -174,12 +175,6 @@ def survey(seen: Diagnosis) -> Iterator[str]:
             continue
         by_robot = Counter(seen.whose.robot(node) or "no robot" for node in nodes_)
         yield f"tf on {topic}: {plural(len(nodes_), 'node')} of {shorten(by_robot, SEVERAL)}"
-
-
-def _is_its_own(seen: Diagnosis, topic: str, nodes: Sequence[str]) -> bool:
-    """Is it a robot's topic, on which only nodes of that robot send?"""
-    robot = seen.whose.robot(topic)
-    return bool(robot) and all(seen.whose.robot(it) == robot for it in nodes)
 
 
 def _where(robots: Sequence[GuessedRobot]) -> str:

@@ -13,10 +13,10 @@ from multibot_rewrite.system.guess import GuessedRobot
 from multibot_rewrite.system.records import End, Node, Robot, System
 from multibot_rewrite.system.tf_copies import tree_topic
 from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.words import OF_EVERY_NODE
 
 # The robot of a graph in which no name has a robot's.
 NAMELESS = GuessedRobot("robot1", "")
-_PARAMETERS = ("rcl_interfaces/", "type_description_interfaces/")
 
 
 def seen_plan(seen: Diagnosis) -> System:
@@ -71,9 +71,8 @@ def _robot(seen: Diagnosis, robot: GuessedRobot) -> Robot:
 
 def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[End]:
     for end in seen.graph.ends:
-        common = (
-            end.name in SENT_BY_EVERY_NODE or end.type.startswith(_PARAMETERS) or "/_" in end.name
-        )
+        plumbing = end.name in SENT_BY_EVERY_NODE or end.type.startswith(OF_EVERY_NODE)
+        common = plumbing or "/_" in end.name
         if end.node in nodes and not common:
             code = seen.whose.plain(end.name)
             yield End(end.kind, end.role, end.name, end.type, node=end.node, code_name=code)

@@ -5,7 +5,7 @@ so what has one name in two of them is no clash. What was seen of them -> one vi
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Set
+from collections.abc import Mapping
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.grouping import lists_by_key
@@ -81,21 +81,15 @@ def _of_nodes(system: System, own: Mapping[str, int], at: int) -> System:
 
 
 def _part(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: int) -> System:
-    part = _of_nodes(plan, own, at)
+    part, robot = _of_nodes(plan, own, at), whose_by_plan(plan).robot
     nodes = {it.name for it in part.nodes}
     return part._replace(
         edges=tuple(it for it in plan.edges if nodes.issuperset(it.publishers)),
         robots=tuple(it for it in plan.robots if numbers[it.name] == at),
-        topics=tuple(it for it in plan.topics if it.name in _named(plan, numbers, at)),
+        topics=tuple(it for it in plan.topics if numbers[robot(it.name)] == at),
         gaps=(),
         domains=(),
     )
-
-
-def _named(plan: System, numbers: Mapping[str, int], at: int) -> Set[str]:
-    """The topics of which the plan says more that are those of a robot of this domain, or of all."""
-    robot = whose_by_plan(plan).robot
-    return {it.name for it in plan.topics if numbers[robot(it.name)] == at}
 
 
 def side_by_side(seen: Mapping[int, System]) -> System:

@@ -3,18 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 # They set a robot in motion: of these types always, of the second ones where the name says so.
 _ALWAYS = (
     "ackermann_msgs/msg/AckermannDrive", "ackermann_msgs/msg/AckermannDriveStamped",
     "trajectory_msgs/msg/JointTrajectory", "control_msgs/msg/JointJog",
 )  # fmt: skip
 PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
-_BY_NAME = (
-    PLAIN, STAMPED, "std_msgs/msg/Float64MultiArray",
-    "std_msgs/msg/Float64",
-)  # fmt: skip
+_BY_NAME = (PLAIN, STAMPED, "std_msgs/msg/Float64MultiArray", "std_msgs/msg/Float64")
 _NAMED = ("cmd", "vel", "command", "setpoint", "speed")
 # Where to go, and where a robot is: a person or program sends it to one robot.
 _POSES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped")
@@ -34,7 +29,7 @@ MAP = "nav_msgs/msg/OccupancyGrid"
 ODOMETRY, JOINTS = "nav_msgs/msg/Odometry", "sensor_msgs/msg/JointState"
 # Data of one kind: a reader of the first may have meant the other.
 _KINDS = {
-    "geometry_msgs/msg/Twist": "velocity", "geometry_msgs/msg/TwistStamped": "velocity",
+    PLAIN: "velocity", STAMPED: "velocity",
     **dict.fromkeys(_ALWAYS[:2], "steering"),
     "sensor_msgs/msg/Image": "image", "sensor_msgs/msg/CompressedImage": "image",
 }  # fmt: skip
@@ -45,6 +40,8 @@ _OF_ONE_SENSOR = (
     "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/MagneticField", "sensor_msgs/msg/BatteryState",
     "sensor_msgs/msg/Joy",
 )  # fmt: skip
+# Services of every node.
+OF_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
 # No sensor's: a person's hand, a clock.
 _NO_SENSOR = ("sensor_msgs/msg/Joy", "sensor_msgs/msg/TimeReference")
 # What is sent to joints, as Isaac Sim and topic_based_ros2_control have it, is no state of them.
@@ -57,11 +54,8 @@ PLAYER = "rosbag2_player"
 
 def moves(name: str, type_: str) -> bool:
     """Does the topic set a robot in motion?"""
-    return type_ in _ALWAYS or (type_ in _BY_NAME and _has(name.rpartition("/")[2], _NAMED))
-
-
-def _has(name: str, words: Iterable[str]) -> bool:
-    return any(it in name for it in words)
+    last = name.rpartition("/")[2]
+    return type_ in _ALWAYS or (type_ in _BY_NAME and any(it in last for it in _NAMED))
 
 
 def is_pose_order(plain: str, type_: str) -> bool:
@@ -92,7 +86,7 @@ def kind_of_data(name: str, type_: str) -> str:
         return MAP if "map" in name.split("/")[-2:] else ""
     if type_ == _TEXT:
         return DESCRIPTION if is_description(name, type_) else ""
-    if type_ == JOINTS and _has(last, _TO_JOINTS):
+    if type_ == JOINTS and any(it in last for it in _TO_JOINTS):
         return ""
     sensor = type_.startswith("sensor_msgs/") and not type_.startswith(_NO_SENSOR)
     return _KINDS.get(type_, type_) if sensor or type_ == ODOMETRY else ""

@@ -105,6 +105,10 @@ def typed(text: str) -> Scalar:
         number = int(text, 16 if hexadecimal else 8 if octal else 10)
         if -(2**63) <= number < 2**63:
             return number
+    return _float(text)
+
+
+def _float(text: str) -> float | str:
     if _DOTTED.fullmatch(text):
         return float(text.replace(".", "", 1))
     named = _NO_NUMBER.fullmatch(text)

@@ -121,7 +121,8 @@ def _learn_node(
     usual = frozenset({*every, SINCE_JAZZY})
     found = _with_helpers(name, ends, helpers, place)
     rest, parts = fold_parts(found.values(), library.parts, not base and "/" not in node)
-    own = sorted((end for end in rest if (end.role, end.name) not in usual), key=_order)
+    own = [end for end in rest if (end.role, end.name) not in usual]
+    own.sort(key=lambda it: (ROLES.index(it.role), it.name))
     taken = (end for part in parts for end in library.parts[part])
     # That its code places it cannot be seen.
     apart = known is not None and known.apart
@@ -130,10 +131,6 @@ def _learn_node(
     remarks += [] if helpers.sure else [f"{SHARED_PROCESS}: {', '.join(helpers.names)}"]
     remarks += [_compare(facts, known, usual)] if known else []
     return LearnedNode(name, facts, tuple(own), parts, tuple(remarks))
-
-
-def _order(end: Endpoint) -> tuple[int, str]:
-    return ROLES.index(end.role), end.name
 
 
 def _full_name(name: str, node: str) -> str:
@@ -178,16 +175,11 @@ def _types_by_endpoint(ends: Iterable[End]) -> Seen:
             raise UsageError(
                 f"{end.node} {end.role} the {end.kind} {end.name}, which is not possible in ROS"
             )
-        found = types[EndpointId(end.kind, end.role, end.name)]
-        if _is_valid_type(end):
+        found, valid = types[EndpointId(end.kind, end.role, end.name)], _TYPE.fullmatch(end.type)
+        # Another type counts as not known.
+        if valid and valid[1] in _WORDS[end.kind]:
             found.add(end.type)
     return {key: tuple(sorted(found)) for key, found in types.items()}
-
-
-def _is_valid_type(end: End) -> bool:
-    """Whether the type is valid for its kind; another type counts as not known."""
-    found = _TYPE.fullmatch(end.type)
-    return found is not None and found[1] in _WORDS[end.kind]
 
 
 def _name_in_code(name: str, types: Sequence[str], place: _SeenPlace) -> str:

@@ -123,7 +123,8 @@ def to_nodl(
     """
     usual = {(it.role, it.name) for it in library.parts[EVERY_NODE]} | {("subscribes", CLOCK)}
     ends = [it for it in node.facts.endpoints if (it.role, it.name) not in usual]
-    written = [it for end in ends for it in _entries(end)]
+    # One entry for each of its types.
+    written = [it._replace(type=one, also=()) for it in ends for one in (it.type, *it.also)]
     seen = _Seen(graph, node, namespace.rstrip("/"))
     written += [it for end in ends if end.transport for it in seen.transports(end)]
     description = f"Seen as {node.seen} in a running graph, by multibot snapshot"
@@ -155,11 +156,6 @@ class _Seen(NamedTuple):
         for transport in TRANSPORTS:
             for found in self.ends(end, f"/{transport}")[:1]:
                 yield Endpoint(TOPIC, end.role, f"{end.name}/{transport}", found.type)
-
-
-def _entries(end: Endpoint) -> Iterator[Endpoint]:
-    """One endpoint for each of its types."""
-    yield from (end._replace(type=it, also=()) for it in (end.type, *end.also))
 
 
 def _qos(qos: Qos | None) -> dict[str, object]:

@@ -14,16 +14,17 @@ from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import DOES
+from multibot_rewrite.rules.system.matching import qos_words
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
+from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Index, at_work
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, TOPIC, Edge, End, System
 
-# Services of every node.
-_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
 # In metres and parts of a quaternion.
 _SAME = 1e-3
 _MEANT = "is it meant? Then take a new snapshot"
-_POLICIES = ("reliability", "durability", "deadline", "liveliness")
+
+
 # Parent, child and topic.
 _Place = tuple[str, str, str]
 
@@ -107,16 +108,12 @@ def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
         if it.name not in OF_EVERY_NODE
         and "/_" not in it.name
         and it.type != TF
-        and not it.type.startswith(_EVERY_NODE)
+        and not it.type.startswith(words.OF_EVERY_NODE)
     }
 
 
 def _said(end: End) -> str:
-    own = end.qos._asdict() if end.qos else {}
-    words = (
-        str(own[it]) for it in _POLICIES if str(own.get(it, "")) not in ("", "inf", "AUTOMATIC")
-    )
-    return " ".join((end.type, *words))
+    return " ".join((end.type, *qos_words(end)))
 
 
 def _is_obeyed(seen: Index, end: End) -> str:

@@ -65,8 +65,12 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
     """Where the other name has no sender, its reader is the finding, but for the drive beside a
     twist_mux: what it chooses is meant for the drive. What RViz offers is a note."""
     obeyed, plainly = defaultdict(list), defaultdict(list)
-    sent = {name: _sent_for_sure(it) for name, it in seen.orders.items() if not _obeyed(it)}
-    unread = {name: it for name, it in sent.items() if it.publishers}
+    unread: dict[str, Ends] = {}
+    for name, it in seen.orders.items():
+        # What only may be sent is not missed.
+        sent = tuple(one for one in it.publishers if one.sure == RUNS)
+        if sent and not _obeyed(it):
+            unread[name] = it._replace(publishers=sent)
     for (kind, name), ends in seen.by_name.items() if unread else ():
         if kind == TOPIC and ends.publishers and _obeyed(ends):
             obeyed[ends.type].append(name)
@@ -102,10 +106,6 @@ def _alike(seen: Index, ends: Ends, known: Spelled) -> str:
     """Return the obeyed name that is nearly this one, not of another robot than the sender's."""
     mine = only(robots_of(seen, nodes_of(ends.publishers)))
     return alike(ends.name, known, ends.type, lambda it: not mine or seen.robot(it) in ("", mine))
-
-
-def _sent_for_sure(ends: Ends) -> Ends:
-    return ends._replace(publishers=tuple(it for it in ends.publishers if it.sure == RUNS))
 
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:
@@ -167,15 +167,12 @@ def _of_a_person(seen: Index, ends: Ends, same: Sequence[str]) -> str:
         if not any(_BY_HAND.search(it) for it in nodes_of(ends.publishers)):
             return ""
         # What one node of Nav2 hands to the next is no drive's.
-        own = [it for it in same if seen.robot(it) == robot]
-        own = [it for it in own if not _is_in_a_chain(seen.by_name[TOPIC, it])]
+        mine = [it for it in same if seen.robot(it) == robot]
+        readers = {it: at_work(seen.by_name[TOPIC, it].subscribers) for it in mine}
+        own = [it for it in mine if any(team(one.node) == one.node for one in readers[it])]
     else:
         own = [*_goals(seen).get((ends.type, robot), ())]
     return own[0] if len(own) == 1 else ""
-
-
-def _is_in_a_chain(ends: Ends) -> bool:
-    return all(team(it.node) != it.node for it in at_work(ends.subscribers))
 
 
 def _obeyed(ends: Ends) -> bool:
@@ -305,7 +302,7 @@ def _is_unplanned(seen: Index, node: str, name: str) -> bool:
 @system_rule("MG313", "bag-beside-a-robot", ERROR)
 def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
     """A bag that is played to nodes which only read is what bags are for."""
-    mixed: dict[str, list[str]] = {}
+    mixed: dict[str, list[str]] = defaultdict(list)
     played = {end.name for end in seen.system.ends if words.PLAYER in end.node}
     for ends in seen.by_name.values() if played else ():
         if ends.kind != TOPIC or ends.name not in played:
@@ -314,12 +311,11 @@ def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
         others = [it for it in nodes_of(at_work(ends.publishers)) if it not in players]
         obeyed = words.moves(seen.plain(ends.name), ends.type) and _obeyed(ends)
         if players and ends.name not in OF_EVERY_NODE and (others or obeyed):
-            mixed.setdefault(players[0], []).append(ends.name)
+            mixed[players[0]].append(ends.name)
     for player, names in mixed.items():
         message = f"plays {shorten(sorted(names))} into the running system"
         cause = "play it in another ROS_DOMAIN_ID, or give its topics other names with --remap"
-        robots = robots_of(seen, names)
-        robot = robots[0] if len(robots) == 1 else ""
+        robot = only(robots_of(seen, names))
         yield bag_beside_a_robot.finding(
             message, cause, robot=robot, node=player, names=tuple(sorted(names))
         )

@@ -19,8 +19,9 @@ from multibot_rewrite.rules.system.likes import (
     made_of,
     nodes_of_each,
 )
+from multibot_rewrite.rules.system.matching import qos_words
 from multibot_rewrite.system.index import Index, once
-from multibot_rewrite.system.records import SIM_TIME, ZENOH, Edge, End
+from multibot_rewrite.system.records import SIM_TIME, ZENOH, Edge
 
 # What is each robot's own: who and where it is, what it is connected to, which files it reads.
 _OWN = lazy_compile(
@@ -31,7 +32,6 @@ _OWN = lazy_compile(
 # A description's place of a part, in metres and parts of a quaternion.
 _SAME = 1e-3
 _TWO = 2
-_POLICIES = "reliability", "durability", "deadline", "liveliness"
 
 
 class _Told(NamedTuple):
@@ -139,14 +139,9 @@ def _qualities(seen: Index) -> _Values:
     for robot, made in made_of(seen).items() if told else ():
         for key, end in made.ends.items():
             if end.qos:
-                words, what = _words(end), (*key, "qos")
-                found[what][robot] = _Told(end.node, end.name, words, words)
+                words = " ".join(qos_words(end))
+                found[(*key, "qos")][robot] = _Told(end.node, end.name, words, words)
     return found
-
-
-def _words(end: End) -> str:
-    own = end.qos._asdict() if end.qos else {}
-    return " ".join(str(own[it]) for it in _POLICIES if str(own[it]) not in ("inf", "AUTOMATIC"))
 
 
 def _edges_of(seen: Index) -> Iterator[tuple[str, Edge]]:

@@ -49,9 +49,9 @@ def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
             topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
             owner = seen.frame_robot(frame)
             message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
-            cause = f"set the frame of {_who(senders)} to that of {robot}"
+            cause = f"set the frame of {_one_of(senders)} to that of {robot}"
             yield frame_id_of_another_robot.finding(
-                f"{message}; sent by {_who(senders)}",
+                f"{message}; sent by {_one_of(senders)}",
                 cause,
                 robot=robot,
                 node=senders[0],
@@ -80,6 +80,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         last = frame.rpartition("/")[2]
         meant = sorted(it for it in own if seen.plain_frame(it) in (frame, last) or it == last)
         alike = [*filter(None, [nearest(frame, own, MISTYPED)])]
+        likely = meant or alike or _of_its_kind(messages, own)
         elsewhere = _where(seen).get(frame, ())
         topics, link = shorten([it.topic for it in messages]), messages[0].link
         # Of no use to their readers without a place; filters turn that of an IMU. Next to what a launch
@@ -89,12 +90,12 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         yield frame_id_unknown.finding(
             f"{messages[0].field} of {topics} is {frame}, which is in no transform of"
             f" {robot or 'tf'}; sent by"
-            f" {_who(senders)}",
+            f" {_one_of(senders)}",
             # A sensor in a simulator sends what its description says, else a name that is in no tf.
             (f"write <gz_frame_id>{link}</gz_frame_id> in the sensor" if link else "")
-            or _remedy(senders, meant or alike or _of_its_kind(messages, own))
+            or (f"set the frame of {_one_of(senders)} to {_one_of(likely)}" if likely else "")
             or _sent_there(seen, frame, robot, elsewhere)
-            or f"send a transform for it, or set the frame of {_who(senders)} to one that is in tf",
+            or f"send a transform for it, or set the frame of {_one_of(senders)} to one that is in tf",
             level=ERROR if meant or elsewhere or needed else WARNING,
             robot=robot, node=senders[0], names=(frame,), **where(messages[:1]),
         )  # fmt: skip
@@ -112,8 +113,8 @@ def joints_of_another_robot(seen: Index) -> Iterator[Finding]:
         if robot and senders and foreign:
             yield joints_of_another_robot.finding(
                 f"the joints on {it.topic} are {shorten(foreign, SEVERAL)}, of {others[foreign[0]]};"
-                f" sent by {_who(senders)}",
-                f"give {_who(senders)} the joints of {robot}",
+                f" sent by {_one_of(senders)}",
+                f"give {_one_of(senders)} the joints of {robot}",
                 robot=robot, node=senders[0], names=(it.topic,),
             )  # fmt: skip
 
@@ -177,8 +178,8 @@ def _nameless(seen: Index) -> Iterator[Finding]:
         if senders and field:
             yield frame_id_unknown.finding(
                 f"{field} of {it.topic} is empty: tf cannot say where it was measured; sent by"
-                f" {_who(senders)}",
-                f"set the frame of {_who(senders)}",
+                f" {_one_of(senders)}",
+                f"set the frame of {_one_of(senders)}",
                 level=WARNING if it.frame else ERROR,
                 robot=seen.robot(it.topic) or only(robots_of(seen, senders)),
                 node=senders[0], names=(it.topic,),
@@ -200,8 +201,8 @@ def _with_slash(seen: Index) -> Iterator[Finding]:
         topic = next(iter(topics))
         yield frame_id_unknown.finding(
             f"messages on {shorten(topics)} are in {named}: tf2 refuses to look up a frame with a slash"
-            f" in front; sent by {_who(senders)}",
-            f"leave the slash out of the frames of {_who(senders)}",
+            f" in front; sent by {_one_of(senders)}",
+            f"leave the slash out of the frames of {_one_of(senders)}",
             level=ERROR if any(_is_read(seen, it) for it in topics) else WARNING,
             robot=seen.robot(topic) or only(robots_of(seen, senders)),
             node=senders[0], names=tuple(topics),
@@ -218,13 +219,6 @@ def _unsaid(it: Heard, type_: str) -> str:
         return "frame_id"
     # Its pose is known where all of the message was read.
     return "child_frame_id" if type_ == _ODOMETRY and it.pose and not it.child else ""
-
-
-def _remedy(senders: Sequence[str], meant: Sequence[str]) -> str:
-    if not meant:
-        return ""
-    word = meant[0] if len(meant) == 1 else f"one of {shorten(meant, SEVERAL)}"
-    return f"set the frame of {_who(senders)} to {word}"
 
 
 def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -> str:
@@ -296,5 +290,5 @@ def frames_in(edges: Iterable[Edge]) -> set[str]:
     return {it.removeprefix("/") for edge in edges for it in (edge.parent, edge.child)}
 
 
-def _who(senders: Sequence[str]) -> str:
-    return senders[0] if len(senders) == 1 else f"one of {shorten(senders, SEVERAL)}"
+def _one_of(names: Sequence[str]) -> str:
+    return only(names) or f"one of {shorten(names, SEVERAL)}"

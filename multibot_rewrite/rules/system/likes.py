@@ -32,8 +32,8 @@ from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 # Fewer nodes in common say nothing.
 _ENOUGH = 3
-# Services of every node.
-_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
+
+
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"\d{4}")
@@ -95,7 +95,7 @@ def _ends(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
     by_node, plain_of = seen.by_node, seen.plain
     for plain, name in nodes.items():
         for it in by_node.get(name, ()):
-            plumbing = it.name in EVERYBODYS or it.type.startswith(_EVERY_NODE)
+            plumbing = it.name in EVERYBODYS or it.type.startswith(words.OF_EVERY_NODE)
             if not plumbing and it.type != TF and "/_" not in it.name:
                 ends[plain, it.kind, it.role, plain_of(it.name)] = it
     return ends

@@ -252,7 +252,9 @@ def _with_durability(ends: Iterable[End], word: str) -> list[End]:
 def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
     """Who reads without it what is sent once. Who makes a map of scans sends it again and again."""
     latched = nodes_of(_with_durability(ends.publishers, DURABILITY[1]))
-    once = [it for it in latched if not any(words.is_of_a_body(e.type) for e in _read_by(seen, it))]
+    read = [it for node in latched for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
+    again = {it.node for it in read if it.type != JOINTS and words.is_of_a_body(it.type)}
+    once = [it for it in latched if it not in again]
     readers = nodes_of(at_work(_with_durability(ends.subscribers, DURABILITY[0])))
     if once and readers and len(once) == len(ends.publishers):
         yield not_latched.finding(
@@ -262,10 +264,6 @@ def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
             level=WARNING, robot=seen.robot(ends.name) or seen.robot(readers[0]),
             node=readers[0], names=(ends.name,),
         )  # fmt: skip
-
-
-def _read_by(seen: Index, node: str) -> Iterator[End]:
-    return (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES and it.type != JOINTS)
 
 
 def _is_latched(ends: Ends) -> bool:
@@ -293,6 +291,14 @@ def qos_conflicts(offered: Qos, requested: Qos) -> tuple[tuple[str, str], ...]:
         *((o, r) for o, r, order in words if _is_weaker(o, r, order)),
         *((_time(o, what), _time(r, what)) for o, r, what in times if _seconds(o) > _seconds(r)),
     )
+
+
+def qos_words(end: End) -> list[str]:
+    """What an end's QoS says, without what is as usual; nothing where it is not known."""
+    own = end.qos._asdict() if end.qos else {}
+    policies = ("reliability", "durability", "deadline", "liveliness")
+    told = (str(own.get(it, "")) for it in policies)
+    return [it for it in told if it not in ("", "inf", "AUTOMATIC")]
 
 
 def _is_weaker(offered: str, requested: str, order: Sequence[str]) -> bool:

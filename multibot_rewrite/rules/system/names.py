@@ -283,11 +283,10 @@ def _served(seen: Index) -> Mapping[tuple[str, str], _Served]:
     for (kind, name), ends in seen.by_name.items():
         if ends.servers:
             found[kind, ends.type][name] = ends
-    return {key: _Served(it, _plainly(seen, it), Spelled(it)) for key, it in found.items()}
-
-
-def _plainly(seen: Index, names: Iterable[str]) -> Mapping[str, Sequence[str]]:
-    return lists_by_key((seen.plain(it), it) for it in names)
+    return {
+        key: _Served(it, lists_by_key((seen.plain(name), name) for name in it), Spelled(it))
+        for key, it in found.items()
+    }
 
 
 def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:

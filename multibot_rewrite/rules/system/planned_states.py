@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
@@ -25,42 +25,34 @@ def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     told = (it for it in seen.system.parameters if (it.name, it.value) != (SIM_TIME, UNTOLD))
     values = {(it.node, it.name): it.value for it in told}
     for node, planned in lists_by_key((it.node, it) for it in plan.system.parameters).items():
-        found = [*_differences(planned, values)]
+        known = [(it, values[node, it.name]) for it in planned if (node, it.name) in values]
+        found = [(it, value) for it, value in known if not _is_same(it.value, value)]
         # What makes it an error comes first.
         found.sort(key=lambda it: not _is_serious(plan, it[0]))
         if found:
             yield _differs(plan, node, found)
 
 
-def _differences(
-    planned: Iterable[Parameter], values: Mapping[tuple[str, str], str]
-) -> Iterator[Difference]:
-    for it in planned:
-        value = values.get((it.node, it.name))
-        if value is not None and not _is_same(it.value, value):
-            yield it, value
-
-
 def _is_same(planned: str, value: str) -> bool:
     """1 is 1.0: people write either; true is not 1."""
-    if planned == value:
-        return True
-    if "true" in (planned, value) or "false" in (planned, value):
-        return False
+    if planned == value or not {"true", "false"}.isdisjoint((planned, value)):
+        return planned == value
     return bool(parameter_value(planned) == parameter_value(value))
 
 
 def _is_serious(plan: Index, it: Parameter) -> bool:
     """Whether the plan itself says it, or it is a frame of a robot."""
     frames = plan.frames_of.get(plan.robot_of.get(it.node, ""), frozenset())
-    return not it.place.file or parameter_value(it.value) in [
-        *frames,
-        *(f"/{frame}" for frame in frames),
-    ]
+    named = [*frames, *(f"/{frame}" for frame in frames)]
+    return not it.place.file or parameter_value(it.value) in named
 
 
 def _differs(plan: Index, node: str, found: Sequence[Difference]) -> Finding:
-    listed = [f"{it.name} is {value}, planned is {it.value}{_at(it)}" for it, value in found]
+    places = [f" ({it.place})" if it.place.file else "" for it, _ in found]
+    listed = [
+        f"{it.name} is {value}, planned is {it.value}{at}"
+        for (it, value), at in zip(found, places, strict=True)
+    ]
     robot, (first, _) = plan.robot_of.get(node, ""), found[0]
     file = first.place.file
     start = f"start it with {file}" if file else "change it, or states of the plan"
@@ -71,17 +63,11 @@ def _differs(plan: Index, node: str, found: Sequence[Difference]) -> Finding:
     few, *others = sorted(wanted, key=len)
     other = next((it for it in few if all(it in having for having in others)), "")
     hint = f"has it the parameters of {other}? {start}" if other else start
-    serious = _is_serious(plan, first)
-    level = ERROR if serious else WARNING
-    names = tuple(it.name for it, _ in found)
-    message = "; ".join(listed[:FEW]) + (f"; {len(found) - FEW} more" if len(found) > FEW else "")
+    more = f"; {len(found) - FEW} more" if len(found) > FEW else ""
     return parameter_not_planned.finding(
-        message, hint, level=level, robot=robot, node=node, names=names
-    )
-
-
-def _at(it: Parameter) -> str:
-    return f" ({it.place})" if it.place.file else ""
+        "; ".join(listed[:FEW]) + more, hint, level=ERROR if _is_serious(plan, first) else WARNING,
+        robot=robot, node=node, names=tuple(it.name for it, _ in found),
+    )  # fmt: skip
 
 
 @once

@@ -17,6 +17,7 @@ from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.tool_nodes import last_word
 
 _CONTROLLER = "controller_server"
+# What holds several networks, or a simulator, together.
 _BRIDGE = lazy_compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")
 
 
@@ -137,10 +138,9 @@ def _passing(seen: Index) -> Mapping[str, tuple[list[Ends], list[Ends]]]:
             for at, side in enumerate((ends.subscribers, ends.publishers)):
                 for node in nodes_of(at_work(side)):
                     found[node][at].append(ends)
-    own = {it: both for it, both in found.items() if all(both) and not _is_bridge(seen.plain(it))}
-    return {it: (read, sent) for it, (read, sent) in own.items() if read[0].type == sent[0].type}
-
-
-def _is_bridge(node: str) -> bool:
-    """Does it hold several networks, or a simulator, together?"""
-    return bool(_BRIDGE.search(last_word(node)))
+    own = {it: both for it, both in found.items() if all(both)}
+    return {
+        it: (read, sent)
+        for it, (read, sent) in own.items()
+        if read[0].type == sent[0].type and not _BRIDGE.search(_word(seen, it))
+    }

@@ -30,7 +30,6 @@ from multibot_rewrite.system.records import (
     JOINT,
     SERVICE,
     SIM_TIME,
-    Controller,
     Interface,
     clocks,
 )
@@ -99,17 +98,13 @@ def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
             cause = "two controller managers for one robot: stop one, or unload its controller"
             if len({it.manager for it in found}) == 1:
                 cause = "spawn one of them with --inactive"
-            places = [it for it in seen.system.interfaces if _is_of(it, interface, found)]
+            wanted, own = (CLAIMS, COMMAND, interface), {it.name for it in found}
+            claimed = (it for it in seen.system.interfaces if (it.role, it.kind, it.name) == wanted)
+            places = [it for it in claimed if last_word(it.node) in own]
             yield interface_commanded_twice.finding(
                 message, cause + see(places),
                 robot=robot, node=found[0].manager, names=(interface,), **where(places),
             )  # fmt: skip
-
-
-def _is_of(claim: Interface, name: str, controllers: Iterable[Controller]) -> bool:
-    """Is it the claim of an interface by one of these controllers?"""
-    is_claimed = (claim.role, claim.kind, claim.name) == (CLAIMS, COMMAND, name)
-    return is_claimed and any(last_word(claim.node) == it.name for it in controllers)
 
 
 @system_rule("MG513", "no-controller-active", WARNING)
@@ -259,7 +254,9 @@ def missing(known: Sequence[Interface]) -> Iterator[Missing]:
     for first, *more in opened.values():
         near = hints.nearest(first.name, [name for kind, name in exports if kind == first.kind])
         meant = exports.get((first.kind, near))
-        yield Missing((first, *more), meant or _beside(first.name, exports.values()), near)
+        owner = first.name.rpartition("/")[0]
+        beside = (it for it in exports.values() if it.name.rpartition("/")[0] == owner)
+        yield Missing((first, *more), meant or next(beside, None), near)
 
 
 def open_claims(known: Sequence[Interface]) -> list[Interface]:
@@ -286,11 +283,6 @@ def claims_any(known: Iterable[Interface]) -> bool:
     for it in known:
         sides[it.role].add((it.kind, it.name))
     return not sides[EXPORTS].isdisjoint(sides[CLAIMS])
-
-
-def _beside(name: str, exports: Iterable[Interface]) -> Interface | None:
-    owner = name.rpartition("/")[0]
-    return next((it for it in exports if it.name.rpartition("/")[0] == owner), None)
 
 
 def _claimed_twice(seen: Index) -> Iterator[Finding]:

@@ -49,16 +49,13 @@ def roots_by_robot(plan: Index, seen: Index) -> Iterator[tuple[Robot, Sequence[s
         # A frame with two parents is a finding of its own.
         is_one_each = all(above[it.child] == it.parent for it in tree.edges)
         for edge in tree.edges if is_one_each else ():
-            for robot in _robots_at_home(plan, tree, edge):
+            for frame in (edge.child, edge.parent):
+                robot = _robot_at_home(plan, tree, frame)
                 roots_of[robot].add(roots_above.get(edge.parent, edge.parent))
         for robot, found in roots_of.items():
             roots = sorted(found - {""})
-            if len(roots) > 1:
+            if robot and len(roots) > 1:
                 yield plan.declared[robot], roots
-
-
-def _robots_at_home(plan: Index, tree: Tree, edge: Edge) -> Set[str]:
-    return {_robot_at_home(plan, tree, frame) for frame in (edge.child, edge.parent)} - {""}
 
 
 def _robot_at_home(plan: Index, tree: Tree, frame: str) -> str:

@@ -20,7 +20,7 @@ from multibot_rewrite.system.records import SUBSCRIBES, Edge
 from multibot_rewrite.system.tf_copies import static_topic
 from multibot_rewrite.system.tool_nodes import last_word
 
-_STATIC = "static_transform_publisher"
+_STATE_PUBLISHER, _STATIC = "robot_state_publisher", "static_transform_publisher"
 
 
 @system_rule("MG401", "two-parents", ERROR)
@@ -111,7 +111,9 @@ def collide(seen: Index, tree: Tree) -> str:
         if who and (len(without) > 1 or (not without and of_all & bare)):
             send = "sends" if len(who) == 1 else "send"
             return f"{and_then(who)} {send} frames without a robot's name"
-    if bare and _twice(seen, senders):
+    # As where two robots have no namespace.
+    several = (it for it in senders if seen.nodes.get(it, 0) > 1)
+    if bare and any("robot_state" in last_word(it) for it in several):
         return "two nodes of one name send the same frames"
     return ""
 
@@ -125,12 +127,6 @@ def _may_meet(seen: Index, tree: Tree) -> bool:
     known = {node for edge in tree.edges for node in edge.publishers}
     plain = [it for it in owners if not seen.frame_robot(it) and it not in WORLD_FRAMES]
     return not known.issuperset(tree.senders) or any(len(owners[it]) != 1 for it in plain)
-
-
-def _twice(seen: Index, senders: Iterable[str]) -> list[str]:
-    """Senders of which two run, as where two robots have no namespace."""
-    several = (it for it in senders if seen.nodes.get(it, 0) > 1)
-    return [it for it in several if "robot_state" in last_word(it)]
 
 
 def _bare_frames(seen: Index, tree: Tree) -> list[str]:
@@ -264,15 +260,12 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             others = [it for it in others if it not in nodes]
             if others:
                 cause += f"; or {shorten(others)} with the description or parameters of {who}"
+            # Static and of one value: where senders differ none is known.
+            is_fixed = all(it.static and it.transform for it in own)
             yield transform_of_two_senders.finding(
-                message, cause + see(own), level=NOTE if all(map(_is_fixed, own)) else ERROR,
+                message, cause + see(own), level=NOTE if is_fixed else ERROR,
                 robot=who, names=unique(it.child for it in own), **where(own),
             )  # fmt: skip
-
-
-def _is_fixed(edge: Edge) -> bool:
-    """Is it static and of one value? Where senders differ none is known."""
-    return edge.static and bool(edge.transform)
 
 
 def _sent_twice(tree: Tree) -> list[Edge]:
@@ -309,15 +302,10 @@ def robots_name_twice(seen: Index) -> Iterator[Finding]:
             yield robots_name_twice.finding(message, cause, robot=robot, names=tuple(frames))
 
 
-_STATE_PUBLISHER, _STATIC = "robot_state_publisher", "static_transform_publisher"
-# Of one transform.
-_TWO = 2
-
-
 def who_can_send(seen: Index, nodes: Sequence[str], edges: Sequence[Edge]) -> Sequence[str]:
     """The nodes that can send one of these; all, where fewer than two would be left."""
     found = [node for node in nodes if any(_can_send(seen, node, it) for it in edges)]
-    return found if len(found) >= _TWO else nodes
+    return found if len(found) > 1 else nodes
 
 
 def _can_send(seen: Index, node: str, edge: Edge) -> bool:

@@ -187,7 +187,13 @@ def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
 def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
     """A transform that a node sends by its file, of the robot of ``node`` if there is one. Nothing is
     known where only nodes without one send any, and others may run."""
-    own = [it for it in edges if not is_of_description(seen, it) or _is_of_a_node(seen, it)]
+    # Of all that send on one topic nobody can tell them apart: a description has no odometry.
+    own = [
+        it
+        for it in edges
+        if not is_of_description(seen, it)
+        or (len(it.publishers) > 1 and seen.plain_frame(it.parent) in (_MAP, _ODOM))
+    ]
     placed = [it for it in own if it.place != NOWHERE]
     found, robot = placed if placed or seen.in_doubt else own, seen.robot(node)
     return min(found, key=lambda it: robot not in map(seen.robot, it.publishers), default=None)
@@ -196,11 +202,6 @@ def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
 def _listens(seen: Index, node: str) -> bool:
     """Does it hear transforms? Another one writes the frame into messages, or into what it sends."""
     return any(it.type == TF and it.role == SUBSCRIBES for it in seen.by_node.get(node, ()))
-
-
-def _is_of_a_node(seen: Index, edge: Edge) -> bool:
-    """Of all that send on one topic nobody can tell them apart: a description has no odometry."""
-    return len(edge.publishers) > 1 and seen.plain_frame(edge.parent) in (_MAP, _ODOM)
 
 
 def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
