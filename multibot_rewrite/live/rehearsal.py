@@ -12,10 +12,12 @@ from __future__ import annotations
 
 import json
 import os
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import Any, NamedTuple, TypeAlias
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.ros.assemble import BUSY_MACHINE
@@ -77,11 +79,12 @@ def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> It
     without any a node gets only its namespace and its name.
     """
     types = {name: end.type for _, end, name in table.ends if end.type}
-    names: dict[str, list[tuple[Endpoint, str]]] = {}
-    for run, end, name in table.ends:
-        # What a node does that nobody knows is not played.
-        if not end.when and (end.role or run.fact.is_known):
-            names.setdefault(run.full_name, []).append((end, name))
+    # What a node does that nobody knows is not played.
+    names = lists_by_key(
+        (run.full_name, (end, name))
+        for run, end, name in table.ends
+        if not end.when and (end.role or run.fact.is_known)
+    )
     spaces = {(it.robot, it.node): it.namespace for it in table.runs}
     for _, node in running_nodes(table, left_out):
         own = names.get(node.full_name, [])
@@ -106,10 +109,7 @@ def bridge_stub(topics: Iterable[Topic]) -> Iterator[Stub]:
 
 def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
     """The nodes of domain_bridge in a plan of one domain."""
-    ends: dict[str, list[Endpoint]] = {}
-    for it in plan.ends:
-        stub = Endpoint(it.kind, it.role, it.name, it.type)
-        ends.setdefault(it.node, []).append(stub)
+    ends = lists_by_key((it.node, Endpoint(it.kind, it.role, it.name, it.type)) for it in plan.ends)
     for node in plan.nodes:
         if node.stack == DOMAIN_BRIDGE:
             yield played(node.name[1:], ends.get(node.name, ()), node.robot), ()
@@ -148,7 +148,7 @@ def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
 
     A participant of DDS refuses a topic under a second type: who has it so is in another process.
     """
-    processes: dict[int, list[Stub]] = {}
+    processes: dict[int, list[Stub]] = defaultdict(list)
     process_of: dict[str, int] = {}
     types: dict[tuple[int, str, str], str] = {}
     for stub in nodes:
@@ -158,7 +158,7 @@ def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
         while any(types.get((process, robot, it), own[it]) != own[it] for it in own):
             process += PROCESSES
         types |= {(process, robot, name): type_ for name, type_ in own.items()}
-        processes.setdefault(process, []).append(stub)
+        processes[process].append(stub)
     return list(processes.values())
 
 
@@ -288,17 +288,13 @@ def staged(
     with _started(nodes, environ) as started:
         for _ in range(LOOKS):
             graph = observe(request, environ)
-            if _has_all(graph, started):
+            ends = {(end.node, end.role, end.name) for end in graph.ends}
+            if started.ends <= ends and started.frames <= {edge.child for edge in graph.edges}:
                 # All nodes that run here were seen whole, so the machine is not too busy.
                 here = graph.environment
                 caveats = tuple(it for it in here.caveats if it.code != BUSY_MACHINE)
                 return graph._replace(environment=here._replace(caveats=caveats)), started.replaced
     return graph, started.replaced
-
-
-def _has_all(graph: System, started: Started) -> bool:
-    ends = {(end.node, end.role, end.name) for end in graph.ends}
-    return started.ends <= ends and started.frames <= {edge.child for edge in graph.edges}
 
 
 @contextmanager

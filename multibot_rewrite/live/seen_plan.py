@@ -23,14 +23,13 @@ def seen_plan(seen: Diagnosis) -> System:
     """The plan: all nodes but tools, all names but what every node has."""
     nodes = unique(node.name for node in seen.graph.nodes if not is_tool(node.name))
     robots = {_mine(it): it for it in robots_to_plan(seen)}
+    names = {mine: it.name for mine, it in robots.items()}
     whose = {node: seen.whose.robot(node) for node in nodes}
     topics = unique(end.name for end in seen.graph.ends if end.kind == "topic")
     # All is of the robot that has no name.
     bare = (it for it in topics if "" not in robots and not seen.whose.robot(it) and "/_" not in it)
     return System(
-        tuple(
-            Node(it, robot=robots[whose[it]].name if whose[it] in robots else "") for it in nodes
-        ),
+        tuple(Node(it, robot=names.get(whose[it], "")) for it in nodes),
         tuple(dict.fromkeys(_endpoints(seen, {*nodes}))),
         robots=tuple(_robot(seen, it) for mine, it in robots.items() if mine in whose.values()),
         layout=seen.layout.name if seen.layout else DEFAULT_LAYOUT,

@@ -25,13 +25,8 @@ from multibot_rewrite.system.guess import GuessedRobot
 from multibot_rewrite.system.tool_nodes import is_tool
 
 STACK = "seen"
-FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = (
-    "fleet.yaml",
-    "nodes.yaml",
-    "robot.urdf",
-    "plan.yaml",
-)
-FILES = (FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE)
+FILES = ("fleet.yaml", "nodes.yaml", "robot.urdf", "plan.yaml")
+FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = FILES
 # What an editor is told of them.
 SCHEMAS = {FLEET_FILE: editors.FLEET, NODES_FILE: editors.NODES, PLAN_FILE: editors.PLAN}
 HEAD = """\
@@ -95,15 +90,13 @@ def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str
 
 def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     """The frames of a robot below its base, as links and joints."""
-    plain = seen.whose.plain_frame
+    whose, plain = seen.whose, seen.whose.plain_frame
     # Those with the robot's name; where frames have none, those on its topic or on all.
-    whose = seen.whose
     named = [it for it in seen.graph.edges if whose.frame_robot(it.child) == robot.name]
     bare = [it for it in seen.graph.edges if not whose.frame_robot(it.child)]
     own = [it for it in bare if whose.robot(it.topic) == robot.name]
-    edges = {
-        plain(it.child): it for it in (named or own or bare) if plain(it.parent) not in WORLD_FRAMES
-    }
+    found = (it for it in named or own or bare if plain(it.parent) not in WORLD_FRAMES)
+    edges = {plain(it.child): it for it in found}
     edges = {child: it for child, it in edges.items() if plain(it.parent) != "odom"}
     parents = {child: plain(it.parent) for child, it in edges.items()}
     root = _base(parents)
@@ -112,10 +105,10 @@ def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     yield '<robot name="seen">'
     yield f"  <link name={quoteattr(root)}/>"
     # The frames below one, parents first, each once.
-    found = [root]
-    for frame in found:
-        found += [it for it, above in parents.items() if above == frame and it not in found]
-    for child in found[1:]:
+    frames = [root]
+    for frame in frames:  # grows
+        frames += [it for it, above in parents.items() if above == frame and it not in frames]
+    for child in frames[1:]:
         yield f"  <link name={quoteattr(child)}/>"
         kind = "fixed" if edges[child].static else "continuous"
         yield f'  <joint name={quoteattr(child + "_joint")} type="{kind}">'

@@ -99,30 +99,19 @@ def with_found(
     What was missing while the fleet started was never announced, so it is not solved either.
     """
     found = tuple(findings)
-    old = before.findings if before and before.complete else ()
-    absent = any(finding.code in ABSENCE for finding in found)
-    complete = (before is not None and before.complete) or not absent
-    verdict = judge(found, graph)
-    return WatchState(
-        graph,
-        found,
-        held,
-        _not_in(old, found),
-        _not_in(found, old),
-        complete,
-        verdict,
-        max(before.worst if before else Verdict.PLANNED, _to_remember(found, graph, complete)),
-    )
+    was_complete = before is not None and before.complete
+    old = before.findings if before and was_complete else ()
+    complete = was_complete or not any(finding.code in ABSENCE for finding in found)
+    worst = before.worst if before else Verdict.PLANNED
+    worst = max(worst, _to_remember(found, graph, complete))
+    appeared, solved = _not_in(old, found), _not_in(found, old)
+    return WatchState(graph, found, held, appeared, solved, complete, judge(found, graph), worst)
 
 
 def _not_in(known: Iterable[Finding], found: Iterable[Finding]) -> tuple[Finding, ...]:
     """What is found and not known; a finding with another cause is the same finding."""
-    before = set(map(_without_cause, known))
-    return tuple(finding for finding in found if _without_cause(finding) not in before)
-
-
-def _without_cause(finding: Finding) -> Finding:
-    return finding._replace(hint="", file="", line=0)
+    before = {it._replace(hint="", file="", line=0) for it in known}
+    return tuple(it for it in found if it._replace(hint="", file="", line=0) not in before)
 
 
 def _to_remember(found: Iterable[Finding], graph: System, complete: bool) -> Verdict:

@@ -17,7 +17,7 @@ from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, USUAL_FRAMES
-from multibot_rewrite.base.grouping import sets_by_key
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.system.ownership import SEPARATORS, Whose
 from multibot_rewrite.system.records import TOPIC, Edge, System
 from multibot_rewrite.system.tool_nodes import is_tool
@@ -60,9 +60,9 @@ class GuessedRobot(NamedTuple):
 
 def _of_parts(edges: Iterable[Edge]) -> set[str]:
     """The frames that hang on a robot's base: an arm, a wheel, whatever its own base is called."""
-    children: dict[str, list[str]] = defaultdict(list)
-    for edge in edges:
-        children[edge.parent.removeprefix("/")].append(edge.child.removeprefix("/"))
+    children = lists_by_key(
+        (it.parent.removeprefix("/"), it.child.removeprefix("/")) for it in edges
+    )
     todo, found = [*BODY_FRAMES], {*BODY_FRAMES}
     for frame in todo:  # grows
         new = [it for it in children[frame] if it not in found]
@@ -137,9 +137,8 @@ def _alike(graph: System, nodes: Iterable[str]) -> Iterator[str]:
     for spaces in below.values():
         times = Counter(name for names in spaces.values() for name in names)
         for space, names in spaces.items():
-            if any(times[name] > 1 for name in names) and _may_be_a_robot(
-                space, [f"{space}{it}" for it in names]
-            ):
+            full = [f"{space}{it}" for it in names]
+            if any(times[name] > 1 for name in names) and _may_be_a_robot(space, full):
                 yield space
 
 
@@ -251,6 +250,10 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
         first = min((by_way[way] for way in _ways(frame) if way in by_way), default=None)
         return None if first is None else known[first]
 
+    def plain_frame(frame: str) -> str:
+        robot = of_frame(frame)
+        return frame.removeprefix(robot.before).removesuffix(robot.behind) if robot else frame
+
     def name_of(robot: GuessedRobot | None) -> str:
         return robot.name if robot else ""
 
@@ -259,7 +262,7 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
         cache(lambda name: name_of(of_name(name))),
         cache(lambda name: _plain(name, of_name(name))),
         cache(lambda frame: name_of(of_frame(frame))),
-        cache(lambda frame: _plain_frame(frame, of_frame(frame))),
+        cache(plain_frame),
     )
 
 
@@ -293,9 +296,3 @@ def _plain(name: str, robot: GuessedRobot | None) -> str:
         return name.removeprefix(robot.namespace)
     bare = name.removesuffix(f"/{robot.name}").removesuffix(f"_{robot.name}")
     return bare.replace(f"/{robot.name}_", "/", 1) or name
-
-
-def _plain_frame(frame: str, robot: GuessedRobot | None) -> str:
-    if robot is None:
-        return frame
-    return frame.removeprefix(robot.before).removesuffix(robot.behind)

@@ -161,18 +161,14 @@ class _Seen(NamedTuple):
 def _qos(qos: Qos | None) -> dict[str, object]:
     if qos is None:
         return dict(UNKNOWN_QOS)
-    history = qos.history if qos.history in POLICIES["history"] else DEFAULT
+    found: dict[str, object] = {"history": DEFAULT, "reliability": DEFAULT}
     # Fast DDS does not announce the depth to other processes.
-    if history == KEEP_LAST and qos.depth < 1:
-        history = DEFAULT
-    found: dict[str, object] = {"history": history}
-    if history == KEEP_LAST:
-        found["depth"] = qos.depth
-    known = qos.reliability in POLICIES["reliability"]
-    found["reliability"] = qos.reliability if known else DEFAULT
-    for key in ("durability", "liveliness"):
-        if getattr(qos, key) in POLICIES[key]:
-            found[key] = getattr(qos, key)
+    if qos.history == KEEP_LAST and qos.depth > 0:
+        found = {"history": KEEP_LAST, "depth": qos.depth, "reliability": DEFAULT}
+    for key in ("history", "reliability", "durability", "liveliness"):
+        word = getattr(qos, key)
+        if word in POLICIES[key] and word != KEEP_LAST:
+            found[key] = word
     for key in ("deadline", "lifespan", "liveliness_lease_duration"):
         seconds = getattr(qos, key)
         if seconds > 0 and not math.isinf(seconds):
