@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Set
 from fnmatch import translate
 from math import inf, isinf
 
-from multibot_rewrite.base.conventions import CLOCK
+from multibot_rewrite.base.conventions import CLOCK, TIMED
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile
@@ -23,14 +23,7 @@ from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SIM_TIME, TOPIC, Edge, without_clock
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
-# They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
-_TIMED = (
-    "robot_state_publisher*", "amcl*", "ekf*", "ukf*", "*slam_toolbox*", "cartographer_node*",
-    "bt_navigator*", "controller_server*", "planner_server*", "behavior_server*", "map_server*",
-    "velocity_smoother*", "collision_monitor*", "local_costmap", "global_costmap", "navsat_transform*",
-    "icp_odometry", "rgbd_odometry",
-)  # fmt: skip
-_IS_TIMED = lazy_compile("|".join(map(translate, _TIMED)))
+_IS_TIMED = lazy_compile("|".join(map(translate, TIMED)))
 
 _TYPE = "rosgraph_msgs/msg/Clock"
 _SENT = (TOPIC, PUBLISHES, CLOCK)

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cache, partial
 from typing import NamedTuple
 
+from multibot_rewrite.base.conventions import FRAMES_OF_SENSORS, types_of
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
@@ -23,9 +24,7 @@ _MEASURED = ("sensor_msgs/", _ODOMETRY, "stereo_msgs/", "radar_msgs/")
 
 _IMU = "sensor_msgs/msg/Imu"
 # Of no use without a frame.
-_PLACED = (
-    "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", _ODOMETRY, "nav_msgs/msg/OccupancyGrid",
-)  # fmt: skip
+_PLACED = types_of("placed")
 
 
 class _Message(NamedTuple):
@@ -233,19 +232,9 @@ def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -
     return ""
 
 
-# What frames of sensors of a type are called.
-_CALLED = {
-    "sensor_msgs/msg/LaserScan": ("laser", "lidar", "scan"),
-    "sensor_msgs/msg/PointCloud2": ("lidar", "velodyne", "ouster", "depth"),
-    "sensor_msgs/msg/Imu": ("imu",),
-    "sensor_msgs/msg/Image": ("optical",),
-    "sensor_msgs/msg/NavSatFix": ("gps", "gnss", "navsat"),
-}
-
-
 def _of_its_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str]:
     """The one frame of the robot that is called as such a sensor's is."""
-    called = {word for it in messages for word in _CALLED.get(it.type, ())}
+    called = {word for it in messages for word in FRAMES_OF_SENSORS.get(it.type, ())}
     found = sorted(it for it in own if any(word in it for word in called))
     return found if len(found) == 1 else []
 

@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import cache, partial
 
-from multibot_rewrite.base.conventions import chooses, is_from_outside, team
+from multibot_rewrite.base.conventions import chooses, is_from_outside, team, types_of
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.system import words
@@ -29,13 +29,7 @@ _DIGITS = lazy_compile(r"_?\d+")
 _SLIP = 0.85
 MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
 # Every node serves them, or many do: another one of such a type says nothing.
-COMMON = (
-    "rcl_interfaces/",
-    "lifecycle_msgs/",
-    "std_srvs/",
-    "type_description_interfaces/",
-    "std_msgs/",
-)
+COMMON = types_of("common")
 # Of such a type are many topics that have nothing to do with each other.
 _PLAIN_TYPES = "std_"
 # Such messages are sent for many ends: the name has to say which.
