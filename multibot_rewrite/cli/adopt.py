@@ -10,7 +10,7 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver_changed, note, note_unread, proof_words
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
-from multibot_rewrite.refactor.adopt import adopt
+from multibot_rewrite.refactor.adopt import Adopted, adopt
 
 
 def run(options: argparse.Namespace) -> int:
@@ -23,6 +23,11 @@ def run(options: argparse.Namespace) -> int:
         distro=options.distro or "",
     )
     deliver_changed(options, made.before, made.after, write=options.in_place)
+    _tell(options, made)
+    return DONE
+
+
+def _tell(options: argparse.Namespace, made: Adopted) -> None:
     if made.argument:
         many = plural(len(made.proved), "description")
         if made.configurations:
@@ -42,4 +47,3 @@ def run(options: argparse.Namespace) -> int:
     for one in made.left:
         note(options, f"{one.place}: left as it is: {one.why}")
     note_unread(options, made.unread)
-    return DONE

@@ -178,12 +178,7 @@ def _of_hosts(
     for host in hosts:
         if host.number not in nodes or _is_of_either(host):
             yield from _topics(*host, tag, vocabulary.release)
-        for path, value in frames_of(host.element, host.section):
-            yield RuntimeName(FRAME, value, tag, host.number, path)
-        for entry in host.section.hardwired:
-            kind, _, name = entry.partition(":")
-            if kind == FRAME:
-                yield RuntimeName(FRAME, name, tag, host.number, IN_CODE)
+        yield from _frames(host, tag)
         yield from _lookups(root, host, vocabulary)
         yield from _opened(host, tag)
 
@@ -226,6 +221,15 @@ def _topics(
     """Topics that are no ROS 2 node's: below the namespace that the plugin puts in front."""
     for kind, name, path in resolved(host, section, release):
         yield RuntimeName(kind, name, tag, number, path)
+
+
+def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
+    for path, value in frames_of(host.element, host.section):
+        yield RuntimeName(FRAME, value, tag, host.number, path)
+    for entry in host.section.hardwired:
+        kind, _, name = entry.partition(":")
+        if kind == FRAME:
+            yield RuntimeName(FRAME, name, tag, host.number, IN_CODE)
 
 
 def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
