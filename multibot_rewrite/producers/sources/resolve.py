@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeVar
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.producers.sources.expressions import last
 from multibot_rewrite.producers.sources.records import (
     ANY,
@@ -104,9 +105,7 @@ def frame_in(it: Value) -> str:
 
 
 def _by(items: Iterable[Item], key: Callable[[Item], Key]) -> dict[Key, tuple[Item, ...]]:
-    found: dict[Key, list[Item]] = {}
-    for item in items:
-        found.setdefault(key(item), []).append(item)
+    found = lists_by_key((key(item), item) for item in items)
     return {name: tuple(rows) for name, rows in found.items()}
 
 
