@@ -159,7 +159,11 @@ def survey(seen: Diagnosis) -> Iterator[str]:
         nodes = "a recording" if is_recorded(seen.graph) else plural(len(seen.graph.nodes), "node")
         yield f"{nodes}, no name of a robot in them: one robot, or several that share all names"
     else:
-        where = _where(seen.robots)
+        where = "by the ends of names"
+        if any(robot.namespace for robot in seen.robots):
+            where = "by their namespaces"
+        elif any(robot.before for robot in seen.robots):
+            where = "by what their frames have"
         yield f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
         yield f"layout: {_layout_line(seen)}"
     # Topics of a robot, on which only nodes of that robot send.
@@ -175,14 +179,6 @@ def survey(seen: Diagnosis) -> Iterator[str]:
             continue
         by_robot = Counter(seen.whose.robot(node) or "no robot" for node in nodes_)
         yield f"tf on {topic}: {plural(len(nodes_), 'node')} of {shorten(by_robot, SEVERAL)}"
-
-
-def _where(robots: Sequence[GuessedRobot]) -> str:
-    if any(robot.namespace for robot in robots):
-        return "by their namespaces"
-    return (
-        "by what their frames have" if any(it.before for it in robots) else "by the ends of names"
-    )
 
 
 def _layout_line(seen: Diagnosis) -> str:

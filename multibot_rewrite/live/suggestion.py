@@ -7,7 +7,7 @@ The description has the frames that were heard, and nothing else: it stands in f
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import quoteattr
 
 from multibot_rewrite.base import editors
@@ -99,7 +99,11 @@ def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     edges = {plain(it.child): it for it in found}
     edges = {child: it for child, it in edges.items() if plain(it.parent) != "odom"}
     parents = {child: plain(it.parent) for child, it in edges.items()}
-    root = _base(parents)
+    # The root of the tree that has a usual base, else any root.
+    known = {*parents, *parents.values()}
+    base = next((it for it in BODY_FRAMES if it in known), "")
+    root = root_of(base, parents) if base else ""
+    root = root or min((it for it in known if it not in parents), default=BODY_FRAMES[1])
     yield '<?xml version="1.0"?>'
     yield "<!-- The frames that were heard on tf: put your own description in its place. -->"
     yield '<robot name="seen">'
@@ -115,11 +119,3 @@ def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
         yield f"    <parent link={quoteattr(parents[child])}/><child link={quoteattr(child)}/>"
         yield "  </joint>"
     yield "</robot>"
-
-
-def _base(parents: Mapping[str, str]) -> str:
-    """The frame to begin with: the root of the tree that has a usual base, else any root."""
-    known = {*parents, *parents.values()}
-    base = next((it for it in BODY_FRAMES if it in known), "")
-    root = root_of(base, parents) if base else ""
-    return root or min((it for it in known if it not in parents), default=BODY_FRAMES[1])

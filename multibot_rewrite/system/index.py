@@ -237,7 +237,18 @@ class Index(NamedTuple):
     @once
     def trees(self) -> Sequence[Tree]:
         """The transforms by their tf topic."""
-        return [*_trees(self.system, self.by_name.values())]
+        topics = lists_by_key(
+            (tree_topic(it.name), it) for it in self.by_name.values() if it.type == TF
+        )
+        known = (it for it in self.system.edges if "/_" not in it.topic and it.sure != OFF)
+        edges = lists_by_key((tree_topic(it.topic), _without_slash(it)) for it in known)
+        found = []
+        for topic in dict.fromkeys((*edges, *topics)):
+            own, heard = topics[topic], (node for it in edges[topic] for node in it.publishers)
+            senders = (*(end.node for it in own for end in it.publishers), *heard)
+            listeners = (end.node for it in own if it.name == topic for end in it.subscribers)
+            found.append(Tree(topic, tuple(edges[topic]), unique(senders), unique(listeners)))
+        return found
 
     @property
     @once
@@ -327,17 +338,6 @@ def spaces(it: Index) -> Set[str]:
 def ends_of(it: Index, name: str) -> Iterator[End]:
     """All ends of a name, whatever their kind."""
     return (end for kind in KINDS for side in it.ends_at(kind, name)[3:] for end in side)
-
-
-def _trees(system: System, names: Iterable[Ends]) -> Iterator[Tree]:
-    topics = lists_by_key((tree_topic(it.name), it) for it in names if it.type == TF)
-    known = (it for it in system.edges if "/_" not in it.topic and it.sure != OFF)
-    edges = lists_by_key((tree_topic(it.topic), _without_slash(it)) for it in known)
-    for topic in dict.fromkeys((*edges, *topics)):
-        own, heard = topics[topic], (node for it in edges[topic] for node in it.publishers)
-        senders = (*(end.node for it in own for end in it.publishers), *heard)
-        listeners = (end.node for it in own if it.name == topic for end in it.subscribers)
-        yield Tree(topic, tuple(edges[topic]), unique(senders), unique(listeners))
 
 
 def _without_slash(frame: Edge) -> Edge:

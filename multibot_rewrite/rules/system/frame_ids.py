@@ -240,12 +240,9 @@ def _of_its_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str]:
 
 
 def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Message]]:
-    """Frame, robot and senders -> the messages; a camera has several topics, and one fault."""
-    return lists_by_key(((it.frame, it.robot, it.senders), it) for it in _messages(seen))
-
-
-def _messages(seen: Index) -> Iterator[_Message]:
-    """What nodes other than viewers send; tf2 takes a frame with a slash in front as one without."""
+    """Frame, robot and senders -> the messages of nodes other than viewers; a camera has several
+    topics, and one fault. tf2 takes a frame with a slash in front as one without."""
+    found: dict[tuple[str, str, tuple[str, ...]], list[_Message]] = defaultdict(list)
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
         for field, written in (("frame_id", it.frame), ("child_frame_id", it.child)):
@@ -253,7 +250,8 @@ def _messages(seen: Index) -> Iterator[_Message]:
             if senders and frame:
                 robot = seen.robot(it.topic) or only(robots_of(seen, senders))
                 told = (robot, senders, field, it.link, it.place)
-                yield _Message(it.topic, type_, frame, *told)
+                found[frame, robot, senders].append(_Message(it.topic, type_, frame, *told))
+    return found
 
 
 def trees_of(seen: Index, robot: str) -> list[Tree]:

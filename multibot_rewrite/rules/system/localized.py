@@ -41,9 +41,13 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
         if not localizers or not tree.edges or collide(seen, tree):
             continue
         for node in localizers:
-            body = _body(seen, tree, seen.robot(node))
+            body, start = _body(seen, tree, seen.robot(node)), _starts_at(seen, node)
             if body and node not in _told_not_to(seen):
-                yield _lost(seen, tree, node, body)
+                yield map_not_joined.finding(
+                    f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
+                    _why(seen, node, body, start.name if start else ""),
+                    robot=seen.robot(node), node=node, names=(body.root, *body.loose),
+                )  # fmt: skip
 
 
 def _starts_at(seen: Index, node: str) -> End | None:
@@ -77,15 +81,6 @@ def _is_of(seen: Index, frame: str, robot: str) -> bool:
 def _told_not_to(seen: Index) -> Set[str]:
     """The nodes that a parameter forbids to send a transform."""
     return {node for it in seen.system.edges if it.sure == OFF for node in it.publishers}
-
-
-def _lost(seen: Index, tree: Tree, node: str, body: _Body) -> Finding:
-    start = _starts_at(seen, node)
-    return map_not_joined.finding(
-        f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
-        _why(seen, node, body, start.name if start else ""),
-        robot=seen.robot(node), node=node, names=(body.root, *body.loose),
-    )  # fmt: skip
 
 
 def _why(seen: Index, node: str, body: _Body, start: str) -> str:

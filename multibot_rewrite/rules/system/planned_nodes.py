@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
+from itertools import combinations
 
 from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
@@ -172,16 +173,13 @@ def enclave_of_another_robot(seen: Index) -> Iterator[Finding]:
         # A robot's name may have several levels.
         if not robot or f"/{robot}/" in f"{enclave}/":
             continue
-        if other := min((it for it in _parts(enclave) if it in robots), default=""):
+        # The words of the path one after the other, as many as a robot's name may have.
+        parts = enclave.strip("/").split("/")
+        spans = combinations(range(len(parts) + 1), 2)
+        named = {"/".join(parts[start:end]) for start, end in spans}
+        if other := min(named & robots, default=""):
             message = f"{name} is in the enclave {enclave}, which is of {other}"
             yield enclave_of_another_robot.finding(message, _start(robot), robot=robot, node=name)
-
-
-def _parts(enclave: str) -> Iterator[str]:
-    """The words of a path one after the other, as many as a robot's name may have."""
-    words = enclave.strip("/").split("/")
-    for start in range(len(words)):
-        yield from ("/".join(words[start:end]) for end in range(start + 1, len(words) + 1))
 
 
 @system_rule("MG113", "without-enclave", WARNING)

@@ -160,7 +160,15 @@ def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
     by_robot = lists_by_key((seen.robot(name), name) for name in twins)
     for robot, names in by_robot.items():
         if len(names) >= MANY:
-            yield _two_robots(robot, names)
+            cause = f"{robot} was started twice, or another robot was started with its namespace"
+            bare = (
+                "two robots were started without a namespace: give each its own (namespace:=robot1,"
+                " PushRosNamespace in the launch file)"
+            )
+            yield nodes_of_one_name.finding(
+                f"{len(names)} nodes run more than once: {shorten(names, SEVERAL)}",
+                cause if robot else bare, robot=robot, node=names[0], names=tuple(names),
+            )  # fmt: skip
             continue
         for name in names:
             yield nodes_of_one_name.finding(
@@ -169,19 +177,6 @@ def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
                 " killed stays visible for 20 s",
                 robot=robot, node=name,
             )  # fmt: skip
-
-
-def _two_robots(robot: str, names: Sequence[str]) -> Finding:
-    """``names`` are all there more than once."""
-    message = f"{len(names)} nodes run more than once: {shorten(names, SEVERAL)}"
-    if robot:
-        cause = f"{robot} was started twice, or another robot was started with its namespace"
-    else:
-        cause = (
-            "two robots were started without a namespace: give each its own (namespace:=robot1,"
-            " PushRosNamespace in the launch file)"
-        )
-    return nodes_of_one_name.finding(message, cause, robot=robot, node=names[0], names=tuple(names))
 
 
 @system_rule("MG302", "managed-twice", ERROR)

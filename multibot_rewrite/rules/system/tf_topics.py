@@ -94,22 +94,20 @@ def _frames_of_another(
                 found[robot].append(it)
         for robot, edges in found.items():
             sends = tree.topic in senders.get(robot, ()) or _is_relayed(seen, tree, robot)
-            if not (sends or _has_names_of(seen, tree, owners, robot, edges)):
-                yield _on_anothers(seen, tree, owners[0] if not home else "", robot, edges)
-
-
-def _on_anothers(seen: Index, tree: Tree, owner: str, robot: str, edges: Sequence[Edge]) -> Finding:
-    frames, home = unique(it.child for it in edges), seen.home.get(robot, "")
-    verb = "is" if len(frames) == 1 else "are"
-    expected = f"{verb} on {tree.topic}, expected on {home}"
-    where = f"on {tree.topic}, which is of {owner}" if owner else expected
-    known = [it for it in tree.senders if it in seen.nodes and not owner]
-    wrong = f"; or {shorten(known)} has its description or parameters" if known else ""
-    return tf_on_two_topics.finding(
-        f"{shorten(frames)} of {robot} {where}",
-        f"start its nodes in its own namespace, with the rules {_REMAP}{wrong}",
-        robot=robot, names=(*frames, tree.topic, *filter(None, [home])),
-    )  # fmt: skip
+            if sends or _has_names_of(seen, tree, owners, robot, edges):
+                continue
+            frames, expected = unique(it.child for it in edges), seen.home.get(robot, "")
+            verb = "is" if len(frames) == 1 else "are"
+            where, wrong = f"on {tree.topic}, which is of {owners[0]}", ""
+            if home:
+                where = f"{verb} on {tree.topic}, expected on {expected}"
+                known = [it for it in tree.senders if it in seen.nodes]
+                wrong = f"; or {shorten(known)} has its description or parameters" if known else ""
+            yield tf_on_two_topics.finding(
+                f"{shorten(frames)} of {robot} {where}",
+                f"start its nodes in its own namespace, with the rules {_REMAP}{wrong}",
+                robot=robot, names=(*frames, tree.topic, *filter(None, [expected])),
+            )  # fmt: skip
 
 
 def _is_of_its_tree(seen: Index, _: Tree, edge: Edge) -> bool:

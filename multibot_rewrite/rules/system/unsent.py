@@ -50,28 +50,22 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
     left = [it for it in left if it.name not in missed]
     by_robot = sets_by_key((seen.robot(it.node), it.name) for it in left)
     for robot, names in by_robot.items():
-        yield from _told(seen, robot, sorted(names))
-
-
-def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
-    """That another robot has it from a node of the same system is not for a driver outside of it."""
-    elsewhere: dict[str, str] = {}
-    for plain in map(seen.plain, names) if robot else ():
-        given = (it for it in _given(seen).get(plain, ()) if _of_its_kind(seen, it, robot))
-        if other := next(given, ""):
-            elsewhere[plain] = other
-    lacked = tuple(it for it in names if seen.plain(it) in elsewhere)
-    rest = tuple(it for it in names if it not in lacked)
-    if lacked:
-        others = shorten([elsewhere[seen.plain(it)] for it in lacked], _LISTED)
-        yield nothing_known_sends.finding(
-            f"no node sends {shorten(lacked, _LISTED)}, and one sends {others}",
-            "start what sends it for the other robot", level=ERROR, robot=robot, names=lacked,
-        )  # fmt: skip
-    if rest:
-        hint = "name a stack or nodes that do, if no driver of its own does"
-        message = f"no known node sends {shorten(rest, _LISTED)}"
-        yield nothing_known_sends.finding(message, hint, robot=robot, names=rest)
+        # That another robot has it from a node of the same system is not for a driver outside of it.
+        elsewhere: dict[str, str] = {}
+        for name in sorted(names) if robot else ():
+            given = _given(seen).get(seen.plain(name), ())
+            if other := next((it for it in given if _of_its_kind(seen, it, robot)), ""):
+                elsewhere[name] = other
+        if lacked := tuple(elsewhere):
+            others = shorten(elsewhere.values(), _LISTED)
+            yield nothing_known_sends.finding(
+                f"no node sends {shorten(lacked, _LISTED)}, and one sends {others}",
+                "start what sends it for the other robot", level=ERROR, robot=robot, names=lacked,
+            )  # fmt: skip
+        if rest := tuple(it for it in sorted(names) if it not in elsewhere):
+            hint = "name a stack or nodes that do, if no driver of its own does"
+            message = f"no known node sends {shorten(rest, _LISTED)}"
+            yield nothing_known_sends.finding(message, hint, robot=robot, names=rest)
 
 
 def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
@@ -206,8 +200,14 @@ def _listens(seen: Index, node: str) -> bool:
 
 def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     above = {edge.child: edge.parent for edge in edges}
+    if it.frame in above and it.parent in {*above, *above.values()}:
+        return None
     if it.frame in above:
-        return _not_joined(seen, it, above)
+        # What it is looked up from is nowhere.
+        root = root_of(it.frame, above)
+        message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.parent}"
+        hint = f"start what sends {it.parent} -> {root}: localization, or odometry"
+        return _finding(seen, it, f"{message}: the tree begins with {root}", hint, WARNING)
     frames = frames_in(edges)
     if near := "" if it.frame in frames else nearest(it.frame, sorted(frames), MISTYPED):
         message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.frame}"
@@ -217,17 +217,6 @@ def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     )
     hint = "name the node that sends it, or make the virtual joint fixed"
     return _finding(seen, it, message, hint, NOTE)
-
-
-def _not_joined(seen: Index, it: Lookup, above: Mapping[str, str]) -> Finding | None:
-    """The frame is there, and what it is looked up from is nowhere."""
-    if it.parent in {*above, *above.values()}:
-        return None
-    root = root_of(it.frame, above)
-    return _finding(
-        seen, it, f"reads {it.parent} -> {it.frame}, and nothing sends {it.parent}: the tree begins"
-        f" with {root}", f"start what sends {it.parent} -> {root}: localization, or odometry", WARNING,
-    )  # fmt: skip
 
 
 def _finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:
