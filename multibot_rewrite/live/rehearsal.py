@@ -88,7 +88,11 @@ def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> It
     spaces = {(it.robot, it.node): it.namespace for it in table.runs}
     for _, node in running_nodes(table, left_out):
         own = names.get(node.full_name, [])
-        space, other = _as_started(node, spaces.get((node.robot, node.fact.host)))
+        space, other = node.namespace, node.other_name
+        host = spaces.get((node.robot, node.fact.host)) if node.fact.apart else None
+        if host is not None:
+            # The code of a host that places the node itself (a costmap) asks nobody for either.
+            space, other = f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
         ends = dict.fromkeys(_stub_endpoint(*it, types) for it in own)
         arguments = tuple(ros_arguments(space, other, _rules(node, own)))
         stub = node._replace(arguments=arguments, names=tuple((it, "") for it in ends))
@@ -113,16 +117,6 @@ def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
     for node in plan.nodes:
         if node.stack == DOMAIN_BRIDGE:
             yield played(node.name[1:], ends.get(node.name, ()), node.robot), ()
-
-
-def _as_started(node: Run, host: str | None) -> tuple[str, str]:
-    """The namespace and the other name that a node is given; ``host`` is the namespace of its host.
-
-    Where the code of a host places the node itself (a costmap), it asks nobody for either.
-    """
-    if host is None or not node.fact.apart:
-        return node.namespace, node.other_name
-    return f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
 
 
 def _rules(node: Run, names: Iterable[tuple[Endpoint, str]]) -> Rules:

@@ -70,31 +70,21 @@ def _create_node(stubs: _Stubs, stub: Stub, number: int) -> Iterator[Publish]:
     node = ros.add_node(stubs.session, run.code_name, arguments=run.arguments)
     helpers: dict[str, Any] = {}
     for endpoint, _ in run.names:
-        called = _helper(endpoint) if endpoint.helper else ""
+        # As tf2's listener, or behind its node's name.
+        usual = f"{LISTENER}*" if endpoint.name.strip("/") in TF_TOPICS else CLIENT
+        called = (endpoint.by or usual) if endpoint.helper else ""
         if called and called not in helpers:
             made = called.replace("*", f"{os.getpid():x}{number:04x}")
             name = made if called.startswith(LISTENER) else node.get_name() + made
             arguments = ros_arguments(run.process_namespace or "/", "", run.process_rules)
             helpers[called] = ros.add_node(stubs.session, name, arguments=arguments)
-        owner = helpers.get(called, node)
-        yield from _create_endpoint(stubs, owner, _named(node, endpoint), edges)
-
-
-def _helper(endpoint: Endpoint) -> str:
-    """How the helper node of an endpoint is called: as tf2's listener, or behind its node's name."""
-    if endpoint.name.strip("/") in TF_TOPICS:
-        return endpoint.by or f"{LISTENER}*"
-    return endpoint.by or CLIENT
-
-
-def _named(node: Any, endpoint: Endpoint) -> Endpoint:
-    """An endpoint of a helper node below the name of the node that makes it.
-
-    As moveit_servo does (src/utils/common.cpp:510): with ~ it would be below the helper's own name.
-    """
-    if not endpoint.by or not endpoint.name.startswith("~/"):
-        return endpoint
-    return endpoint._replace(name=node.get_fully_qualified_name() + endpoint.name[1:])
+        name = endpoint.name
+        if endpoint.by and name.startswith("~/"):
+            # Below the name of the node that makes the helper, as moveit_servo does
+            # (src/utils/common.cpp:510): with ~ it would be below the helper's own.
+            name = node.get_fully_qualified_name() + name[1:]
+        own = endpoint._replace(name=name)
+        yield from _create_endpoint(stubs, helpers.get(called, node), own, edges)
 
 
 def _create_endpoint(

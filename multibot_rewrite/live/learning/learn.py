@@ -113,9 +113,8 @@ def _learn_node(
     if known:
         # Full names of what the code of a node that stands apart writes without a slash.
         names = (end.name for end in known.endpoints if known.apart and end.name[0] not in "/~<")
-        place = _SeenPlace(
-            base, node, frozenset(_literal_names(known)), frozenset(f"/{name}" for name in names)
-        )
+        relative = frozenset(f"/{name}" for name in names)
+        place = _SeenPlace(base, node, frozenset(_literal_names(known)), relative)
     # The endpoints of every node, by role and name; without the clock, which some do not use.
     every = {(end.role, end.name) for end in library.parts[EVERY_NODE] if end.name != CLOCK}
     usual = frozenset({*every, SINCE_JAZZY})

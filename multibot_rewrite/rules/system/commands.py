@@ -223,7 +223,9 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
         served = kind == TOPIC or ends.servers
         for node in nodes_of(_of_others(seen, owner, senders)) if served else ():
             robot = seen.robot(node)
-            if not _mistaken(seen, node, robot, ends):
+            # Who has both coordinates the two; a service that its own robot has not is for others.
+            own = seen.of_robot(robot, kind, seen.plain(name))
+            if node in nodes_of((*own.publishers, *own.clients)) if own else kind != TOPIC:
                 continue
             does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
             message = f"{does} {name}, a name of {owner}"
@@ -246,15 +248,6 @@ def _is_waited_for(seen: Index, ends: Ends) -> bool:
         return False
     own = (seen.of_robot(it, ends.kind, plain) for it in robots_of(seen, nodes_of(ends.publishers)))
     return any(it and at_work(it.subscribers) and not it.publishers for it in own)
-
-
-def _mistaken(seen: Index, node: str, robot: str, ends: Ends) -> bool:
-    """Is it the other robot's name in place of its own? Who has both coordinates the two; a service
-    that its own robot does not have is for others."""
-    own = seen.of_robot(robot, ends.kind, seen.plain(ends.name))
-    if own is None:
-        return ends.kind == TOPIC
-    return node not in nodes_of((*own.publishers, *own.clients))
 
 
 @system_rule("MG312", "several-command-senders", WARNING, meant=(PUBLISHES,))
@@ -286,17 +279,12 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
         cause = f"{_MUX} {guards[0]}{_EACH}" if past else _CHOOSE
         if past and chooses(guards[0]):
             cause = f"send it to a topic that {guards[0]} reads"
-        robot = seen.robot(ends.name) or seen.robot(readers[0])
+        plan, robot = seen.expected, seen.robot(ends.name) or seen.robot(readers[0])
+        planned = nodes_of(plan.ends_at(TOPIC, ends.name).publishers) if plan else ()
         yield several_command_senders.finding(
-            message, cause, level=ERROR if past or _is_unplanned(seen, tool, ends.name) else WARNING,
+            message, cause, level=ERROR if past or (planned and tool not in planned) else WARNING,
             robot=robot, node=tool, names=(ends.name,),
         )  # fmt: skip
-
-
-def _is_unplanned(seen: Index, node: str, name: str) -> bool:
-    """Has the plan other senders of a command than this one?"""
-    senders = nodes_of(seen.expected.ends_at(TOPIC, name).publishers) if seen.expected else ()
-    return bool(senders) and node not in senders
 
 
 @system_rule("MG313", "bag-beside-a-robot", ERROR)
