@@ -9,7 +9,6 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding, Rule, declare
-from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names, with_srdf
@@ -139,7 +138,9 @@ def read_jobs(
         return read_in(text, beside, path if path in made else "")
 
     found: dict[Sources, Jobs] = {}
-    given_to = lists_by_key((it.description, (it.arguments, it.words)) for it in robots)
+    given_to: dict[str, list[tuple[Arguments, Sequence[str]]]] = {}
+    for it in robots:
+        given_to.setdefault(it.description, []).append((it.arguments, it.words))
     common = {source: common_to(each) for source, each in given_to.items()}
     for it in robots:
         if it.sources not in found:
@@ -188,7 +189,9 @@ def rewrite_robots(
 
     Raises as ``rewrite_all``.
     """
-    groups = lists_by_key((robot.sources, robot) for robot in robots)
+    groups: dict[Sources, list[RobotSpec]] = {}
+    for robot in robots:
+        groups.setdefault(robot.sources, []).append(robot)
     made = (it for key, group in groups.items() for it in _rewritten(group, jobs[key]))
     found = {it.spec.name: it for it in made}
     return [found[robot.name] for robot in robots]
