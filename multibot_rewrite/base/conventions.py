@@ -157,9 +157,8 @@ KINDS_OF_DATA = {
 FRAMES_OF_SENSORS = {type_: tuple(words) for (type_, *words), _ in _ROWS["frames of sensors"]}
 # Nodes that compare the time of messages with their own clock.
 TIMED = tuple(word for words, _ in _ROWS["timed"] for word in words)
-# Topics of a robot's body, and those that only a whole robot has.
-OF_A_ROBOT = tuple(name for (name, *_), _ in _ROWS["of a robot"])
-OF_A_WHOLE_ROBOT = frozenset(name for (name, *whole), _ in _ROWS["of a robot"] if whole)
+# Topics of a robot's body: two of them are enough, or one of tf.
+OF_A_ROBOT = tuple(word for words, _ in _ROWS["of a robot"] for word in words)
 
 
 # Topics and services that nodes read and no robot need send, by the last word, and who does.

@@ -16,18 +16,15 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Set
 from functools import cache
 from typing import NamedTuple
 
-from multibot_rewrite.base.conventions import (
-    BODY_FRAMES,
-    OF_A_ROBOT,
-    OF_A_WHOLE_ROBOT,
-    USUAL_FRAMES,
-)
+from multibot_rewrite.base.conventions import BODY_FRAMES, OF_A_ROBOT, USUAL_FRAMES
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.system.ownership import SEPARATORS, Whose
 from multibot_rewrite.system.records import TOPIC, Edge, System
 from multibot_rewrite.system.tool_nodes import is_tool
 
 _TF = frozenset(("tf", "tf_static"))
+# Topics that a whole robot has; a lidar alone has a scan, and a camera sends tf.
+_WHOLE = frozenset(("cmd_vel", "odom", "joint_states", "robot_description"))
 # Namespaces with topics like a robot's that are only a part of one.
 _PART = re.compile(
     r".*(cam|costmap|lidar|laser|scan|sensor|imu|gps|realsense|zed|oakd?$|velodyne|ouster|sick|wheel|motor"
@@ -119,7 +116,7 @@ def _namespaces(graph: System) -> list[str]:
 def _alike(graph: System, nodes: Iterable[str]) -> Iterator[str]:
     """Yield namespaces beside each other with nodes of the same names, one of which has a topic of a
     whole robot in each of them."""
-    whole = {end.node for end in graph.ends if end.name.rpartition("/")[2] in OF_A_WHOLE_ROBOT}
+    whole = {end.node for end in graph.ends if end.name.rpartition("/")[2] in _WHOLE}
     below: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for node in (it for it in nodes if it in whole):
         space = node.rpartition("/")[0]
