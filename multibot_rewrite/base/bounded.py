@@ -177,13 +177,7 @@ def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None
 
     raw = data if isinstance(data, bytes) else data.encode("utf-8", "surrogatepass")
     text = data if isinstance(data, str) else data.decode("utf-8-sig")
-    # How deeply brackets are nested, those in strings aside.
-    plain = re.sub(rb"\\.", b"", raw, flags=re.DOTALL) if b"\\" in raw else raw
-    # Without what is between two quotes, whether they are of one string or of two: what is left of
-    # many megabytes is little, and a bracket is inside a string or outside as before.
-    left = plain.translate(None, _NO_BRACKETS).replace(b'""', b"")
-    outside = b"".join(left.split(b'"')[::2])
-    if max(accumulate(map(_STEPS.__getitem__, outside)), default=0) > MAX_DEPTH:
+    if _json_depth(raw) > MAX_DEPTH:
         raise json.JSONDecodeError(f"it is nested deeper than {MAX_DEPTH} levels", text, 0)
 
     def whole(digits: str) -> int:
@@ -197,6 +191,16 @@ def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None
 
 def _digits(number: str) -> str:
     return f"a number of {len(number):,} characters, over the limit of {MAX_DIGITS}"
+
+
+def _json_depth(data: bytes) -> int:
+    """How deeply brackets are nested, those in strings aside."""
+    plain = re.sub(rb"\\.", b"", data, flags=re.DOTALL) if b"\\" in data else data
+    # Without what is between two quotes, whether they are of one string or of two: what is left of
+    # many megabytes is little, and a bracket is inside a string or outside as before.
+    left = plain.translate(None, _NO_BRACKETS).replace(b'""', b"")
+    outside = b"".join(left.split(b'"')[::2])
+    return max(accumulate(map(_STEPS.__getitem__, outside)), default=0)
 
 
 @cache

@@ -38,6 +38,7 @@ from multibot_rewrite.system.records import (
     SUBSCRIBES,
     TOPIC,
     ZENOH,
+    Caveat,
     System,
     answering,
     clocks,
@@ -68,10 +69,7 @@ def run(options: argparse.Namespace) -> int:
         deliver(options, to_yaml(snapshot) if options.form == ROSGRAPH else to_json(snapshot))
         note(options, _headline(snapshot))
     for caveat in snapshot.environment.caveats:
-        if caveat.incomplete:
-            say(f"incomplete: {caveat.message}", PROGRAM)
-        else:
-            note(options, f"note: {caveat.message}")
+        _remark(options, caveat)
     return live.INCONCLUSIVE if incomplete(snapshot) else DONE
 
 
@@ -85,6 +83,13 @@ def _check_use(options: argparse.Namespace) -> bool:
         check_folder(options.output)
         check_target(options.output, options.snapshot)
     return is_asked(options)
+
+
+def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
+    if caveat.incomplete:
+        say(f"incomplete: {caveat.message}", PROGRAM)
+    else:
+        note(options, f"note: {caveat.message}")
 
 
 def report(snapshot: System) -> Iterator[str | Grid]:

@@ -125,8 +125,11 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
         # What a drive gets by way of another node may be meant, and what is chosen for it as well.
         if relays.isdisjoint(nodes_of(it.publishers))
         if not set(nodes_of(ends.publishers)).intersection(nodes_of(it.subscribers))
-        # What a drive that runs for certain reads in vain is the finding, but for a topic of its own.
-        if chosen or it.publishers or not any(map(_waits_for_sure, it.subscribers))
+        # What a drive that runs for certain reads in vain is the finding, but for a topic below its own
+        # name, since people send there, too.
+        if chosen
+        or it.publishers
+        or all(one.sure != RUNS or one.name.startswith(f"{one.node}/") for one in it.subscribers)
     ]
     return min(drives, key=lambda it: bool(it.publishers)).name if drives else ""
 
@@ -148,11 +151,6 @@ def _goals(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
     return lists_by_key(
         ((it.type, seen.robot(it.name)), it.name) for it in seen.orders.values() if _obeyed(it)
     )
-
-
-def _waits_for_sure(end: End) -> bool:
-    """Nobody is asked for a topic below its node, since people send there, too."""
-    return end.sure == RUNS and not end.name.startswith(f"{end.node}/")
 
 
 def _kinds(ends: Ends) -> set[str]:

@@ -16,7 +16,7 @@ from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule, where
 from multibot_rewrite.system.index import Index, Tree, at_work, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
-from multibot_rewrite.system.records import NOWHERE, TOPIC, Edge, Heard, Place
+from multibot_rewrite.system.records import NOWHERE, TOPIC, Edge, Place
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _ODOMETRY = "nav_msgs/msg/Odometry"
@@ -173,7 +173,9 @@ def _nameless(seen: Index) -> Iterator[Finding]:
     readers guess (robot_localization ros_filter.cpp: the base's)."""
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
-        field = _unsaid(it, type_)
+        # Of odometry: its pose is known where all of the message was read.
+        field = "child_frame_id" if type_ == _ODOMETRY and it.pose and not it.child else ""
+        field = "frame_id" if not it.frame and type_ in _PLACED else field
         if senders and field:
             yield frame_id_unknown.finding(
                 f"{field} of {it.topic} is empty: tf cannot say where it was measured; sent by"
@@ -211,13 +213,6 @@ def _with_slash(seen: Index) -> Iterator[Finding]:
 def _is_read(seen: Index, topic: str) -> bool:
     """Do nodes read it that do more than look?"""
     return bool(at_work(seen.ends_at(TOPIC, topic).subscribers))
-
-
-def _unsaid(it: Heard, type_: str) -> str:
-    if not it.frame and type_ in _PLACED:
-        return "frame_id"
-    # Its pose is known where all of the message was read.
-    return "child_frame_id" if type_ == _ODOMETRY and it.pose and not it.child else ""
 
 
 def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -> str:

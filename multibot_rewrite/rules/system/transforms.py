@@ -243,7 +243,9 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
     for tree in seen.trees:
         if collide(seen, tree):
             continue
-        edges = _sent_twice(tree)
+        known = sets_by_key(((it.parent, it.child, it.topic), it.publishers) for it in tree.edges)
+        several = {it for it, senders in known.items() if len(senders) > 1}
+        edges = (it for it in tree.edges if it.several or (*it[1::-1], it.topic) in several)
         by_robot = lists_by_key((seen.frame_robot(it.child), it) for it in edges)
         for robot, own in by_robot.items():
             listed = shorten(unique(f"{it.parent} -> {it.child}" for it in own))
@@ -266,12 +268,6 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
                 message, cause + see(own), level=NOTE if is_fixed else ERROR,
                 robot=who, names=unique(it.child for it in own), **where(own),
             )  # fmt: skip
-
-
-def _sent_twice(tree: Tree) -> list[Edge]:
-    """The transforms of which several senders are heard, or known."""
-    known = sets_by_key(((it.parent, it.child, it.topic), it.publishers) for it in tree.edges)
-    return [it for it in tree.edges if it.several or len(known[it.parent, it.child, it.topic]) > 1]
 
 
 @system_rule("MG407", "robots-name-twice", ERROR)
