@@ -193,13 +193,7 @@ def chooses(node: str) -> bool:
 # ($(var namespace)), turtlebot3_description (${namespace}). The second ones are prefixes of frames.
 PREFIX_WORDS = ("tf_prefix", "frame_prefix", "prefix")
 ROBOT_WORDS = (
-    "robot_namespace",
-    "robot_name",
-    "robot_ns",
-    "namespace",
-    "ns",
-    "robot",
-    *PREFIX_WORDS,
-)
+    "robot_namespace", "robot_name", "robot_ns", "namespace", "ns", "robot", *PREFIX_WORDS,
+)  # fmt: skip
 # What a launch file or a script fills in, in a name.
 PLACEHOLDER = lazy_compile(r"[<{$%]")

@@ -39,10 +39,8 @@ def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
             yield relayed_to_another_robot.finding(
                 f"reads {source.name} of {owner} and publishes {ends.name} of {other}",
                 f"a name in its topics is wrong: {other} gets what is of {owner}",
-                robot=other,
-                node=node,
-                names=(ends.name,),
-            )
+                robot=other, node=node, names=(ends.name,),
+            )  # fmt: skip
 
 
 @once
@@ -69,11 +67,9 @@ def limits_left_out(seen: Index) -> Iterator[Finding]:
                 yield limits_left_out.finding(
                     f"publishes {ends.name} beside {limits[0]}, which is to limit it",
                     "pass it the rule cmd_vel:=cmd_vel_nav, so that velocity_smoother reads it first",
-                    robot=seen.robot(node),
-                    node=node,
-                    names=(ends.name,),
+                    robot=seen.robot(node), node=node, names=(ends.name,),
                     remaps=(Remap(node, ends.name, f"{ends.name.rpartition('/')[0]}/cmd_vel_nav"),),
-                )
+                )  # fmt: skip
 
 
 def _mux_left_out(seen: Index) -> Iterator[Finding]:
@@ -88,11 +84,9 @@ def _mux_left_out(seen: Index) -> Iterator[Finding]:
                     yield limits_left_out.finding(
                         f"obeys {given.name}, an input of {mux}; no node reads its output {ends.name}",
                         f"pass it the rule {_word(seen, given.name)}:={_word(seen, ends.name)}",
-                        robot=seen.robot(drivers[0]),
-                        node=drivers[0],
-                        names=(given.name, ends.name),
+                        robot=seen.robot(drivers[0]), node=drivers[0], names=(given.name, ends.name),
                         remaps=tuple(Remap(it, given.name, ends.name) for it in drivers),
-                    )
+                    )  # fmt: skip
 
 
 def _word(seen: Index, name: str) -> str:
