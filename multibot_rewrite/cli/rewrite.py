@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from itertools import chain
 from typing import Any
 
@@ -123,7 +123,15 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     if options.form == CHANGES:
         own = {it.robot: it for it in others}
         every = [own.get(robot, first._replace(robot=robot)) for robot in names]
-        output.deliver(options, changes_json(every))
+        # Every change for every robot, as ``--form changes`` writes it.
+        import json
+
+        table = {
+            "file": every[0].prepared.job.file,
+            "distro": every[0].distro,
+            "robots": {r.robot: [change._asdict() for change in r.changes] for r in every},
+        }
+        output.deliver(options, json.dumps(table, indent=1, ensure_ascii=False).encode() + b"\n")
         return DONE
     results = ((it.robot, it.prepared.job.data, it.data) for it in chain([first], others, rewrites))
     deliver(options, results, len(names))
@@ -159,18 +167,6 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
     if not options.xacro:
         given["xacro_args"] = None
     return strip(source, robot, xacro=options.xacro, file=input_name(options), **given)
-
-
-def changes_json(rewrites: Sequence[Rewrite]) -> bytes:
-    """Every change for every robot, as ``--form changes`` writes it."""
-    import json
-
-    table = {
-        "file": rewrites[0].prepared.job.file,
-        "distro": rewrites[0].distro,
-        "robots": {r.robot: [change._asdict() for change in r.changes] for r in rewrites},
-    }
-    return json.dumps(table, indent=1, ensure_ascii=False).encode() + b"\n"
 
 
 def summary(
