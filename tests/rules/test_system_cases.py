@@ -1088,3 +1088,17 @@ def test_only_a_robot_of_its_kind_sends_what_another_lacks(
         + ("no node sends /robot1/scan, and one sends /robot2/scan" if level == "error" else
            "no known node sends /robot1/scan")
     ]  # fmt: skip
+
+
+def test_velocities_of_nav2_that_no_input_of_the_mux_reads() -> None:
+    """Nor the input of a joystick, which a person sends."""
+    mux = (
+        f"/robot1/twist_mux subscribes /robot1/{it} {TWIST} as <topics.*.topic>"
+        for it in ("cmd_vel", "joy_teleop/cmd_vel")
+    )
+    lines = [
+        *mux, f"/robot1/twist_mux publishes /robot1/platform/cmd_vel {TWIST} as cmd_vel_out",
+        f"/robot1/controller_server publishes /robot1/cmd_vel_nav {TWIST} as cmd_vel",
+    ]  # fmt: skip
+    (found,) = (it for it in said(*lines) if "cmd_vel_nav" in it)
+    assert found.endswith("which no node reads; /robot1/twist_mux reads /robot1/cmd_vel")

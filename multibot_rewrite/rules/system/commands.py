@@ -16,6 +16,7 @@ from multibot_rewrite.base.conventions import (
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.wording import and_then, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.causes import Spelled, alike
@@ -109,7 +110,8 @@ def _alike(seen: Index, ends: Ends, known: Spelled) -> str:
 
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:
-    """What the drive reads, where the velocities that twist_mux or Nav2 sends are unread."""
+    """What the drive reads, where the velocities that twist_mux or Nav2 sends are unread; of Nav2 else
+    the input of its robot's mux that nobody sends."""
     robot, kinds = seen.robot(ends.name), _kinds(ends)
     # MoveIt's nodes have drives of their own kind, and each its own goal.
     chosen = any(map(chooses, nodes_of(ends.publishers)))
@@ -131,7 +133,11 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
         or it.publishers
         or all(one.sure != RUNS or one.name.startswith(f"{one.node}/") for one in it.subscribers)
     ]
-    return min(drives, key=lambda it: bool(it.publishers)).name if drives else ""
+    if drives or chosen:
+        return min(drives, key=lambda it: bool(it.publishers)).name if drives else ""
+    idle = (it for it in moving.get(robot, ()) if kinds & _kinds(it) and not it.publishers)
+    inputs = (it.name for it in idle if any(map(chooses, nodes_of(it.subscribers))))
+    return nearest(ends.name, [it for it in inputs if not _BY_HAND.search(it)], alike=0.0)
 
 
 @once
