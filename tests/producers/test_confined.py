@@ -156,7 +156,7 @@ def test_a_launch_file_reads_what_python_has_compiled(
     monkeypatch.setenv("PYTHONPYCACHEPREFIX", str(compiled))
     file = kept / "own/a.launch.py"
     file.write_text(ASKS.replace("LINE", "os.listdir(__import__('sys').pycache_prefix)"))
-    assert [it.executable for it in read(file).nodes][0].startswith("[")
+    assert next(it.executable for it in read(file).nodes).startswith("[")
 
 
 def test_of_a_description_no_folder_is_asked_for(kept: Path) -> None:
