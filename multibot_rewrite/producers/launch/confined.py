@@ -108,6 +108,7 @@ def _readable(access: Access) -> Iterator[str]:
             yield from (os.path.join(above, it) for it in ("src", "build"))
     yield from sys.path
     yield from (sysconfig.get_path(it) for it in ("stdlib", "platstdlib"))
+    yield from filter(None, [sys.pycache_prefix])
     yield from (*_LIBRARIES, "/dev/null", "/dev/urandom")
 
 
