@@ -11,7 +11,7 @@ from fnmatch import translate
 from math import inf, isinf
 
 from multibot_rewrite.base.conventions import CLOCK, TIMED
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap, Setting
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, only, shorten, unique
@@ -137,8 +137,9 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
         else:
             continue
         yield clocks_mixed.finding(
-            message, cause, level=level, robot=robot, node=others[0], names=(CLOCK,)
-        )
+            message, cause, level=level, robot=robot, node=others[0], names=(CLOCK,),
+            settings=tuple(Setting(it, SIM_TIME, parameter_text(True)) for it in others),
+        )  # fmt: skip
 
 
 def planned_clocks(seen: Index) -> dict[str, str]:
@@ -164,6 +165,7 @@ def _not_as_planned(seen: Index) -> Iterator[Finding]:
             f"{SIM_TIME} is planned to be {wanted}, but {which}",
             f"start them with {SIM_TIME}: {wanted}",
             robot=robot, node=nodes[0], names=tuple(nodes),
+            settings=tuple(Setting(it, SIM_TIME, wanted) for it in nodes),
         )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from functools import cache, partial
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import FRAMES_OF_SENSORS, types_of
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
@@ -48,14 +48,20 @@ def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
             topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
             owner = seen.frame_robot(frame)
             message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
-            cause = f"set the frame of {_one_of(senders)} to that of {robot}"
+            sent = {one for tree in trees_of(seen, robot) for one in frames_in(tree.edges)}
+            alike = (it for it in sent if seen.plain_frame(it) == seen.plain_frame(frame))
+            own = only([it for it in alike if seen.frame_robot(it) == robot])
+            cause = f"set the frame of {_one_of(senders)} to {own or f'that of {robot}'}"
             yield frame_id_of_another_robot.finding(
-                f"{message}; sent by {_one_of(senders)}",
-                cause,
-                robot=robot,
-                node=senders[0],
-                names=(frame,),
-            )
+                f"{message}; sent by {_one_of(senders)}", cause,
+                robot=robot, node=senders[0], names=(frame,), settings=_with_frame(messages, own),
+            )  # fmt: skip
+
+
+def _with_frame(messages: Iterable[_Message], frame: str) -> tuple[Setting, ...]:
+    """The settings that give messages of one sender each this frame; none without one."""
+    own = (it for it in messages if frame and len(it.senders) == 1)
+    return tuple(Setting(it.senders[0], it.field, frame, it.topic) for it in own)
 
 
 def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Message]) -> bool:
@@ -97,6 +103,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
             or f"send a transform for it, or set the frame of {_one_of(senders)} to one that is in tf",
             level=ERROR if meant or elsewhere or needed else WARNING,
             robot=robot, node=senders[0], names=(frame,), **where(messages[:1]),
+            settings=() if link else _with_frame(messages, only(likely)),
         )  # fmt: skip
 
 
