@@ -9,21 +9,28 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+import yaml
+from lxml import etree
+
+from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.file.robot_spec import RobotSpec
+from multibot_rewrite.fleet.checks.described import as_known
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.producers.launch.records import LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.running import Knowledge
-from multibot_rewrite.producers.launch.snapshot import launched
+from multibot_rewrite.producers.launch.snapshot import NO_TREE, launched
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import System
 from multibot_rewrite.system.tf_copies import tree_topic
 
-_ALREADY = "the robot's own launch files have it for one robot, too"
+_ALREADY = "launch files have it"
+_DESCRIPTION = "robot_description"
 _SENDS = "sends"
 _WITH_A_NAME = 2
 # A node with its role.
@@ -37,14 +44,14 @@ def as_the_vendor_has_it(
 ) -> Iterator[Finding]:
     """Yield the findings about a fleet (``seen``); an error that the launch files of one robot have by
     themselves, between the same nodes, is a warning. What only several robots have stays an error."""
-    specs = {it.spec.namespace: it.spec for it in plan.robots if it.spec.launch}
+    specs = {it.spec.namespace: it for it in plan.robots if it.spec.launch}
     alone = cache(lambda robot: _errors_of(specs[robot], seen, known))
     for it in found:
         # What names no robot, as the interfaces of its hardware, is asked of all.
         about = (_robots(it, seen) or specs.keys()) if it.level == ERROR else set[str]()
         robots = about & specs.keys()
         if robots and all(_is_in(alone(robot), it, seen, robot) for robot in robots):
-            yield _as_known(it)
+            yield as_known(it, _ALREADY)
         else:
             yield it
 
@@ -60,7 +67,7 @@ def as_in_the_vendors_files(plan: FleetPlan, found: Iterable[Finding]) -> Iterat
     alone = cache(lambda path: _errors_in(path, plan.file.distro))
     for it in found:
         path = launched_with.get(os.path.realpath(it.file)) if it.level == ERROR else None
-        yield _as_known(it) if path and (it.code, it.line) in alone(path) else it
+        yield as_known(it, _ALREADY) if path and (it.code, it.line) in alone(path) else it
 
 
 def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
@@ -71,14 +78,14 @@ def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
     return {(it.code, it.line) for it in found if it.level == ERROR}
 
 
-def _as_known(it: Finding) -> Finding:
-    hint = f"{it.hint}; {_ALREADY}" if it.hint else _ALREADY
-    return it._replace(level=WARNING, hint=hint)
-
-
-def _errors_of(robot: RobotSpec, fleet: Index, known: Knowledge) -> Mapping[_Key, Set[_Part]]:
-    """Return what is an error in the launch files of one robot, each with the nodes that have part."""
-    started = launched(launch_of(robot.launch, robot.words[0]), known)
+def _errors_of(robot: RewrittenRobot, fleet: Index, known: Knowledge) -> Mapping[_Key, Set[_Part]]:
+    """Return what is an error in the launch files of one robot, each with the nodes that have part. A
+    publisher without a description that can be read gets the one of the fleet file."""
+    graph = launch_of(robot.spec.launch, robot.spec.words[0])
+    started = launched(graph, known)
+    if any(it.code == NO_TREE for it in started.system.environment.caveats):
+        text = etree.tostring(robot.member.source.root, encoding="unicode")
+        started = launched(_described(graph, text), known)
     alone = index(started.system, ALONE)
     every = (*judge_launch(started), *(as_sure(it, started, alone) for it in judge(alone)))
     found: dict[_Key, set[_Part]] = defaultdict(set)
@@ -86,6 +93,16 @@ def _errors_of(robot: RobotSpec, fleet: Index, known: Knowledge) -> Mapping[_Key
         parts = (part for own in _parts(it, started.system).values() for part in own)
         found[_key(it, fleet)].update(_plain(parts, fleet))
     return dict(found)
+
+
+def _described(graph: LaunchGraph, text: str) -> LaunchGraph:
+    values = {"/**": {"ros__parameters": {_DESCRIPTION: text}}}
+    given = ParameterText("", yaml.safe_dump(values))
+    nodes = (
+        it._replace(parameters=(*it.parameters, given)) if it.executable == STATE_PUBLISHER else it
+        for it in graph.nodes
+    )
+    return graph._replace(nodes=tuple(nodes))
 
 
 def _is_in(errors: Mapping[_Key, Set[_Part]], it: Finding, seen: Index, robot: str) -> bool:

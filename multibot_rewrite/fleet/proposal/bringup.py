@@ -19,6 +19,7 @@ from multibot_rewrite.fleet.proposal.launches import (
     read_any,
     read_as,
     read_named,
+    starts_simulator,
 )
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import (
@@ -78,7 +79,7 @@ class Robot(NamedTuple):
 def bringup_as_named(order: LaunchOrder) -> Bringup:
     """The launch file that was named. Raises InputError where it cannot be read, or starts nothing."""
     graph = read_named(order).graph
-    return Bringup(order, graph, _is_simulated(graph))
+    return Bringup(order, graph, starts_simulator(graph))
 
 
 def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | None:
@@ -96,7 +97,7 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
     # What is not said is simulated where a launch file does it.
     wanted = robot.is_simulated or not robot.simulator
     for simulated in (wanted, *([] if robot.simulator else [not wanted])):
-        if fits := [it for it in read if _is_simulated(it.graph) == simulated]:
+        if fits := [it for it in read if starts_simulator(it.graph) == simulated]:
             first, *others = sorted(fits, key=lambda it: (_tries(it, simulated), _rank(it)))
             return Bringup(first.order, first.graph, simulated, tuple(it.order for it in others))
     return None
@@ -105,7 +106,7 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
 def processes_of_robot(it: Reading) -> int:
     """How many processes a launch file starts for a robot, those that show it as one; none where it is
     a trial, or neither publishes a description nor simulates one. Raises nothing."""
-    starts = _is_simulated(it.graph) or any(map(_publishes, it.graph.nodes))
+    starts = starts_simulator(it.graph) or any(map(_publishes, it.graph.nodes))
     own = {one for one in _own(it.graph) if one.executable not in _SHOWING}
     own |= {one for one in it.graph.nodes if one.package in programs().simulators}
     return 1 + len(own) if starts and not _tries(it, True) else 0
@@ -122,7 +123,7 @@ def _with_own_arguments(
         return [it for it in read if not it.why and _is_bringup(it.graph, robot)]
 
     def fits(read: Iterable[Reading]) -> bool:
-        return any(_is_simulated(it.graph) == robot.is_simulated for it in read)
+        return any(starts_simulator(it.graph) == robot.is_simulated for it in read)
 
     found = starting(LaunchOrder(it.file) for it in likely)
     if not fits(found):
@@ -198,7 +199,7 @@ def _is_bringup(graph: LaunchGraph, robot: Robot) -> bool:
     # What is said of a file as a whole starts nothing by itself.
     unread = any(it.place.line > 1 and not it.parameters for it in graph.notes)
     shows = not unread and all(it.executable in _SHOWING for it in _own(graph))
-    return len(homes) < 2 and (_is_simulated(graph) or not shows)
+    return len(homes) < 2 and (starts_simulator(graph) or not shows)
 
 
 def _beside(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | None:
@@ -210,16 +211,12 @@ def _beside(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | No
         return None
     (read,) = read_as([LaunchOrder(found[0].file, trusted=trust)])
     nodes = any(map(is_of_robot, read.graph.nodes))
-    simulated = robot.is_simulated or _is_simulated(read.graph)
+    simulated = robot.is_simulated or starts_simulator(read.graph)
     return Bringup(read.order, read.graph, simulated) if nodes else None
 
 
 def _publishes(it: LaunchedNode) -> bool:
     return it.executable in _PUBLISHERS or f"{it.package}/{it.executable}" in programs().spawners
-
-
-def _is_simulated(graph: LaunchGraph) -> bool:
-    return not graph.packages.isdisjoint(programs().simulators)
 
 
 def _own(graph: LaunchGraph) -> list[LaunchedNode]:

@@ -156,6 +156,11 @@ def said_of(it: LaunchedNode) -> str:
     return f"{who}: {given}" if given else who
 
 
+def starts_simulator(graph: LaunchGraph) -> bool:
+    """Return whether a launch file starts a simulator, or what only a simulated robot needs."""
+    return not graph.packages.isdisjoint(programs().simulators)
+
+
 def is_of_robot(it: LaunchedNode) -> bool:
     """Is it a process of a robot, no simulator, and no program that ends or only looks?"""
     ways = programs()

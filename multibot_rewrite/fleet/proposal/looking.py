@@ -28,7 +28,9 @@ from multibot_rewrite.description.sources.read import read_model
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.file.simulator_switch import (
     Suits,
+    hardware_classes,
     loads_hardware,
+    of_simulator,
     suits_real,
     suits_simulator,
     switch_for,
@@ -118,7 +120,8 @@ def with_bringup(
     it: Looked, bringup: Bringup | None, given: Mapping[str, str], reach: Reach
 ) -> Looked:
     """The same with the launch file that starts it, and with the arguments that this gives its xacro,
-    where they are not the default. What was ``given`` counts, and what names a robot stays."""
+    where they are not the default. What was ``given`` counts, and what names a robot stays. A launch
+    file that loads hardware of a simulator is for one, whoever starts that."""
     launched = it._replace(bringup=bringup)
     read = bringup.graph.read if bringup and not it.model else ()
     own = next((dict(one.arguments) for one in read if one.file == os.path.realpath(it.path)), {})
@@ -134,6 +137,8 @@ def with_bringup(
     if other.fault:
         return launched
     needed = tuple(one for one in it.needed if one not in values)
+    if bringup and other.root is not None and any(map(of_simulator, hardware_classes(other.root))):
+        bringup = bringup._replace(is_simulated=True)
     return other._replace(bringup=bringup, needed=needed)
 
 
@@ -204,7 +209,7 @@ def _switched(it: Looked, suits: Suits, reach: Reach) -> Looked:
         return it
     name, value = found
     other = _look(it.path, {**given, name: value}, reach)
-    return it if other.fault else other._replace(needed=it.needed, switch=name)
+    return it if other.fault else other._replace(needed=it.needed, switch=name, bringup=it.bringup)
 
 
 def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:

@@ -225,6 +225,48 @@ def test_a_xacro_that_a_launch_file_expands_itself(package: Path) -> None:
     assert fleet_of(package)["arguments"] == {"sim": "true", "prefix": "{robot}_"}
 
 
+SWITCHED = """\
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="use_sim" default="false"/>
+  <xacro:property name="mass"><inertial><mass value="1"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></xacro:property>
+  <link name="base_link"><xacro:insert_block name="mass"/></link>
+  <link name="tip"><xacro:insert_block name="mass"/></link>
+  <joint name="j" type="revolute"><parent link="base_link"/><child link="tip"/>
+    <limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+  <ros2_control name="a" type="system"><hardware>
+    <xacro:if value="$(arg use_sim)"><plugin>ign_ros2_control/IgnitionSystem</plugin></xacro:if>
+    <xacro:unless value="$(arg use_sim)"><plugin>acme/System</plugin></xacro:unless></hardware>
+    <joint name="j"><command_interface name="position"/></joint></ros2_control>
+  <xacro:if value="$(arg use_sim)"><gazebo>
+    <plugin filename="libign_ros2_control-system.so" name="ign_ros2_control::IgnitionROS2ControlPlugin"/>
+  </gazebo></xacro:if></robot>
+"""
+LOADED = DESCRIBED.replace(GIVEN.format("', FindPackageShare('rover'), '"), "use_sim:={}")
+
+
+@pytest.mark.parametrize(
+    ("given", "words", "simulator", "use_sim"),
+    [
+        # Another launch file starts the simulator that this description is for.
+        ("true", [], "gazebo", "true"),
+        ("false", [], "none", None),
+        ("true", ["--simulator", "none"], "none", "false"),
+    ],
+)
+def test_the_description_says_what_the_launch_file_that_is_named_is_for(
+    given: str, words: list[str], simulator: str, use_sim: str | None, package: Path
+) -> None:
+    (package / "urdf/rover.urdf.xacro").write_text(SWITCHED)
+    write(package / "launch", {"up": f"{LOADED.replace('{}', given)}; {DRIVER}"})
+    launch = ["--launch", str(package / "launch/up.launch.py")]
+    fleet = fleet_of(package, "--distro", "humble", *launch, *words)
+    assert fleet["launch"] == "rover/launch/up.launch.py"
+    assert fleet["simulator"] == simulator
+    assert fleet.get("arguments", {}).get("use_sim") == use_sim
+    said = (package.parent / "fleet.yaml").read_text()
+    assert ("up.launch.py is for a simulator" in said) is (simulator == "gazebo")
+
+
 SHOWN = RVIZ[:-1] + f", arguments=['-d', {PATH.format('rviz/rover.rviz')}])"
 BRIDGED = BRIDGE[:-1] + f", parameters=[{{'config_file': {PATH.format('config/bridge.yaml')}}}])"
 CONTROLLED = DRIVER[:-1] + f", name='driver', parameters=[{PATH.format('config/control.yaml')}])"
