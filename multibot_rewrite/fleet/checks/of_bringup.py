@@ -8,6 +8,7 @@ import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache
+from typing import NamedTuple
 
 import yaml
 from lxml import etree
@@ -32,11 +33,16 @@ from multibot_rewrite.system.tf_copies import tree_topic
 _ALREADY = "launch files have it"
 _DESCRIPTION = "robot_description"
 _SENDS = "sends"
-_WITH_A_NAME = 2
 # A node with its role.
 _Part = tuple[str, str]
-# A code, and names without the robot's.
-_Key = tuple[str, ...]
+
+
+class _Error(NamedTuple):
+    """What is wrong: the code, the names without the robot's, and the nodes that have part."""
+
+    code: str
+    names: Set[str]
+    parts: Set[_Part] = frozenset()
 
 
 def as_the_vendor_has_it(
@@ -78,9 +84,9 @@ def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
     return {(it.code, it.line) for it in found if it.level == ERROR}
 
 
-def _errors_of(robot: RewrittenRobot, fleet: Index, known: Knowledge) -> Mapping[_Key, Set[_Part]]:
-    """Return what is an error in the launch files of one robot, each with the nodes that have part. A
-    publisher without a description that can be read gets the one of the fleet file."""
+def _errors_of(robot: RewrittenRobot, fleet: Index, known: Knowledge) -> list[_Error]:
+    """Return what is an error in the launch files of one robot. A publisher without a description that
+    can be read gets the one of the fleet file."""
     graph = launch_of(robot.spec.launch, robot.spec.words[0])
     started = launched(graph, known)
     if any(it.code == NO_TREE for it in started.system.environment.caveats):
@@ -88,11 +94,15 @@ def _errors_of(robot: RewrittenRobot, fleet: Index, known: Knowledge) -> Mapping
         started = launched(_described(graph, text), known)
     alone = index(started.system, ALONE)
     every = (*judge_launch(started), *(as_sure(it, started, alone) for it in judge(alone)))
-    found: dict[_Key, set[_Part]] = defaultdict(set)
-    for it in (one for one in every if one.level == ERROR):
-        parts = (part for own in _parts(it, started.system).values() for part in own)
-        found[_key(it, fleet)].update(_plain(parts, fleet))
-    return dict(found)
+    return [
+        _error(it, fleet)._replace(
+            parts=_plain(
+                (part for own in _parts(it, started.system).values() for part in own), fleet
+            )
+        )
+        for it in every
+        if it.level == ERROR
+    ]
 
 
 def _described(graph: LaunchGraph, text: str) -> LaunchGraph:
@@ -105,15 +115,17 @@ def _described(graph: LaunchGraph, text: str) -> LaunchGraph:
     return graph._replace(nodes=tuple(nodes))
 
 
-def _is_in(errors: Mapping[_Key, Set[_Part]], it: Finding, seen: Index, robot: str) -> bool:
-    """Is a finding about a fleet one of the errors of this robot alone? Nodes of other robots have no
-    part in it, nor nodes that its own launch files do not start."""
-    key = _key(it, seen)
-    if len(key) < _WITH_A_NAME or key not in errors:
+def _is_in(errors: Iterable[_Error], it: Finding, seen: Index, robot: str) -> bool:
+    """Is a finding about a fleet one of the errors of this robot alone, which may name more? Nodes of
+    other robots have no part in it, nor nodes that its own launch files do not start."""
+    own = _error(it, seen)
+    alike = [one for one in errors if one.code == own.code and own.names <= one.names]
+    known = {part for one in alike for part in one.parts}
+    if not (own.names and alike):
         return False
     for parts in _parts(it, seen.system).values():
         whose = {seen.robot(node) for _, node in parts}
-        if robot in whose and not (whose <= {robot, ""} and _plain(parts, seen) <= errors[key]):
+        if robot in whose and not (whose <= {robot, ""} and _plain(parts, seen) <= known):
             return False
     return True
 
@@ -124,10 +136,10 @@ def _robots(it: Finding, seen: Index) -> set[str]:
     return {it.robot, *map(seen.robot, nodes or (it.node, *it.names))} - {""}
 
 
-def _key(it: Finding, fleet: Index) -> _Key:
+def _error(it: Finding, fleet: Index) -> _Error:
     names = it.names or ((it.node,) if it.node else ())
     plain = (fleet.plain(it) if it.startswith("/") else fleet.plain_frame(it) for it in names)
-    return (it.code, *sorted(plain))
+    return _Error(it.code, {*plain})
 
 
 def _plain(parts: Iterable[_Part], fleet: Index) -> set[_Part]:

@@ -97,7 +97,7 @@ def see(wanted: Wanted) -> Seen:
     wanted.tell(f"looking for robots in {', '.join(wanted.paths)}")
     found = search(wanted.paths, wanted.launch or ())
     reach = Reach(trust=wanted.trust)
-    values = NeededValues(found.read)
+    values = NeededValues(found.read, found.launch)
     look_at = partial(look, given=wanted.arguments, reach=reach, values=values)
 
     def look_at_all(paths: Sequence[str]) -> list[Looked]:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.rosnames import check_topic_name, expand
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
@@ -161,11 +162,19 @@ def _may_spawn(it: _Pair, handed: Mapping[str, HandedOn], release: str) -> bool:
 
 
 def _lasting(graph: LaunchGraph) -> LaunchGraph:
-    """What launch files start, without the words that name what only a launch makes."""
+    """What launch files start, without the words that name what only a launch makes; without launch
+    files that are not here and of which an argument is such: they do not start without it."""
     nodes: list[LaunchedNode] = []
     notes: list[LaunchNote] = []
     for it in graph.nodes:
         words, lost = known_words(it.arguments)
+        if it.process.is_include and lost:
+            names = shorten([one.partition(":=")[0] for one in it.arguments if one not in words])
+            said = (
+                f"{it.executable} of {it.package} is not started: its argument {names} {NOT_KNOWN}"
+            )
+            notes.append(LaunchNote(it.place, said))
+            continue
         nodes.append(it._replace(arguments=words))
         said = (f"an argument of {it.executable} {flag}".rstrip() for flag in lost)
         notes += [LaunchNote(it.place, f"{one} {NOT_KNOWN}", parameters=True) for one in said]
