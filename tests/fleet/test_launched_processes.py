@@ -933,3 +933,37 @@ def test_a_command_asks_for_the_manager_of_its_robot(
     manager = "/controller_manager_robot2" if layout == "postfix" else "/robot2/controller_manager"
     (told,) = (it.values["cmd"] for it in found if it.kind == "ExecuteProcess")
     assert told == [it.format(manager) for it in expected]
+
+
+SHOWN = """Visualization Manager:
+  Global Options:
+    Fixed Frame: map
+  Tools:
+    - Class: rviz_default_plugins/MoveCamera
+"""
+GOALS = "    - Class: nav2_rviz_plugins/GoalTool\n"
+
+
+@pytest.mark.parametrize(
+    ("layout", "tool", "windows"),
+    [
+        ("frames-per-robot", "", ["", ""]),
+        # Beside it a window for all robots would show them twice.
+        ("frames-per-robot", GOALS, ["robot1", "robot2"]),
+        ("tf-per-robot", "", ["robot1", "robot2"]),
+    ],
+)
+def test_a_launch_file_that_opens_a_window_opens_one_for_a_robot_or_for_all(
+    layout: str, tool: str, windows: list[str], tmp_path: Path
+) -> None:
+    (tmp_path / "robot.rviz").write_text(f"{SHOWN}{tool}")
+    body = "Node(package='rviz2', executable='rviz2', arguments=['-d', 'robot.rviz']), here('first'),"
+    more = "simulator: none\ncompanions: {rviz: robot.rviz}"
+    opened = []
+    for robot in ("robot1", "robot2"):
+        found = actions(tmp_path, body, more=more, layout=layout, given={"robots": robot})
+        seen = [it.values for it in found if it.values.get("package") == "rviz2"]
+        opened += [it.get("namespace", "") for it in seen]
+    assert [it.strip("/") for it in opened] == windows
+    # A person may open the others.
+    assert "robot.rviz" in (tmp_path / "out/commands.md").read_text()

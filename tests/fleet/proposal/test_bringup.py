@@ -295,6 +295,18 @@ def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
     assert "unread" not in text
 
 
+def test_a_window_that_commands_one_robot_is_each_ones_own(package: Path) -> None:
+    (package / "rviz/rover.rviz").write_text(
+        "Visualization Manager:\n  Tools:\n    - Class: nav2_rviz_plugins/GoalTool\n"
+    )
+    write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}"})
+    fleet_of(package)
+    text = (package.parent / "fleet.yaml").read_text()
+    each, _, once = text.partition("What up.launch.py starts")[2].partition("Once for all")
+    assert "rviz2 rviz2, since panels or displays in it work for one robot alone" in each
+    assert "rviz2" not in once.partition("launch:")[0]
+
+
 NAV2 = (
     "IncludeLaunchDescription([FindPackageShare('nav2_bringup'), '/launch/localization_launch.py'], "
     f"launch_arguments=[('params_file', {PATH.format('config/unread.yaml')})])"
