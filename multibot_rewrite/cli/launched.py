@@ -65,4 +65,6 @@ def _of_robot(robot: RobotSpec, whose: str, file: FleetFile, trust: bool) -> Ite
         files = (os.path.relpath(one.source) for one in it.parameters if one.source)
         place = f"{os.path.relpath(it.place.file)}:{it.place.line}"
         reason = apart or why or it.later
-        yield _Row("all robots" if why and not apart else whose, said_of(it), place, (*files,), reason)
+        yield _Row(
+            "all robots" if why and not apart else whose, said_of(it), place, (*files,), reason
+        )

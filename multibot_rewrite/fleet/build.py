@@ -35,6 +35,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
     PLAN,
     FilesAndFindings,
     OutputFile,
+    described_path,
     expanded_name,
     path_for,
 )
@@ -151,6 +152,9 @@ def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
             if data:
                 text = _without_folder(data, source)
                 yield OutputFile(path_for(robot, expanded_name(source)), text, (source,))
+        for node, it in plan.evidence_of(robot).handed_on.items():
+            if it.description:
+                yield OutputFile(described_path(robot, node), it.description.encode())
 
 
 def _without_folder(data: bytes, source: str) -> bytes:

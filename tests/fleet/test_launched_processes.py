@@ -967,3 +967,62 @@ def test_a_launch_file_that_opens_a_window_opens_one_for_a_robot_or_for_all(
     assert [it.strip("/") for it in opened] == windows
     # A person may open the others.
     assert "robot.rviz" in (tmp_path / "out/commands.md").read_text()
+
+
+DOCK = '<robot name="dock"><link name="base_link"/><link name="tag"/><joint name="t" type="fixed">' + (
+    '<parent link="base_link"/><child link="tag"/></joint></robot>'
+)
+
+
+@pytest.mark.parametrize(
+    ("layout", "prefix"),
+    [("tf-per-robot", "dock/"), ("frames-per-robot", "robot2/dock/"), ("both", "robot2/dock/")],
+)
+def test_a_second_publisher_sends_what_the_launch_file_gives_it(
+    layout: str, prefix: str, tmp_path: Path
+) -> None:
+    """The robot's own tree is sent once; two trees with one base_link would be one frame with two
+    parents."""
+    (tmp_path / "dock.urdf").write_text(DOCK)
+    given = f"'robot_description': open({str(tmp_path / 'dock.urdf')!r}).read()"
+    rsp = "Node(package='robot_state_publisher', executable='robot_state_publisher'"
+    body = f"""{rsp}, parameters=[{{'robot_description': '<robot/>'}}]),
+        {rsp}, namespace='dock', parameters=[{{{given}, 'frame_prefix': 'dock/'}}]),"""
+    own, dock = (
+        {name: one for row in it.values["parameters"] if isinstance(row, dict) for name, one in row.items()}
+        for it in actions(tmp_path, body, layout=layout)
+        if it.values.get("package") == "robot_state_publisher"
+    )
+    assert own["robot_description"] == (tmp_path / "out/robot2/robot.urdf").read_text()
+    assert dock["robot_description"].strip() == DOCK
+    assert dock["frame_prefix"] == prefix
+
+
+def test_what_is_put_beside_the_robot_into_a_simulator_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spawn = "Node(package='ros_gz_sim', executable='create', arguments=['-topic', '{}'])"
+    body = f"{spawn.format('robot_description')}, {spawn.format('dock/robot_description')},"
+    found = actions(tmp_path, body, more="simulator: gazebo")
+    assert told(found).count("create") == 1
+    (line,) = (it for it in capsys.readouterr().err.splitlines() if "beside the robot" in it)
+    assert "up.launch.py:" in line and "create" in line and "warning: MF823" in line
+
+
+def test_a_manager_that_the_plugin_makes_is_named_as_not_started(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plugin = '<gazebo><plugin filename="libgz_ros2_control-system.so" name="m"/></gazebo></robot>'
+    own = DESCRIPTION.replace("</robot>", plugin)
+    body = "Node(package='controller_manager', executable='ros2_control_node'), here('first'),"
+    (tmp_path / "plugin.urdf").write_text(own)
+    more = "simulator: gazebo\ndescription: plugin.urdf"
+    for link in ("base_link", "lidar_link", "wheel"):
+        own = own.replace(f'<link name="{link}"/>', WEIGHED.format(link))
+    (tmp_path / "plugin.urdf").write_text(own)
+    text = FLEET.format(more=more, layout="both", affix="prefix").replace(", description: robot.urdf", "")
+    (tmp_path / "fleet.yaml").write_text(text)
+    (tmp_path / "up.launch.py").write_text(LAUNCH.replace("SETUP", "").replace("BODY", body))
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    (line,) = (it for it in capsys.readouterr().err.splitlines() if "MF821" in it)
+    assert "ros2_control_node is not started" in line and "up.launch.py:" in line

@@ -23,6 +23,7 @@ from multibot_rewrite.fleet.launch.starts import SIMULATOR, RobotStarts
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
 from multibot_rewrite.fleet.outputs.output_file import (
+    described_path,
     expanded_name,
     gz_bridge_path,
     params_paths,
@@ -402,8 +403,7 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     if known == start_poses.AMCL and path_for(robot, "start_pose.yaml") in given.files:
         found.append(File(path_for(robot, "start_pose.yaml")))
     if known == STATE:
-        prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
-        found.append({"robot_description": Text(_description(robot)), **prefix})
+        found.append(_described(given, name))
     if known in _OF_MOVEIT:
         found.append({"robot_description": Text(_description(robot))})
         if made.path in given.files:
@@ -419,6 +419,20 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
         managed = (_called(given, it) for it in given.names.managed.get(name, ()))
         found.append({"autostart": True, "node_names": list(filter(None, managed))})
     return tuple(found)
+
+
+def _described(given: _Given, name: str) -> Parameters:
+    """What a robot_state_publisher publishes: the robot, or what its launch file has beside it, whose
+    frames get the robot's name in front."""
+    robot, naming = given.robot, given.plan.fleet.naming
+    handed = given.plan.evidence_of(robot).handed_on.get(name)
+    if handed is None or not handed.description:
+        prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
+        return {DESCRIPTION: Text(_description(robot)), **prefix}
+    above = f"{robot.spec.tag}/" if naming.layout.frames else ""
+    own = str(handed.values.get("frame_prefix", ""))
+    prefix = {"frame_prefix": f"{above}{own}"} if above else {}
+    return {DESCRIPTION: Text(described_path(robot, name)), **prefix}
 
 
 def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, frozenset[str]]]:

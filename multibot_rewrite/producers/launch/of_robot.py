@@ -55,6 +55,7 @@ from multibot_rewrite.producers.launch.records import (
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, state_publisher_of
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
 
 # Their words have names, or name files of the robot.
@@ -71,6 +72,9 @@ _DESCRIPTION = "robot_description"
 _DESCRIBED = ("robot_state_publisher", "move_group", "servo_node")
 NO_NAME = "the launch file gives it no name"
 NOTHING: Mapping[str, HandedOn] = {}
+_SPAWNED = (
+    "{} puts something beside the robot into the simulator, which is not started; add it to a world"
+)
 
 
 class Launched(NamedTuple):
@@ -129,8 +133,12 @@ def with_launched(
     given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
     unknown = {it.facts.name: it.node for it in pairs if not it.facts.is_known}
     of_all = graph.environment
-    handed = {it.facts.name: _handed(it, of_all, _is_own(it, release)) for it in pairs}
+    own = state_publisher_of([it.facts for it in pairs])
+    handed = {it.facts.name: _handed(it, of_all, own, _is_own(it, release)) for it in pairs}
     numbered = [it._replace(number=at) for at, it in enumerate(graph.nodes)]
+    spawning = [it for it in numbered if program_of(it) in programs().spawners]
+    notes = (LaunchNote(it.place, _SPAWNED.format(it.executable)) for it in spawning[1:])
+    graph = graph._replace(notes=(*graph.notes, *notes))
     processes = (
         it
         for it in numbered
@@ -148,7 +156,7 @@ def with_launched(
         handed,
         passing,
         graph.environment,
-        next((it for it in numbered if program_of(it) in programs().spawners), None)
+        next(iter(spawning), None)
         or next((numbered[it.number] for it in pairs if _may_spawn(it, handed, release)), None),
         graph.idle,
     )
@@ -215,12 +223,17 @@ def _is_own(it: _Pair, release: str) -> bool:
     return known not in built_in(release).nodes if known else not it.facts.is_known
 
 
-def _handed(it: _Pair, of_all: Collection[tuple[str, str]], is_own: bool) -> HandedOn:
-    """What its launch file gives a node; what is built gives a known one its name."""
+def _handed(
+    it: _Pair, of_all: Collection[tuple[str, str]], publisher: str, is_own: bool
+) -> HandedOn:
+    """What its launch file gives a node; what is built gives a known one its name. What publishes
+    another description than the robot's ``publisher`` keeps it."""
     found = handed_on(it.node, it.facts.name, of_all, it.number)
     if it.facts.known == STATIC:
         found = found._replace(values={**found.values, **frames_in(it.node.arguments)})
     texts = () if it.facts.known in _DESCRIBED else found.texts
+    is_other = it.facts.package == STATE_PUBLISHER and it.facts.name != publisher
+    found = found._replace(description=found.description if is_other else "")
     unnamed = found.is_unnamed and is_own and not it.is_second
     return found._replace(texts=texts, is_unnamed=unnamed, kind=it.facts.known)
 
