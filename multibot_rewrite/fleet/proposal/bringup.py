@@ -8,8 +8,12 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.reports.xacro_arguments import names_robots
+from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import is_called_as_switch, other_values
 from multibot_rewrite.fleet.proposal.launches import (
@@ -77,9 +81,30 @@ class Robot(NamedTuple):
 
 
 def bringup_as_named(order: LaunchOrder) -> Bringup:
-    """The launch file that was named. Raises InputError where it cannot be read, or starts nothing."""
+    """The launch file that was named; an argument that names the vendor's robot names each robot, where
+    the launch file starts the same with it. Raises InputError where it cannot be read, or starts
+    nothing."""
     graph = read_named(order).graph
+    each = tuple((name, _for_each(name, value)) for name, value in order.arguments)
+    with suppress(InputError):
+        other = (
+            read_named(order._replace(arguments=each)).graph if each != order.arguments else graph
+        )
+        if each != order.arguments and _does(other) == _does(graph):
+            order, graph = order._replace(arguments=each), other
     return Bringup(order, graph, starts_simulator(graph))
+
+
+def _for_each(argument: str, value: str) -> str:
+    """The value of a launch argument for any robot: ``hippo/`` of ``vehicle_name`` is ``{robot}/``."""
+    name = value.strip("/_")
+    return value.replace(name, ROBOT, 1) if names_robots(argument) and name else value
+
+
+def _does(graph: LaunchGraph) -> tuple[object, ...]:
+    """What a launch file starts and reads, whatever it calls the robot."""
+    started = sorted((it.package, it.executable) for it in graph.nodes)
+    return started, _reads(graph), len(graph.notes), len(graph.idle)
 
 
 def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | None:

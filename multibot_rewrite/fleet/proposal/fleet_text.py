@@ -11,6 +11,7 @@ from typing import Any
 
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.wording import one_line, shorten
+from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
 from multibot_rewrite.fleet.file.robot_spec import REAL
@@ -178,6 +179,8 @@ def _launched(it: Bringup, apart: str) -> Iterator[str]:
     if idle := [f"{one.what}: {one.why}" for one in it.graph.idle]:
         yield "Not started, by its conditions; another value behind its file here starts it:"
         yield from _some(idle)
+    if named := [name for name, value in it.order.arguments if ROBOT in value]:
+        yield f"{', '.join(named)}: the name of the vendor's robot there; each robot has its own"
     if it.others:
         yield "It starts the most; others start this robot as well:"
         yield from _some([f"--launch {order_text(one, os.curdir)}" for one in it.others])

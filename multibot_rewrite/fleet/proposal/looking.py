@@ -153,7 +153,7 @@ def _own_values(given: Iterable[tuple[str, str]], path: str) -> dict[str, str]:
     return {
         name: os.path.relpath(value, folder) if os.path.isabs(value) else value
         for name, value in given
-        if not (names_robots(name) or GONE in value)
+        if value != ANY and not (names_robots(name) or GONE in value)
     }
 
 

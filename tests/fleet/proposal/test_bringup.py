@@ -307,6 +307,40 @@ def test_a_window_that_commands_one_robot_is_each_ones_own(package: Path) -> Non
     assert "rviz2" not in once.partition("launch:")[0]
 
 
+CALLED = "DeclareLaunchArgument('{0}'); " + DRIVER[:-1] + (
+    ", namespace=LaunchConfiguration('{0}'), parameters=[{{'who': LaunchConfiguration('{0}')}}])"
+)
+CHOSEN = (
+    "DeclareLaunchArgument('robot_name'); "
+    "Node(package='acme', executable=[LaunchConfiguration('robot_name'), '_driver'])"
+)
+
+
+@pytest.mark.parametrize(
+    ("actions", "given", "written"),
+    [
+        (CALLED.format("vehicle_name"), "vehicle_name:=hippo", "'vehicle_name:={robot}'"),
+        (CALLED.format("namespace"), "namespace:=/hippo", "'namespace:=/{robot}'"),
+        # It says what is started, or is no name of a robot.
+        (CHOSEN, "robot_name:=hippo", "robot_name:=hippo"),
+        (CALLED.format("side"), "side:=hippo", "side:=hippo"),
+    ],
+)
+def test_the_name_of_the_vendors_robot_is_that_of_each(
+    actions: str, given: str, written: str, package: Path
+) -> None:
+    write(package / "launch", {"up": f"{PUBLISHER}; {actions}"})
+    file = str(package / "launch/up.launch.py")
+    fleet = fleet_of(package, "--simulator", "none", "--launch", file, given)
+    assert fleet["launch"] == f"rover/launch/up.launch.py {written}"
+    launch = (package.parent / "out/fleet.launch.py").read_text().splitlines()
+    told = [it for it in launch if "'who': " in it]
+    assert all(("name" in it) is ("{robot}" in written) for it in told)
+    assert bool(told) is ("who" in actions)
+    said = "each robot has its own" in (package.parent / "fleet.yaml").read_text()
+    assert said is ("{robot}" in written)
+
+
 NAV2 = (
     "IncludeLaunchDescription([FindPackageShare('nav2_bringup'), '/launch/localization_launch.py'], "
     f"launch_arguments=[('params_file', {PATH.format('config/unread.yaml')})])"
