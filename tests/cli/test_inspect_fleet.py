@@ -78,5 +78,7 @@ def test_what_works_for_one_robot_alone_gives_each_its_window(
 ) -> None:
     """In a layout with a tf topic for each robot one rviz2 shows one robot."""
     (folder / "r.rviz").write_text("Visualization Manager: {}\n")
-    (found,) = (it for it in inspected(folder, capsys, "companions: {rviz: r.rviz}") if "rviz2" in it)
+    (found,) = (
+        it for it in inspected(folder, capsys, "companions: {rviz: r.rviz}") if "rviz2" in it
+    )
     assert found.startswith("each robot | rviz2") and "one rviz2 reads one" in found

@@ -239,7 +239,8 @@ def test_a_fault_of_his_description_is_told_and_built(
 
 
 TWO_LINKS = """<robot name="r"><link name="base_footprint"/><link name="base_link"/>
-  <joint name="b" type="fixed"><parent link="base_footprint"/><child link="base_link"/></joint></robot>"""
+  <joint name="b" type="fixed"><parent link="base_footprint"/><child link="base_link"/></joint>
+</robot>"""
 
 
 @pytest.mark.parametrize("is_read", [True, False])

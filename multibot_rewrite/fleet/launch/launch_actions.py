@@ -531,7 +531,18 @@ def _spawned(given: _Given) -> Iterator[Start]:
         spaces = {it.namespace for it in given.names.nodes.values()}
         namespace = min(spaces, key=len, default="/")
         name = "" if namespace != "/" else f"ros_gz_bridge_{robot.spec.namespace}"
-        yield Start(*_BRIDGE, namespace, name, ({"config_file": File(path)},))
+        qos = dict(_qos(given.plan, robot, robot.spec.namespace))
+        yield Start(*_BRIDGE, namespace, name, ({"config_file": File(path), **qos},))
+
+
+def _qos(plan: FleetPlan, robot: RewrittenRobot, space: str) -> Iterator[tuple[str, object]]:
+    """Yield what the bridges of its launch files set for topics of the robot, or without a ``space``
+    for those of all robots."""
+    for key, value in plan.evidence_of(robot).qos.items():
+        topic = key.split(".")[1]
+        named = _named_for(topic, "topic", robot.spec.namespace, plan.fleet.naming)
+        if space or named == topic:
+            yield key.replace(topic, named, 1), value
 
 
 def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[Start]:
@@ -558,7 +569,8 @@ def of_all(
     shared = (*_shared(plan, names, known, values), *found)
     if BRIDGE_FILE not in files:
         return shared
-    rows, served = ({"config_file": File(BRIDGE_FILE)},), services_in(plan.launched_words)
+    qos = {key: it for robot in plan.robots for key, it in _qos(plan, robot, "")}
+    rows, served = ({"config_file": File(BRIDGE_FILE), **qos},), services_in(plan.launched_words)
     bridge = Start(*_BRIDGE, parameters=rows, arguments=tuple(served))
     # It is of no use without the simulator.
     return (bridge._replace(condition=SIMULATOR), *shared) if simulators else (*shared, bridge)

@@ -72,6 +72,9 @@ _DESCRIPTION = "robot_description"
 _DESCRIBED = ("robot_state_publisher", "move_group", "servo_node")
 NO_NAME = "the launch file gives it no name"
 NOTHING: Mapping[str, HandedOn] = {}
+# rclcpp, qos_overriding_options: qos_overrides.TOPIC.publisher.POLICY.
+QOS = "qos_overrides."
+NO_QOS: Mapping[str, object] = {}
 _SPAWNED = (
     "{} puts something beside the robot into the simulator, which is not started; add it to a world"
 )
@@ -82,7 +85,7 @@ class Launched(NamedTuple):
     its name, the controllers that are spawned by theirs, if that is all that runs, findings, if they
     start a simulator, or what is for one, what each of them is given by its name, and the processes
     that are no nodes. ``environment`` is what all processes have, ``placing`` is what puts the robot
-    into its simulator."""
+    into its simulator, ``qos`` what parameters of bridges to it set for topics."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[Run, ...]
@@ -96,6 +99,7 @@ class Launched(NamedTuple):
     environment: tuple[tuple[str, str], ...] = ()
     placing: LaunchedNode | None = None
     idle: tuple[IdleAction, ...] = ()
+    qos: Mapping[str, object] = NO_QOS
 
 
 class _Pair(NamedTuple):
@@ -279,11 +283,14 @@ def _under_manager(
 
 
 def without_bridges(launched: Launched) -> Launched:
-    """Return the same without the bridges to a simulator: those of a build carry what they carry."""
+    """Return the same without the bridges to a simulator: those of a build carry what they carry, with
+    the quality of service that their parameters set."""
     gone = {
         name for name, it in launched.started.items() if passes_topics_on(it.package, it.executable)
     }
+    handed = (launched.handed_on[name].values for name in gone)
     return launched._replace(
+        qos={key: it for own in handed for key, it in own.items() if key.startswith(QOS)},
         nodes=tuple(it for it in launched.nodes if it.name not in gone),
         given=tuple(it for it in launched.given if it.node not in gone),
         handed_on={name: it for name, it in launched.handed_on.items() if name not in gone},

@@ -226,7 +226,8 @@ def test_a_xacro_that_a_launch_file_expands_itself(package: Path) -> None:
 
 
 SWITCHED = """\
-<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="use_sim" default="false"/>
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="use_sim" default="false"/>
   <xacro:property name="mass"><inertial><mass value="1"/>
     <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></xacro:property>
   <link name="base_link"><xacro:insert_block name="mass"/></link>
@@ -238,7 +239,7 @@ SWITCHED = """\
     <xacro:unless value="$(arg use_sim)"><plugin>acme/System</plugin></xacro:unless></hardware>
     <joint name="j"><command_interface name="position"/></joint></ros2_control>
   <xacro:if value="$(arg use_sim)"><gazebo>
-    <plugin filename="libign_ros2_control-system.so" name="ign_ros2_control::IgnitionROS2ControlPlugin"/>
+    <plugin filename="libign_ros2_control-system.so" name="ign_ros2_control::Plugin"/>
   </gazebo></xacro:if></robot>
 """
 LOADED = DESCRIBED.replace(GIVEN.format("', FindPackageShare('rover'), '"), "use_sim:={}")
@@ -307,8 +308,12 @@ def test_a_window_that_commands_one_robot_is_each_ones_own(package: Path) -> Non
     assert "rviz2" not in once.partition("launch:")[0]
 
 
-CALLED = "DeclareLaunchArgument('{0}'); " + DRIVER[:-1] + (
-    ", namespace=LaunchConfiguration('{0}'), parameters=[{{'who': LaunchConfiguration('{0}')}}])"
+CALLED = (
+    "DeclareLaunchArgument('{0}'); "
+    + DRIVER[:-1]
+    + (
+        ", namespace=LaunchConfiguration('{0}'), parameters=[{{'who': LaunchConfiguration('{0}')}}])"
+    )
 )
 CHOSEN = (
     "DeclareLaunchArgument('robot_name'); "
@@ -543,6 +548,54 @@ def test_its_own_description_that_cannot_be_read_is_one_line(robots: Path, capsy
     assert main(["init", str(robots), "--launch", file, "--yes", "-o", "-"]) == 2
     said = capsys.readouterr().err
     assert len(said.splitlines()) == 1 and "package 'gone' is not found" in said
+
+
+def test_what_a_launch_file_starts_is_named_where_its_description_cannot_be_read(
+    robots: Path, capsys: Any
+) -> None:
+    """In the one line: processes, each with its place, and what of it could not be read."""
+    spawner = (
+        "Node(package='controller_manager', executable='spawner', arguments=['left', 'right'])"
+    )
+    fails = "OpaqueFunction(function=lambda _: [Node(package=1 / 0, executable='hidden')])"
+    actions = f"{READS.format('other', 'example.urdf.xacro')}; {DRIVER}; {spawner}; {fails}"
+    (file,) = write(robots / "other/launch", {"up": actions})
+    assert main(["init", str(robots), "--yes", "--launch", file, "-o", str(robots / "f.yaml")]) == 2
+    (said,) = capsys.readouterr().err.splitlines()
+    for word in (
+        "acme driver (up.launch.py:2)",
+        "controller_manager spawner left right",
+        "starts hidden",
+    ):
+        assert word in said
+    assert not (robots / "f.yaml").exists()
+
+
+def test_a_launch_file_that_cannot_be_read_says_what_its_text_starts(
+    robots: Path, capsys: Any
+) -> None:
+    (file,) = write(robots / "other/launch", {"up": f"{DRIVER}; 1 / 0"})
+    assert main(["init", str(robots), "--yes", "--launch", file, "-o", str(robots / "f.yaml")]) == 2
+    (said,) = capsys.readouterr().err.splitlines()
+    assert "ZeroDivisionError" in said and "by its text it starts driver" in said
+
+
+TYPED = """<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:arg name="kind" default=""/>
+<xacro:include filename="$(arg kind).xacro"/><link name="base_link"/><link name="wheel"/>
+<joint name="j" type="continuous"><parent link="base_link"/><child link="wheel"/></joint></robot>"""
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_a_description_that_needs_a_value_has_that_of_a_launch_file(
+    named: bool, package: Path
+) -> None:
+    """By its own default it does not expand."""
+    (package / "urdf/rover.urdf.xacro").write_text(TYPED)
+    (package / "urdf/big.xacro").write_text('<robot xmlns:xacro="x"/>')
+    write(package / "launch", {"up": f"{LOADED.replace('use_sim:={}', 'kind:=big')}; {DRIVER}"})
+    words = ["--launch", str(package / "launch/up.launch.py")] if named else []
+    assert fleet_of(package, "--simulator", "none", *words)["arguments"] == {"kind": "big"}
 
 
 def test_a_question_about_files_keeps_the_launch_file(robots: Path, capsys: Any) -> None:
