@@ -565,7 +565,7 @@ def test_what_a_launch_file_starts_is_named_where_its_description_cannot_be_read
     for word in (
         "acme driver (up.launch.py:2)",
         "controller_manager spawner left right",
-        "starts hidden",
+        " hidden (up.launch.py:2)",
     ):
         assert word in said
     assert not (robots / "f.yaml").exists()
