@@ -196,7 +196,7 @@ def _with_launch(
     if not launched:
         idle = left_idle(it.nodes, it.given, it.known)
         return it._replace(findings=(*it.findings, *idle))
-    handed_on, processes, environment, placing, idle = _of_launch(spec, launched, file)
+    handed_on, processes, environment, placing, idle, qos = _of_launch(spec, launched, file)
     return it._replace(
         findings=(*it.findings, *processes_not_known(processes)),
         unsimulated=launched.whole and not launched.simulated,
@@ -206,6 +206,7 @@ def _with_launch(
         environment=environment,
         placing=placing,
         idle=idle,
+        qos=qos,
     )
 
 
@@ -215,8 +216,8 @@ def _of_launch(spec: RobotSpec, launched: Launched, file: FleetFile) -> tuple[An
     processes = tuple(
         it._replace(once=_is_once(it.name, it.once, file)) for it in launched.processes
     )
-    own = launched.handed_on, processes, launched.environment, launched.placing, launched.idle
-    own = *own, launched.qos
+    after = launched.environment, launched.placing, launched.idle, launched.qos
+    own = (launched.handed_on, processes, *after)
     return tuple(for_any(it, spec.name) for it in own) if by_name else own
 
 

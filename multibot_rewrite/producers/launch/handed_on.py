@@ -106,8 +106,8 @@ def handed_on(
     more = not node.name, node.remappings, number, node.place, program
     found = HandedOn(values, node.arguments, own, node.process, texts, *more)
     files = tuple(dict.fromkeys(it.source for it in node.parameters if it.source))
-    told = {"files": files, "description": str(described[DESCRIPTION] or "")}
-    return found._replace(**told, clock=clock if isinstance(clock, bool) else None)
+    found = found._replace(files=files, description=str(described[DESCRIPTION] or ""))
+    return found._replace(clock=clock if isinstance(clock, bool) else None)
 
 
 def for_any(it: Any, robot: str) -> Any:

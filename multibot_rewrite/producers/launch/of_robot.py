@@ -141,8 +141,8 @@ def with_launched(
     handed = {it.facts.name: _handed(it, of_all, own, _is_own(it, release)) for it in pairs}
     numbered = [it._replace(number=at) for at, it in enumerate(graph.nodes)]
     spawning = [it for it in numbered if program_of(it) in programs().spawners]
-    notes = (LaunchNote(it.place, _SPAWNED.format(it.executable)) for it in spawning[1:])
-    graph = graph._replace(notes=(*graph.notes, *notes))
+    beside = (LaunchNote(it.place, _SPAWNED.format(it.executable)) for it in spawning[1:])
+    graph = graph._replace(notes=(*graph.notes, *beside))
     processes = (
         it
         for it in numbered
@@ -182,10 +182,8 @@ def _lasting(graph: LaunchGraph) -> LaunchGraph:
         words, lost = known_words(it.arguments)
         if it.process.is_include and lost:
             names = shorten([one.partition(":=")[0] for one in it.arguments if one not in words])
-            said = (
-                f"{it.executable} of {it.package} is not started: its argument {names} {NOT_KNOWN}"
-            )
-            notes.append(LaunchNote(it.place, said))
+            who = f"{it.executable} of {it.package} is not started"
+            notes.append(LaunchNote(it.place, f"{who}: its argument {names} {NOT_KNOWN}"))
             continue
         nodes.append(it._replace(arguments=words))
         said = (f"an argument of {it.executable} {flag}".rstrip() for flag in lost)
