@@ -9,12 +9,14 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.cli.output import deliver
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, read_fleet
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
+from multibot_rewrite.fleet.outputs.rviz_outputs import RVIZ, why_for_each
 from multibot_rewrite.fleet.proposal.launches import said_of
 from multibot_rewrite.producers.launch.programs import once_for_all
 
@@ -58,7 +60,11 @@ def _of_robot(robot: RobotSpec, whose: str, file: FleetFile, trust: bool) -> Ite
         shared = not names.isdisjoint(file.shared_nodes)
         why = "shared_nodes names it" if shared else once_for_all(it)
         why = why if names.isdisjoint(file.own_nodes) else ""
+        config = next(iter(robot.companions.get("rviz", ())), "") if RVIZ in names else ""
+        apart = why_for_each(config, make_naming(**file.policy).layout.name) if config else ""
         files = (os.path.relpath(one.source) for one in it.parameters if one.source)
         place = f"{os.path.relpath(it.place.file)}:{it.place.line}"
-        reason = why or it.later
-        yield _Row("all robots" if why else whose, said_of(it), place, (*files,), reason)
+        reason = apart or why or it.later
+        yield _Row(
+            "all robots" if why and not apart else whose, said_of(it), place, (*files,), reason
+        )

@@ -35,12 +35,14 @@ from multibot_rewrite.fleet.outputs.output_file import (
     PLAN,
     FilesAndFindings,
     OutputFile,
+    described_path,
     expanded_name,
     path_for,
 )
 from multibot_rewrite.fleet.outputs.params_style import check_style, in_style
 from multibot_rewrite.fleet.outputs.rviz_outputs import (
     RVIZ,
+    opened_of,
     rviz_files,
     rviz_outputs,
     usual_windows,
@@ -115,7 +117,8 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         files = sorted((*kept, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
         are_opened = bool(configs) or (_starts_rviz(plan) and not any(name for name, _ in shown))
-        starts = fleet_starts(plan, each, files, brought, shown, are_opened)
+        alone = windows(plan, opened_of(plan, opened)) if are_opened else []
+        starts = fleet_starts(plan, each, files, brought, shown, alone)
         files = sorted((*files, launch_file(starts)))
         told += one_launch_each(plan.file.apart, starts)
         _check_paths_differ(files)
@@ -149,6 +152,9 @@ def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
             if data:
                 text = _without_folder(data, source)
                 yield OutputFile(path_for(robot, expanded_name(source)), text, (source,))
+        for node, it in plan.evidence_of(robot).handed_on.items():
+            if it.description:
+                yield OutputFile(described_path(robot, node), it.description.encode())
 
 
 def _without_folder(data: bytes, source: str) -> bytes:

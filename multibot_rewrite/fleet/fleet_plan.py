@@ -189,7 +189,8 @@ def _fleet(
     every = (it for it in met if it.code != UNREACHABLE_NAME.code or not never)
     simulated = [it.member for it in robots if is_simulated(it)]
     said = [it.member for it in robots if is_said(it)]
-    wrong = wrong_in_descriptions(members, file.vocabulary, simulated, said)
+    own = [it.member for it in robots if it.spec.launch]
+    wrong = wrong_in_descriptions(members, file.vocabulary, simulated, said, own)
     told = (*declared_twice(robots, naming, met), *other_manager(robots, table), *wrong)
     problems = tuple(dict.fromkeys((*every, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))

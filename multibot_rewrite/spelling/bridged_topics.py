@@ -57,7 +57,7 @@ GIVE_TOPIC = "give it a topic in the description, so that a bridge can name it"
 OF_ANOTHER = "take such data from another system or sensor"
 OWN_ROW = "write a row for it in a bridge file, with its types"
 # What a ROS name cannot have, and a word that begins with a digit.
-_NOT_ROS, _NUMBER = lazy_compile(r"[^A-Za-z0-9_/]"), lazy_compile(r"/(?=[0-9])")
+_NOT_ROS, _NUMBER = lazy_compile(r"[^A-Za-z0-9_/]"), lazy_compile(r"(?:^|/)(?=[0-9])")
 
 
 class BridgedTopic(NamedTuple):
@@ -323,8 +323,12 @@ def _line(element: etree._Element) -> int:
 
 
 def _ros_name(name: str) -> str:
-    """A gz topic has no namespace: the name in the description is the full name."""
-    return f"/{name.lstrip('/')}"
+    """A gz topic has no namespace: the name in the description is the full name, as ROS takes it."""
+    return f"/{_as_ros(name.lstrip('/'))}"
+
+
+def _as_ros(name: str) -> str:
+    return _NUMBER.sub("_", _NOT_ROS.sub("_", name))
 
 
 def _tf_name(robot: str, naming: Naming) -> str:
@@ -334,7 +338,7 @@ def _tf_name(robot: str, naming: Naming) -> str:
 
 def _robot_name(name: str, robot: str, naming: Naming) -> str:
     """A name as the robot's own topic, with what ROS takes in one."""
-    name = _NUMBER.sub("_", _NOT_ROS.sub("_", name))
+    name = _as_ros(name)
     if naming.topics == NAMESPACE:
         return f"/{robot}/{name}"
     return spelled(naming, robot, "topic", f"/{name}")
@@ -346,7 +350,7 @@ def as_yaml(bridged: Iterable[BridgedTopic]) -> str:
     for item in bridged:
         rows += [
             f'- ros_topic_name: "{item.ros}"\n',
-            f'  gz_topic_name: "{_ros_name(item.gz)}"\n',
+            f'  gz_topic_name: "/{item.gz.lstrip("/")}"\n',
             f'  ros_type_name: "{item.ros_type}"\n',
             f'  gz_type_name: "{item.gz_type}"\n',
             f"  direction: {item.direction}\n",

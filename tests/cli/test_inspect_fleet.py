@@ -71,3 +71,14 @@ def test_a_robot_without_a_launch_file_has_none(
     assert main(["inspect", "fleet.yaml"]) == 2
     said = capsys.readouterr().err
     assert "fleet.yaml: no robot has a launch file" in said and len(said.splitlines()) == 1
+
+
+def test_what_works_for_one_robot_alone_gives_each_its_window(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In a layout with a tf topic for each robot one rviz2 shows one robot."""
+    (folder / "r.rviz").write_text("Visualization Manager: {}\n")
+    (found,) = (
+        it for it in inspected(folder, capsys, "companions: {rviz: r.rviz}") if "rviz2" in it
+    )
+    assert found.startswith("each robot | rviz2") and "one rviz2 reads one" in found

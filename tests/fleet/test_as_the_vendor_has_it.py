@@ -18,6 +18,7 @@ from rule_examples import DESCRIPTION
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.checks import of_bringup
 from multibot_rewrite.fleet.checks.of_bringup import as_the_vendor_has_it
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.knowledge.parameters import load_known_nodes
@@ -216,3 +217,69 @@ def test_a_world_that_the_vendor_has_not_is_told_and_built(
     assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
     (told,) = (it for it in capsys.readouterr().err.splitlines() if "MG713" in it)
     assert "warning: MG713" in told and "for one robot, too" in told
+
+
+REVERSED = """<robot name="r"><link name="base_link"/><link name="arm"/>
+  <joint name="j" type="revolute"><parent link="base_link"/><child link="arm"/>
+    <limit lower="1" upper="0" effort="1" velocity="1"/></joint></robot>"""
+
+
+@pytest.mark.parametrize("by_launch", [True, False])
+def test_a_fault_of_his_description_is_told_and_built(
+    by_launch: bool, fleet: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """robot_state_publisher runs with it; of a robot that nothing starts it is an error."""
+    (fleet.parent / "robot.urdf").write_text(REVERSED)
+    if not by_launch:
+        fleet.write_text(fleet.read_text().replace("launch: up.launch.py\n", ""))
+    code = main(["build", str(fleet), "-o", str(fleet.parent / "out")])
+    (told,) = (it for it in capsys.readouterr().err.splitlines() if "MB511" in it)
+    assert ("warning: MB511" in told and "for one robot, too" in told) is by_launch
+    assert (code == 0) is by_launch
+
+
+TWO_LINKS = """<robot name="r"><link name="base_footprint"/><link name="base_link"/>
+  <joint name="b" type="fixed"><parent link="base_footprint"/><child link="base_link"/></joint>
+</robot>"""
+
+
+@pytest.mark.parametrize("is_read", [True, False])
+def test_a_publisher_of_what_cannot_be_read_has_the_description_of_the_fleet(
+    is_read: bool, fleet: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """ekf sends odom -> base_link, which already hangs below base_footprint."""
+    text = LAUNCH.replace("        ekf('ekf_global'),\n", "")
+    if not is_read:
+        lost = "Command(['xacro ', str(ROBOT.parent / 'lost.xacro')])"
+        imports = "from launch.substitutions import Command\n"
+        text = imports + text.replace("ROBOT.read_text()", lost)
+    (fleet.parent / "robot.urdf").write_text(TWO_LINKS)
+    (fleet.parent / "up.launch.py").write_text(text)
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
+    (told,) = (it for it in capsys.readouterr().err.splitlines() if "MG401" in it)
+    assert "warning: MG401" in told and "for one robot, too" in told
+
+
+def test_what_the_vendor_is_warned_of_excuses_no_error(
+    fleet: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same code, names and nodes: what is a warning in one robot is not known as its error."""
+    plan = planned_fleet(str(fleet))
+    known = Knowledge(
+        plan.evidence_of(plan.robots[0]).known, load_known_nodes((), "jazzy"), "jazzy"
+    )
+    name, nodes = "/robot1/odometry/filtered", ("/robot1/ekf_local", "/robot1/ekf_global")
+    ends = (End(TOPIC, PUBLISHES, name, "nav_msgs/msg/Odometry", "", it) for it in nodes)
+    planned = make_outputs(plan, "/any/out").planned
+    seen = index(planned._replace(ends=tuple(ends)), whose_by_plan(planned))
+    given = sensor_twice.finding("both publish it", level=ERROR, names=(name,))
+
+    def levels(level: str) -> list[str]:
+        alone = sensor_twice.finding("both", level=level, names=("/odometry/filtered",))
+        monkeypatch.setattr(of_bringup, "judge", lambda _: [alone])
+        monkeypatch.setattr(of_bringup, "judge_launch", lambda _: [])
+        monkeypatch.setattr(of_bringup, "as_sure", lambda it, *_: it)
+        return [it.level for it in as_the_vendor_has_it(plan, seen, [given], known)]
+
+    assert levels(WARNING) == [ERROR]
+    assert levels(ERROR) == [WARNING]

@@ -210,3 +210,23 @@ def test_what_is_known_in_part_may_be_moved(folder: Path, old: str, new: str) ->
     )
     found = gaps(folder, node)
     assert "nothing reads" not in found.get("MF865", "")
+
+
+def test_two_programs_that_call_their_nodes_alike_are_both_known(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """rclcpp and rclpy start both; the plan tells them apart by a number, and reads back both."""
+    other = NODE.replace('"left"', '"right"').replace('"base_link"', '"tool"')
+    (folder / "acme/acme/other.py").write_text(other)
+    setup = SETUP.replace('main"]', 'main", "other = acme.other:main"]')
+    (folder / "acme/setup.py").write_text(setup)
+    two = f"{ONE.format('')}, {ONE.format('').replace('driver', 'other')}"
+    (folder / "acme/launch/acme.launch.py").write_text(LAUNCH.replace("NODES", two))
+    fleet = folder / "fleet.yaml"
+    fleet.write_text(f"layout: tf-per-robot\n{FLEET}")
+    assert main(["build", str(fleet), "-o", str(folder / "built")]) == 0
+    assert "MG101" not in capsys.readouterr().err
+    plan = from_yaml((folder / "built/plan.yaml").read_bytes(), "plan.yaml")
+    own = {it.name: it.known for it in plan.nodes if "acme" in it.name}
+    assert own["/robot1/acme_driver"] == "acme driver"
+    assert own["/robot1/acme_driver_2"] == "acme other"

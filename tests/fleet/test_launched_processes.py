@@ -933,3 +933,149 @@ def test_a_command_asks_for_the_manager_of_its_robot(
     manager = "/controller_manager_robot2" if layout == "postfix" else "/robot2/controller_manager"
     (told,) = (it.values["cmd"] for it in found if it.kind == "ExecuteProcess")
     assert told == [it.format(manager) for it in expected]
+
+
+SHOWN = """Visualization Manager:
+  Global Options:
+    Fixed Frame: map
+  Tools:
+    - Class: rviz_default_plugins/MoveCamera
+"""
+GOALS = "    - Class: nav2_rviz_plugins/GoalTool\n"
+
+
+@pytest.mark.parametrize(
+    ("layout", "tool", "windows"),
+    [
+        ("frames-per-robot", "", ["", ""]),
+        # Beside it a window for all robots would show them twice.
+        ("frames-per-robot", GOALS, ["robot1", "robot2"]),
+        ("tf-per-robot", "", ["robot1", "robot2"]),
+    ],
+)
+def test_a_launch_file_that_opens_a_window_opens_one_for_a_robot_or_for_all(
+    layout: str, tool: str, windows: list[str], tmp_path: Path
+) -> None:
+    (tmp_path / "robot.rviz").write_text(f"{SHOWN}{tool}")
+    body = (
+        "Node(package='rviz2', executable='rviz2', arguments=['-d', 'robot.rviz']), here('first'),"
+    )
+    more = "simulator: none\ncompanions: {rviz: robot.rviz}"
+    opened = []
+    for robot in ("robot1", "robot2"):
+        found = actions(tmp_path, body, more=more, layout=layout, given={"robots": robot})
+        seen = [it.values for it in found if it.values.get("package") == "rviz2"]
+        opened += [it.get("namespace", "") for it in seen]
+    assert [it.strip("/") for it in opened] == windows
+    # A person may open the others.
+    assert "robot.rviz" in (tmp_path / "out/commands.md").read_text()
+
+
+DOCK = (
+    '<robot name="dock"><link name="base_link"/><link name="tag"/><joint name="t" type="fixed">'
+    + ('<parent link="base_link"/><child link="tag"/></joint></robot>')
+)
+
+
+@pytest.mark.parametrize(
+    ("layout", "prefix"),
+    [("tf-per-robot", "dock/"), ("frames-per-robot", "robot2/dock/"), ("both", "robot2/dock/")],
+)
+def test_a_second_publisher_sends_what_the_launch_file_gives_it(
+    layout: str, prefix: str, tmp_path: Path
+) -> None:
+    """The robot's own tree is sent once; two trees with one base_link would be one frame with two
+    parents."""
+    (tmp_path / "dock.urdf").write_text(DOCK)
+    given = f"'robot_description': open({str(tmp_path / 'dock.urdf')!r}).read()"
+    rsp = "Node(package='robot_state_publisher', executable='robot_state_publisher'"
+    body = f"""{rsp}, parameters=[{{'robot_description': '<robot/>'}}]),
+        {rsp}, namespace='dock', parameters=[{{{given}, 'frame_prefix': 'dock/'}}]),"""
+    own, dock = (
+        {
+            name: one
+            for row in it.values["parameters"]
+            if isinstance(row, dict)
+            for name, one in row.items()
+        }
+        for it in actions(tmp_path, body, layout=layout)
+        if it.values.get("package") == "robot_state_publisher"
+    )
+    assert own["robot_description"] == (tmp_path / "out/robot2/robot.urdf").read_text()
+    assert dock["robot_description"].strip() == DOCK
+    assert dock["frame_prefix"] == prefix
+
+
+def test_what_is_put_beside_the_robot_into_a_simulator_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spawn = "Node(package='ros_gz_sim', executable='create', arguments=['-topic', '{}'])"
+    body = f"{spawn.format('robot_description')}, {spawn.format('dock/robot_description')},"
+    found = actions(tmp_path, body, more="simulator: gazebo")
+    assert told(found).count("create") == 1
+    (line,) = (it for it in capsys.readouterr().err.splitlines() if "beside the robot" in it)
+    assert "up.launch.py:" in line and "create" in line and "warning: MF823" in line
+
+
+def test_a_manager_that_the_plugin_makes_is_named_as_not_started(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plugin = '<gazebo><plugin filename="libgz_ros2_control-system.so" name="m"/></gazebo></robot>'
+    own = DESCRIPTION.replace("</robot>", plugin)
+    body = "Node(package='controller_manager', executable='ros2_control_node'), here('first'),"
+    (tmp_path / "plugin.urdf").write_text(own)
+    more = "simulator: gazebo\ndescription: plugin.urdf"
+    for link in ("base_link", "lidar_link", "wheel"):
+        own = own.replace(f'<link name="{link}"/>', WEIGHED.format(link))
+    (tmp_path / "plugin.urdf").write_text(own)
+    text = FLEET.format(more=more, layout="both", affix="prefix").replace(
+        ", description: robot.urdf", ""
+    )
+    (tmp_path / "fleet.yaml").write_text(text)
+    (tmp_path / "up.launch.py").write_text(LAUNCH.replace("SETUP", "").replace("BODY", body))
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    (line,) = (it for it in capsys.readouterr().err.splitlines() if "MF821" in it)
+    assert "ros2_control_node is not started" in line and "up.launch.py:" in line
+
+
+@pytest.mark.parametrize(("layout", "tf"), [("both", "/robot2/tf"), ("frames-per-robot", "/tf")])
+def test_the_quality_of_service_that_a_bridge_sets_is_kept(
+    layout: str, tf: str, tmp_path: Path
+) -> None:
+    """rclcpp names the parameter after the topic as it is resolved (qos_parameters.hpp)."""
+    qos = "'qos_overrides./{}.publisher.{}': '{}'".format
+    given = f"{qos('imu/out', 'reliability', 'best_effort')}, {qos('tf', 'durability', 'volatile')}"
+    more = f"remappings=[('/model/bot/imu', '/imu/out')], parameters=[{{{given}}}])"
+    body = BRIDGED.replace("remappings=[('/model/bot/imu', '/imu/out')])", more)
+    found = actions(tmp_path, body, more="simulator: gazebo", layout=layout, given={"robots": "2"})
+    bridges = [it.values for it in found if it.values.get("executable") == "parameter_bridge"]
+    values = [
+        {key: one for row in it["parameters"] for key, one in row.items() if "config" not in key}
+        for it in bridges
+        if it.get("namespace") == "/robot2" or not it.get("namespace")
+    ]
+    assert {f"qos_overrides.{tf}.publisher.durability": "volatile"}.items() <= values[-1].items()
+    assert values[-1]["qos_overrides./robot2/imu/out.publisher.reliability"] == "best_effort"
+    # Only what all robots share is set for the bridge of all.
+    of_all = [it for it in values[0] if it.startswith("qos")]
+    assert of_all == ([f"qos_overrides.{tf}.publisher.durability"] if tf == "/tf" else [])
+
+
+def test_an_include_without_an_argument_that_is_known_is_named_and_not_started(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """launch ends where such a file asks for it; another one starts with all that it is given."""
+    include = "IncludeLaunchDescription([FindPackageShare('gone'), '/launch/{}.launch.py'], {})"
+    given = "launch_arguments=[('config', {}), ('gui', 'false')]"
+    body = ", ".join(
+        include.format(name, given.format(value))
+        for name, value in (("one", "gone_too.dump()"), ("two", "'a'"))
+    )
+    found = actions(tmp_path, f"{body}, here('first'),", setup="import gone_too")
+    includes = [it for it in found if it.kind == "IncludeLaunchDescription"]
+    assert [it.values["launch_arguments"] for it in includes] == [
+        [["config", "a"], ["gui", "false"]]
+    ]
+    (line,) = (it for it in capsys.readouterr().err.splitlines() if "is not started" in it)
+    assert "launch/one.launch.py of gone is not started: its argument config is made of" in line
+    assert "up.launch.py:" in line

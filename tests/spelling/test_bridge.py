@@ -9,6 +9,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
@@ -304,3 +305,19 @@ def test_the_topic_of_a_contact_sensor(inside: str, carried: list[str]) -> None:
     found, left = bridged_topics({"a": inventory(sensor)}, make_naming("L4"))
     assert [it.gz for it in found if it.robot] == carried
     assert len(left) == (0 if carried else 1)
+
+
+@pytest.mark.parametrize("layout", ["L1", "L4"])
+def test_a_name_of_gazebo_that_ros_refuses_is_bridged_under_one_that_it_takes(layout: str) -> None:
+    """No part of a ROS name begins with a digit (rcl validate_topic_name.c); Gazebo keeps its own."""
+    plugin = (
+        '<plugin filename="gz-sim-detachable-joint-system" name="gz::sim::systems::DetachableJoint">'
+        "<parent_link>b</parent_link><child_model>4bar-x</child_model><child_link>l</child_link>"
+        "<output_topic>/model/4bar-x/state</output_topic></plugin>"
+    )
+    source = f'<robot name="q"><link name="b"/><gazebo>{plugin}</gazebo></robot>'
+    bridged, _ = fleet(layout, source)
+    (found,) = (it for it in bridged if it.robot == "robot1" and "state" in it.ros)
+    assert "4bar-x" in found.gz and "_4bar_x" in found.ros
+    assert not check_topic_name(found.ros)
+    assert f'gz_topic_name: "/{found.gz.lstrip("/")}"' in as_yaml([found])

@@ -88,8 +88,17 @@ def for_one_process(one: RvizItem) -> bool:
 
 def has_own_windows(config: RvizConfig, robot: RvizRobot) -> bool:
     """Is there anything that works for one robot, in an rviz2 of its own?"""
-    shown = (*leaves(config.displays), *config.tools, *config.panels)
-    return robot.has_process and any(it.flag == PROCESS for it in shown)
+    return robot.has_process and any(map(is_for_one, shown_in(config)))
+
+
+def shown_in(config: RvizConfig) -> tuple[RvizItem, ...]:
+    """Return the displays, tools and panels of a config."""
+    return (*leaves(config.displays), *config.tools, *config.panels)
+
+
+def is_for_one(it: RvizItem) -> bool:
+    """Return whether it works for the robot alone in whose namespace rviz2 runs."""
+    return it.flag == PROCESS
 
 
 def robot_groups(job: RvizJob) -> Iterator[Splice]:

@@ -28,7 +28,7 @@ PREFIX, POSTFIX, WHOLE, INSIDE = "prefix", "postfix", "whole", "inside"
 # Values of an argument that names nobody yet; Husarion's ROSbot has the second one.
 _NOTHING = ("", "None")
 # What arguments for a robot's own names are called.
-_NAMING = lazy_compile(r"prefix|namespace|^ns$|(robot|arm|model)_?(name|id|ns)$")
+_NAMING = lazy_compile(r"prefix|namespace|^ns$|(robot|vehicle|arm|model)_?(name|id|ns)$")
 # What an argument is called whose value is the namespace of the robot, whatever it is by default.
 _SPACE = lazy_compile(r"(robot_?)?(namespace|ns)", re.IGNORECASE)
 _MARK = MARKS[0]

@@ -92,15 +92,16 @@ def _own_package(folder: str) -> tuple[str, str] | None:
 
 @outside
 def sources_around(file: str) -> str:
-    """The folder with the packages beside that of a file: its repository, or what the package is in;
-    empty for a file in no package."""
+    """The folder with the packages beside that of a file: its repository, else the ``src`` of its
+    workspace, or what the package is in; empty for a file in no package."""
     own = package_of(file)
     above = [own[1]] if own else []
     for _ in range(HIGHEST if own else 0):
         if ".git" in entries(above[-1]):
             return above[-1]
         above.append(os.path.dirname(above[-1]))
-    return above[1] if own else ""
+    sources = (it for it in above[1:] if os.path.basename(it) == "src")
+    return next(sources, above[1]) if own else ""
 
 
 @lru_cache(maxsize=64)

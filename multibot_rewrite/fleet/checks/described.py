@@ -6,12 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.rules.settings import Settings
 
 _REAL = "for a real robot write simulator: none"
+ALREADY = "the robot's own {} for one robot, too"
 
 
 def wrong_in_descriptions(
@@ -19,10 +20,13 @@ def wrong_in_descriptions(
     vocabulary: tuple[str, ...],
     simulated: Iterable[Member],
     said: Iterable[Member] = (),
+    launched: Iterable[Member] = (),
 ) -> Iterator[Finding]:
     """What stops robots with these descriptions, each once; the ``simulated`` ones run in Gazebo. That
-    they do is ``said`` of some; of the others a hint says how to say that they do not."""
-    in_gazebo, sure = ({it.source.file for it in its} for its in (simulated, said))
+    they do is ``said`` of some; of the others a hint says how to say that they do not. What is wrong in
+    one that launch files of its own start (``launched``) stops nobody."""
+    its = (simulated, said, launched)
+    in_gazebo, sure, own = ({it.source.file for it in one} for one in its)
     documents = {
         source.file: (source, made.document, it)
         for it in members
@@ -34,7 +38,15 @@ def wrong_in_descriptions(
         told = {(one.code, one.message) for one in it.shared}
         for one in _linted(document, made, settings, file in in_gazebo - sure):
             if (one.code, one.message) not in told:
-                yield one
+                is_own = file in own and one.level == ERROR
+                yield as_known(one, "description has it") if is_own else one
+
+
+def as_known(it: Finding, what: str) -> Finding:
+    """Return a finding about what one robot has by itself as a warning that says so."""
+    already = ALREADY.format(what)
+    hint = f"{it.hint}; {already}" if it.hint else already
+    return it._replace(level=WARNING, hint=hint)
 
 
 def _linted(

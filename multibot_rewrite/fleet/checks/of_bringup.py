@@ -8,28 +8,41 @@ import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache
+from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+import yaml
+from lxml import etree
+
+from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.file.robot_spec import RobotSpec
+from multibot_rewrite.fleet.checks.described import as_known
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.producers.launch.records import LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.running import Knowledge
-from multibot_rewrite.producers.launch.snapshot import launched
+from multibot_rewrite.producers.launch.snapshot import NO_TREE, launched
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import System
 from multibot_rewrite.system.tf_copies import tree_topic
 
-_ALREADY = "the robot's own launch files have it for one robot, too"
+_ALREADY = "launch files have it"
+_DESCRIPTION = "robot_description"
 _SENDS = "sends"
-_WITH_A_NAME = 2
 # A node with its role.
 _Part = tuple[str, str]
-# A code, and names without the robot's.
-_Key = tuple[str, ...]
+
+
+class _Error(NamedTuple):
+    """What is wrong: the code, the names without the robot's, and the nodes that have part."""
+
+    code: str
+    names: Set[str]
+    parts: Set[_Part] = frozenset()
 
 
 def as_the_vendor_has_it(
@@ -37,14 +50,14 @@ def as_the_vendor_has_it(
 ) -> Iterator[Finding]:
     """Yield the findings about a fleet (``seen``); an error that the launch files of one robot have by
     themselves, between the same nodes, is a warning. What only several robots have stays an error."""
-    specs = {it.spec.namespace: it.spec for it in plan.robots if it.spec.launch}
+    specs = {it.spec.namespace: it for it in plan.robots if it.spec.launch}
     alone = cache(lambda robot: _errors_of(specs[robot], seen, known))
     for it in found:
         # What names no robot, as the interfaces of its hardware, is asked of all.
         about = (_robots(it, seen) or specs.keys()) if it.level == ERROR else set[str]()
         robots = about & specs.keys()
         if robots and all(_is_in(alone(robot), it, seen, robot) for robot in robots):
-            yield _as_known(it)
+            yield as_known(it, _ALREADY)
         else:
             yield it
 
@@ -60,7 +73,7 @@ def as_in_the_vendors_files(plan: FleetPlan, found: Iterable[Finding]) -> Iterat
     alone = cache(lambda path: _errors_in(path, plan.file.distro))
     for it in found:
         path = launched_with.get(os.path.realpath(it.file)) if it.level == ERROR else None
-        yield _as_known(it) if path and (it.code, it.line) in alone(path) else it
+        yield as_known(it, _ALREADY) if path and (it.code, it.line) in alone(path) else it
 
 
 def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
@@ -71,32 +84,48 @@ def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
     return {(it.code, it.line) for it in found if it.level == ERROR}
 
 
-def _as_known(it: Finding) -> Finding:
-    hint = f"{it.hint}; {_ALREADY}" if it.hint else _ALREADY
-    return it._replace(level=WARNING, hint=hint)
-
-
-def _errors_of(robot: RobotSpec, fleet: Index, known: Knowledge) -> Mapping[_Key, Set[_Part]]:
-    """Return what is an error in the launch files of one robot, each with the nodes that have part."""
-    started = launched(launch_of(robot.launch, robot.words[0]), known)
+def _errors_of(robot: RewrittenRobot, fleet: Index, known: Knowledge) -> list[_Error]:
+    """Return what is an error in the launch files of one robot. A publisher without a description that
+    can be read gets the one of the fleet file."""
+    graph = launch_of(robot.spec.launch, robot.spec.words[0])
+    started = launched(graph, known)
+    if any(it.code == NO_TREE for it in started.system.environment.caveats):
+        text = etree.tostring(robot.member.source.root, encoding="unicode")
+        started = launched(_described(graph, text), known)
     alone = index(started.system, ALONE)
     every = (*judge_launch(started), *(as_sure(it, started, alone) for it in judge(alone)))
-    found: dict[_Key, set[_Part]] = defaultdict(set)
-    for it in (one for one in every if one.level == ERROR):
-        parts = (part for own in _parts(it, started.system).values() for part in own)
-        found[_key(it, fleet)].update(_plain(parts, fleet))
-    return dict(found)
+    return [
+        _error(it, fleet)._replace(
+            parts=_plain(
+                (part for own in _parts(it, started.system).values() for part in own), fleet
+            )
+        )
+        for it in every
+        if it.level == ERROR
+    ]
 
 
-def _is_in(errors: Mapping[_Key, Set[_Part]], it: Finding, seen: Index, robot: str) -> bool:
-    """Is a finding about a fleet one of the errors of this robot alone? Nodes of other robots have no
-    part in it, nor nodes that its own launch files do not start."""
-    key = _key(it, seen)
-    if len(key) < _WITH_A_NAME or key not in errors:
+def _described(graph: LaunchGraph, text: str) -> LaunchGraph:
+    values = {"/**": {"ros__parameters": {_DESCRIPTION: text}}}
+    given = ParameterText("", yaml.safe_dump(values))
+    nodes = (
+        it._replace(parameters=(*it.parameters, given)) if it.executable == STATE_PUBLISHER else it
+        for it in graph.nodes
+    )
+    return graph._replace(nodes=tuple(nodes))
+
+
+def _is_in(errors: Iterable[_Error], it: Finding, seen: Index, robot: str) -> bool:
+    """Is a finding about a fleet one of the errors of this robot alone, which may name more? Nodes of
+    other robots have no part in it, nor nodes that its own launch files do not start."""
+    own = _error(it, seen)
+    alike = [one for one in errors if one.code == own.code and own.names <= one.names]
+    known = {part for one in alike for part in one.parts}
+    if not (own.names and alike):
         return False
     for parts in _parts(it, seen.system).values():
         whose = {seen.robot(node) for _, node in parts}
-        if robot in whose and not (whose <= {robot, ""} and _plain(parts, seen) <= errors[key]):
+        if robot in whose and not (whose <= {robot, ""} and _plain(parts, seen) <= known):
             return False
     return True
 
@@ -107,10 +136,10 @@ def _robots(it: Finding, seen: Index) -> set[str]:
     return {it.robot, *map(seen.robot, nodes or (it.node, *it.names))} - {""}
 
 
-def _key(it: Finding, fleet: Index) -> _Key:
+def _error(it: Finding, fleet: Index) -> _Error:
     names = it.names or ((it.node,) if it.node else ())
     plain = (fleet.plain(it) if it.startswith("/") else fleet.plain_frame(it) for it in names)
-    return (it.code, *sorted(plain))
+    return _Error(it.code, {*plain})
 
 
 def _plain(parts: Iterable[_Part], fleet: Index) -> set[_Part]:

@@ -22,6 +22,7 @@ from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec, Sources
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launched_prefix import launched_prefixes
 from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_frames
+from multibot_rewrite.fleet.robots.node_names import names_of
 from multibot_rewrite.fleet.robots.own_values import own_value, sources_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
@@ -30,6 +31,7 @@ from multibot_rewrite.fleet.robots.simulators import is_simulated, other_hardwar
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters, of_words
+from multibot_rewrite.producers.launch.findings import NOT_LAUNCHED
 from multibot_rewrite.producers.launch.handed_on import for_robot
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.files.ros_names import in_description
@@ -63,6 +65,7 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
     yield from differences(plan)
     yield from of_sdf_alone(plan)
     yield from _on_another_time(plan)
+    yield from _not_started(plan)
     # Each description that names another robot of the fleet in values of unknown use, at its first such
     # value; what is for the one robot of it is right.
     words = {word for it in plan.robots for word in it.spec.words}
@@ -72,6 +75,20 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
         others = words if more else words.difference(first.spec.words)
         problems = in_description(source.root, others, first.names.declared)
         yield from to_findings(source, problems, ERROR)
+
+
+def _not_started(plan: FleetPlan) -> Iterator[Finding]:
+    """The nodes of launch files that something else makes under their name: the plugin in a simulator,
+    whose controller manager is called as ros2_control_node's."""
+    table = plan.fleet.table
+    for robot in plan.robots:
+        started = {*names_of(table, robot.spec.namespace).started, *names_of(table, "").started}
+        taken = {it.node for it in table.runs if it.robot in (robot.spec.namespace, "")} - started
+        for name, it in plan.evidence_of(robot).handed_on.items():
+            if name in taken:
+                message = f"{' '.join(it.program)} is not started: a plugin makes the node {name}"
+                hint = "the robot has one node of a name; leave it out of the launch file"
+                yield NOT_LAUNCHED.finding(message, hint, file=it.place.file, line=it.place.line)
 
 
 def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:

@@ -182,7 +182,7 @@ def _known(plan: FleetPlan) -> Knowledge:
     facts = known_nodes(file.nodes, file.distro, file.nodl)
     nodes = dict(facts.library.nodes)
     named = {it.kind for one in plan.evidence.values() for it in one.nodes}
-    nodes |= {it.name: it for one in plan.evidence.values() for it in one.known.values()}
+    nodes |= {name: it for one in plan.evidence.values() for name, it in one.known.items()}
     nodes |= {name: declared(facts, nodes[name]) for name in sorted(named & nodes.keys())}
     return Knowledge(nodes, load_known_nodes(file.nodes, file.distro), file.distro)
 

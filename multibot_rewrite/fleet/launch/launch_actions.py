@@ -23,6 +23,7 @@ from multibot_rewrite.fleet.launch.starts import SIMULATOR, RobotStarts
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
 from multibot_rewrite.fleet.outputs.output_file import (
+    described_path,
     expanded_name,
     gz_bridge_path,
     params_paths,
@@ -402,8 +403,7 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     if known == start_poses.AMCL and path_for(robot, "start_pose.yaml") in given.files:
         found.append(File(path_for(robot, "start_pose.yaml")))
     if known == STATE:
-        prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
-        found.append({"robot_description": Text(_description(robot)), **prefix})
+        found.append(_described(given, name))
     if known in _OF_MOVEIT:
         found.append({"robot_description": Text(_description(robot))})
         if made.path in given.files:
@@ -419,6 +419,20 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
         managed = (_called(given, it) for it in given.names.managed.get(name, ()))
         found.append({"autostart": True, "node_names": list(filter(None, managed))})
     return tuple(found)
+
+
+def _described(given: _Given, name: str) -> Parameters:
+    """What a robot_state_publisher publishes: the robot, or what its launch file has beside it, whose
+    frames get the robot's name in front."""
+    robot, naming = given.robot, given.plan.fleet.naming
+    handed = given.plan.evidence_of(robot).handed_on.get(name)
+    if handed is None or not handed.description:
+        prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
+        return {DESCRIPTION: Text(_description(robot)), **prefix}
+    above = f"{robot.spec.tag}/" if naming.layout.frames else ""
+    own = str(handed.values.get("frame_prefix", ""))
+    prefix = {"frame_prefix": f"{above}{own}"} if above else {}
+    return {DESCRIPTION: Text(described_path(robot, name)), **prefix}
 
 
 def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, frozenset[str]]]:
@@ -517,7 +531,18 @@ def _spawned(given: _Given) -> Iterator[Start]:
         spaces = {it.namespace for it in given.names.nodes.values()}
         namespace = min(spaces, key=len, default="/")
         name = "" if namespace != "/" else f"ros_gz_bridge_{robot.spec.namespace}"
-        yield Start(*_BRIDGE, namespace, name, ({"config_file": File(path)},))
+        qos = dict(_qos(given.plan, robot, robot.spec.namespace))
+        yield Start(*_BRIDGE, namespace, name, ({"config_file": File(path), **qos},))
+
+
+def _qos(plan: FleetPlan, robot: RewrittenRobot, space: str) -> Iterator[tuple[str, object]]:
+    """Yield what the bridges of its launch files set for topics of the robot, or without a ``space``
+    for those of all robots."""
+    for key, value in plan.evidence_of(robot).qos.items():
+        topic = key.split(".")[1]
+        named = _named_for(topic, "topic", robot.spec.namespace, plan.fleet.naming)
+        if space or named == topic:
+            yield key.replace(topic, named, 1), value
 
 
 def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[Start]:
@@ -544,7 +569,8 @@ def of_all(
     shared = (*_shared(plan, names, known, values), *found)
     if BRIDGE_FILE not in files:
         return shared
-    rows, served = ({"config_file": File(BRIDGE_FILE)},), services_in(plan.launched_words)
+    qos = {key: it for robot in plan.robots for key, it in _qos(plan, robot, "")}
+    rows, served = ({"config_file": File(BRIDGE_FILE), **qos},), services_in(plan.launched_words)
     bridge = Start(*_BRIDGE, parameters=rows, arguments=tuple(served))
     # It is of no use without the simulator.
     return (bridge._replace(condition=SIMULATOR), *shared) if simulators else (*shared, bridge)

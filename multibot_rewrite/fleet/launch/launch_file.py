@@ -34,11 +34,11 @@ def fleet_starts(
     files: Sequence[OutputFile],
     bridged: Collection[str],
     shown: Sequence[tuple[str, Start]],
-    are_opened: bool,
+    opens: Sequence[tuple[str, Start]],
 ) -> FleetStarts:
     """What the launch file starts; ``each`` is every robot as a fleet of its own, ``files`` what else
     is built, ``bridged`` the topics that bridges bring, ``shown`` the windows of RViz, each with its
-    robot, which it opens if somebody has asked for them."""
+    robot; those of them that it ``opens``, somebody has asked for."""
     paths = frozenset(it.path for it in files)
     values = launched_values(plan).values
     robots = [launch_actions.of_robot(one, paths, bridged, values) for one in each]
@@ -51,7 +51,7 @@ def fleet_starts(
     clock = None if others else first
     source = os.path.basename(plan.file.file) or "a fleet"
     count = plural(len(plan.robots), "robot")
-    opened = [(name, it._replace(condition=RVIZ)) for name, it in shown if are_opened]
+    opened = [(name, it._replace(condition=RVIZ)) for name, it in opens]
     names = {it.name for it in robots}
     launched = launched_simulator(plan.file)
     return FleetStarts(

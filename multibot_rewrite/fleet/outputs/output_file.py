@@ -44,6 +44,11 @@ class OutputFile(NamedTuple):
 FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
 
 
+def described_path(robot: RewrittenRobot, node: str) -> str:
+    """Return where the description is that a node publishes beside the robot's."""
+    return path_for(robot, f"{node.replace('/', '_')}.urdf")
+
+
 def path_for(robot: RewrittenRobot, source: str) -> str:
     """Where the robot's version of a source file goes: ``robot1/params.yaml``.
 

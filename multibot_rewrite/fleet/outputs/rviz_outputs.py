@@ -5,11 +5,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.base.naming import find_layout
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
+from multibot_rewrite.companions.rviz.display_groups import is_for_one, shown_in
 from multibot_rewrite.companions.rviz.of_plan import bridged_window, windows_of_plan
+from multibot_rewrite.companions.rviz.read_config import read_config
 from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
@@ -23,6 +28,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
     name_among,
     own_yaml,
     path_for,
+    yaml_of,
 )
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
@@ -125,6 +131,27 @@ def window_start(window: RvizText, file: str, parameters: str = "") -> Start:
     """Return what opens a window whose config is a ``file``."""
     given = (File(parameters),) if parameters else ()
     return Start(RVIZ, RVIZ, window.namespace, "", given, window.remaps, ("-d", File(file)))
+
+
+def opened_of(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[RvizOutput]:
+    """Return the windows that open by themselves. A launch file that starts RViz opens one window for a
+    robot: where the config has windows for robots these are it, and the one for all is left out."""
+    if not any(it.spec.launch for it in plan.robots):
+        return [*configs]
+    of_robots = ((it, tuple(one for one in it.windows if one.robot)) for it in configs)
+    return [it._replace(windows=own or it.windows) for it, own in of_robots]
+
+
+def why_for_each(path: str, layout: str) -> str:
+    """Return why each robot has a window of its own of a config; empty where one shows all robots, or
+    the config cannot be read."""
+    chosen = find_layout(layout)
+    if chosen.tf_per_robot:
+        return "each robot has its own tf topic, and one rviz2 reads one"
+    with suppress(MultibotError):
+        if chosen.namespaced and any(map(is_for_one, shown_in(read_config(yaml_of(path))))):
+            return "panels or displays in it work for one robot alone"
+    return ""
 
 
 def windows(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[tuple[str, Start]]:

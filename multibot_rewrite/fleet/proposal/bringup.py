@@ -8,8 +8,12 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
+from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.reports.xacro_arguments import names_robots
+from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import is_called_as_switch, other_values
 from multibot_rewrite.fleet.proposal.launches import (
@@ -19,6 +23,7 @@ from multibot_rewrite.fleet.proposal.launches import (
     read_any,
     read_as,
     read_named,
+    starts_simulator,
 )
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import (
@@ -76,9 +81,30 @@ class Robot(NamedTuple):
 
 
 def bringup_as_named(order: LaunchOrder) -> Bringup:
-    """The launch file that was named. Raises InputError where it cannot be read, or starts nothing."""
+    """The launch file that was named; an argument that names the vendor's robot names each robot, where
+    the launch file starts the same with it. Raises InputError where it cannot be read, or starts
+    nothing."""
     graph = read_named(order).graph
-    return Bringup(order, graph, _is_simulated(graph))
+    each = tuple((name, _for_each(name, value)) for name, value in order.arguments)
+    with suppress(InputError):
+        other = (
+            read_named(order._replace(arguments=each)).graph if each != order.arguments else graph
+        )
+        if each != order.arguments and _does(other) == _does(graph):
+            order, graph = order._replace(arguments=each), other
+    return Bringup(order, graph, starts_simulator(graph))
+
+
+def _for_each(argument: str, value: str) -> str:
+    """The value of a launch argument for any robot: ``hippo/`` of ``vehicle_name`` is ``{robot}/``."""
+    name = value.strip("/_")
+    return value.replace(name, ROBOT, 1) if names_robots(argument) and name else value
+
+
+def _does(graph: LaunchGraph) -> tuple[object, ...]:
+    """What a launch file starts and reads, whatever it calls the robot."""
+    started = sorted((it.package, it.executable) for it in graph.nodes)
+    return started, _reads(graph), len(graph.notes), len(graph.idle)
 
 
 def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | None:
@@ -96,7 +122,7 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
     # What is not said is simulated where a launch file does it.
     wanted = robot.is_simulated or not robot.simulator
     for simulated in (wanted, *([] if robot.simulator else [not wanted])):
-        if fits := [it for it in read if _is_simulated(it.graph) == simulated]:
+        if fits := [it for it in read if starts_simulator(it.graph) == simulated]:
             first, *others = sorted(fits, key=lambda it: (_tries(it, simulated), _rank(it)))
             return Bringup(first.order, first.graph, simulated, tuple(it.order for it in others))
     return None
@@ -105,7 +131,7 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
 def processes_of_robot(it: Reading) -> int:
     """How many processes a launch file starts for a robot, those that show it as one; none where it is
     a trial, or neither publishes a description nor simulates one. Raises nothing."""
-    starts = _is_simulated(it.graph) or any(map(_publishes, it.graph.nodes))
+    starts = starts_simulator(it.graph) or any(map(_publishes, it.graph.nodes))
     own = {one for one in _own(it.graph) if one.executable not in _SHOWING}
     own |= {one for one in it.graph.nodes if one.package in programs().simulators}
     return 1 + len(own) if starts and not _tries(it, True) else 0
@@ -122,7 +148,7 @@ def _with_own_arguments(
         return [it for it in read if not it.why and _is_bringup(it.graph, robot)]
 
     def fits(read: Iterable[Reading]) -> bool:
-        return any(_is_simulated(it.graph) == robot.is_simulated for it in read)
+        return any(starts_simulator(it.graph) == robot.is_simulated for it in read)
 
     found = starting(LaunchOrder(it.file) for it in likely)
     if not fits(found):
@@ -198,7 +224,7 @@ def _is_bringup(graph: LaunchGraph, robot: Robot) -> bool:
     # What is said of a file as a whole starts nothing by itself.
     unread = any(it.place.line > 1 and not it.parameters for it in graph.notes)
     shows = not unread and all(it.executable in _SHOWING for it in _own(graph))
-    return len(homes) < 2 and (_is_simulated(graph) or not shows)
+    return len(homes) < 2 and (starts_simulator(graph) or not shows)
 
 
 def _beside(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | None:
@@ -210,16 +236,12 @@ def _beside(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | No
         return None
     (read,) = read_as([LaunchOrder(found[0].file, trusted=trust)])
     nodes = any(map(is_of_robot, read.graph.nodes))
-    simulated = robot.is_simulated or _is_simulated(read.graph)
+    simulated = robot.is_simulated or starts_simulator(read.graph)
     return Bringup(read.order, read.graph, simulated) if nodes else None
 
 
 def _publishes(it: LaunchedNode) -> bool:
     return it.executable in _PUBLISHERS or f"{it.package}/{it.executable}" in programs().spawners
-
-
-def _is_simulated(graph: LaunchGraph) -> bool:
-    return not graph.packages.isdisjoint(programs().simulators)
 
 
 def _own(graph: LaunchGraph) -> list[LaunchedNode]:

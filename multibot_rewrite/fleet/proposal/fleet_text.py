@@ -11,9 +11,11 @@ from typing import Any
 
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.wording import one_line, shorten
+from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
 from multibot_rewrite.fleet.file.robot_spec import REAL
+from multibot_rewrite.fleet.outputs.rviz_outputs import RVIZ, why_for_each
 from multibot_rewrite.fleet.proposal.launches import Bringup, Row, order_text, said_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
@@ -46,7 +48,8 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
             yield from (f"#   {layout.name}: {layout.about}" for layout in others)
         yield f"{key}: {_flow(choice.value)}"
     # What all robots have, if they have one description, with the reasons.
-    common = _of_member(it.members[0], folder) if len(it.members) == 1 else ()
+    layout = it.keys["layout"].value
+    common = _of_member(it.members[0], folder, layout) if len(it.members) == 1 else ()
     for key, (value, whys) in common:
         yield ""
         yield from (f"# {line}" for line in whys)
@@ -121,7 +124,9 @@ def _flow(value: Any) -> str:
     return text.removesuffix("\n").removesuffix("\n...")
 
 
-def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
+def _of_member(
+    member: Member, folder: str, layout: str
+) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
     """The keys of a description and its files, each with the reasons."""
 
     def here(path: str) -> str:
@@ -138,7 +143,9 @@ def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tu
         yield "arguments", (dict(looked.arguments), (why, *_needed(looked)))
     if member.bringup:
         told = order_text(member.bringup.order, folder)
-        yield "launch", (told, (*_launched(member.bringup),))
+        config = next(iter(beside.files.get("rviz", ())), "")
+        apart = why_for_each(config, layout)
+        yield "launch", (told, (*_launched(member.bringup, apart),))
     if beside.srdf:
         yield "srdf", (here(beside.srdf), ("The planning groups of MoveIt",))
     if beside.stacks:
@@ -153,12 +160,17 @@ def _of_member(member: Member, folder: str) -> Iterator[tuple[str, tuple[Any, tu
         yield "companions", (files, whys)
 
 
-def _launched(it: Bringup) -> Iterator[str]:
-    """Yield what a launch file starts, for each robot and once for all, and the other launch files."""
-    own = [said_of(node) for node in it.graph.nodes if not once_for_all(node)]
-    once = [
-        f"{said_of(node)}, since {why}" for node in it.graph.nodes if (why := once_for_all(node))
+def _launched(it: Bringup, apart: str) -> Iterator[str]:
+    """Yield what a launch file starts, for each robot and once for all, and the other launch files;
+    ``apart`` is why each robot has its own RViz, if it has one."""
+    each = {node: apart if node.executable == RVIZ else "" for node in it.graph.nodes}
+    whys = {node: "" if each[node] else once_for_all(node) for node in it.graph.nodes}
+    own = [
+        f"{said_of(node)}, since {each[node]}" if each[node] else said_of(node)
+        for node, why in whys.items()
+        if not why
     ]
+    once = [f"{said_of(node)}, since {why}" for node, why in whys.items() if why]
     yield f"What {it.name} starts for each robot:"
     yield from _some(own)
     if once:
@@ -167,6 +179,8 @@ def _launched(it: Bringup) -> Iterator[str]:
     if idle := [f"{one.what}: {one.why}" for one in it.graph.idle]:
         yield "Not started, by its conditions; another value behind its file here starts it:"
         yield from _some(idle)
+    if named := [name for name, value in it.order.arguments if ROBOT in value]:
+        yield f"{', '.join(named)}: the name of the vendor's robot there; each robot has its own"
     if it.others:
         yield "It starts the most; others start this robot as well:"
         yield from _some([f"--launch {order_text(one, os.curdir)}" for one in it.others])
@@ -190,7 +204,8 @@ def _needed(it: Looked) -> Iterator[str]:
 
 def _robots(it: Proposal, folder: str) -> Iterator[dict[str, Any]]:
     for member in it.members:
-        own = _of_member(member, folder) if len(it.members) > 1 else ()
+        layout = it.keys["layout"].value
+        own = _of_member(member, folder, layout) if len(it.members) > 1 else ()
         keys = {key: value for key, (value, _) in own}
         for name in member.names:
             pose = {"pose": dict(it.poses[name])} if name in it.poses else {}

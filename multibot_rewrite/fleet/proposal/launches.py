@@ -8,6 +8,7 @@ import os
 import shlex
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
+from itertools import islice, takewhile
 from typing import NamedTuple
 
 from multibot_rewrite.base.model import InputError
@@ -18,6 +19,7 @@ from multibot_rewrite.producers.launch.child import read_launch_files
 from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
+from multibot_rewrite.producers.launch.spawners import is_spawner
 from multibot_rewrite.system.tool_nodes import is_viewer
 
 # A robot to read a launch file for.
@@ -146,7 +148,8 @@ def started(nodes: Iterable[LaunchedNode]) -> Iterator[Row]:
 
 def said_of(it: LaunchedNode) -> str:
     """Return what a process is: its name, what runs it, its remap rules and given parameters."""
-    first = [word for word in it.arguments[:1] if not word.startswith(("-", os.sep))]
+    words = takewhile(lambda word: not word.startswith(("-", os.sep)), it.arguments)
+    first = [*islice(words, None if is_spawner(it) else 1)]
     program = " ".join(filter(None, (it.package, it.executable, *first)))
     who = f"{it.name} ({program})" if it.name else program
     rules = (f"{a}:={b}" for a, b in it.remappings if _is_moved(a, b))
@@ -154,6 +157,11 @@ def said_of(it: LaunchedNode) -> str:
     named = [name for name in values if not name.startswith(_DESCRIPTION)]
     given = ", ".join((*rules, *([shorten(named, _SHOWN)] if named else ())))
     return f"{who}: {given}" if given else who
+
+
+def starts_simulator(graph: LaunchGraph) -> bool:
+    """Return whether a launch file starts a simulator, or what only a simulated robot needs."""
+    return not graph.packages.isdisjoint(programs().simulators)
 
 
 def is_of_robot(it: LaunchedNode) -> bool:

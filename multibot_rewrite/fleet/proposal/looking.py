@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from lxml import etree
@@ -28,13 +28,16 @@ from multibot_rewrite.description.sources.read import read_model
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.file.simulator_switch import (
     Suits,
+    hardware_classes,
     loads_hardware,
+    of_simulator,
     suits_real,
     suits_simulator,
     switch_for,
 )
-from multibot_rewrite.fleet.proposal.launches import Bringup, Reading
+from multibot_rewrite.fleet.proposal.launches import Bringup, Reading, read_any
 from multibot_rewrite.fleet.proposal.searching import text_of
+from multibot_rewrite.producers.launch.kept_paths import GONE
 from multibot_rewrite.producers.launch.records import LaunchArgument
 
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
@@ -98,7 +101,10 @@ def look(path: str, given: Mapping[str, str], reach: Reach, values: NeededValues
         if not found.fault:
             break
         needed = _NEEDED.search(found.fault)
-        more = {needed[1]: values.of(needed[1])} if needed else values.of_mandatory(path)
+        launched = {} if needed else values.of_file(path)
+        other = {**launched, **known} == known
+        more = values.of_mandatory(path) if other else launched
+        more = {needed[1]: values.of(needed[1])} if needed else more
         if "" in more.values() or more.keys() <= known.keys():
             break
         known = {**more, **known}
@@ -118,7 +124,8 @@ def with_bringup(
     it: Looked, bringup: Bringup | None, given: Mapping[str, str], reach: Reach
 ) -> Looked:
     """The same with the launch file that starts it, and with the arguments that this gives its xacro,
-    where they are not the default. What was ``given`` counts, and what names a robot stays."""
+    where they are not the default. What was ``given`` counts, and what names a robot stays. A launch
+    file that loads hardware of a simulator is for one, whoever starts that."""
     launched = it._replace(bringup=bringup)
     read = bringup.graph.read if bringup and not it.model else ()
     own = next((dict(one.arguments) for one in read if one.file == os.path.realpath(it.path)), {})
@@ -126,15 +133,28 @@ def with_bringup(
         return launched
     defaults = declared_arguments(it.path, filled({**own, **given}, ANY), reach)
     values = {
-        name: os.path.relpath(value, os.path.dirname(it.path)) if os.path.isabs(value) else value
-        for name, value in own.items()
-        if name not in given and not names_robots(name) and defaults.get(name, value) != value
+        name: value
+        for name, value in _own_values(own.items(), it.path).items()
+        if name not in given and defaults.get(name, own[name]) != own[name]
     }
     other = _look(it.path, {**dict(it.arguments), **values}, reach)
     if other.fault:
         return launched
     needed = tuple(one for one in it.needed if one not in values)
+    if bringup and other.root is not None and any(map(of_simulator, hardware_classes(other.root))):
+        bringup = bringup._replace(is_simulated=True)
     return other._replace(bringup=bringup, needed=needed)
+
+
+def _own_values(given: Iterable[tuple[str, str]], path: str) -> dict[str, str]:
+    """Return the arguments of a xacro that name no robot and no file that a launch makes; paths are as
+    from its folder."""
+    folder = os.path.dirname(path)
+    return {
+        name: os.path.relpath(value, folder) if os.path.isabs(value) else value
+        for name, value in given
+        if value != ANY and not (names_robots(name) or GONE in value)
+    }
 
 
 def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
@@ -204,7 +224,7 @@ def _switched(it: Looked, suits: Suits, reach: Reach) -> Looked:
         return it
     name, value = found
     other = _look(it.path, {**given, name: value}, reach)
-    return it if other.fault else other._replace(needed=it.needed, switch=name)
+    return it if other.fault else other._replace(needed=it.needed, switch=name, bringup=it.bringup)
 
 
 def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:
@@ -307,9 +327,11 @@ _ARGUMENT = re.compile(r"""<xacro:arg\b[^<>]*\bname=["'](\w+)["']""")
 
 
 class NeededValues(NamedTuple):
-    """Values for the arguments of xacros, by the launch files that are ``read``."""
+    """Values for the arguments of xacros, by the launch files that are ``read``; what none of them
+    loads, another ``launch`` file may."""
 
     read: Sequence[Reading]
+    launch: Sequence[str] = ()
 
     def of(self, name: str) -> str:
         """The value of an argument: the robot's name where it is called so, else what a launch file
@@ -322,6 +344,17 @@ class NeededValues(NamedTuple):
         given = [value for key, value in pairs if key == name]
         declared = [it.default for it in self._declared(name)]
         return next(filter(None, (*given, *declared)), self._choice(name))
+
+    def of_file(self, path: str) -> dict[str, str]:
+        """What the first launch file gives a xacro that gives it anything but names. Raises nothing."""
+        real = os.path.realpath(path)
+        read = (one for it in self._every() for one in it.graph.read if one.file == real)
+        given = (_own_values(one.arguments, path) for one in read)
+        return next(filter(None, given), {})
+
+    def _every(self) -> Iterator[Reading]:
+        yield from self.read
+        yield from read_any(self.launch)
 
     def of_mandatory(self, path: str) -> dict[str, str]:
         """The arguments of a xacro that every launch has to choose a value for, with the first of them:

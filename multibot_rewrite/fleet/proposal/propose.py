@@ -26,7 +26,14 @@ from multibot_rewrite.description.sources.release_said import SaidRelease, relea
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.proposal.companions import Companions, companions_of
 from multibot_rewrite.fleet.proposal.launched import companions_launched
-from multibot_rewrite.fleet.proposal.launches import Bringup, Reading, Row, not_read, started
+from multibot_rewrite.fleet.proposal.launches import (
+    Bringup,
+    Reading,
+    Row,
+    not_read,
+    started,
+    starts_simulator,
+)
 from multibot_rewrite.fleet.proposal.looking import (
     CLASSIC,
     GZ,
@@ -122,13 +129,14 @@ def affix_of(layout: str) -> Choice | None:
 
 def simulator_of(members: Sequence[Member]) -> Choice:
     """Whether the robots are simulated, by their launch files, else by what their descriptions have."""
-    launched = {it.bringup.is_simulated: it.bringup.name for it in members if it.bringup}
+    launched = {it.bringup.is_simulated: it.bringup for it in members if it.bringup}
     if len(launched) == 1 and all(it.bringup for it in members):
-        ((is_simulated, name),) = launched.items()
-        starts = f"the launch file {name} starts"
+        ((is_simulated, bringup),) = launched.items()
+        what = "starts a simulator" if starts_simulator(bringup.graph) else "is for a simulator"
         if is_simulated:
-            return Choice("gazebo", f"{starts} a simulator; write none for real robots")
-        return Choice(REAL, f"{starts} no simulator")
+            why = f"the launch file {bringup.name} {what}; write none for real robots"
+            return Choice("gazebo", why)
+        return Choice(REAL, f"the launch file {bringup.name} starts no simulator")
     kinds = {it.looked.simulator for it in members} - {NO_SIMULATOR}
     if not kinds:
         have = "the description has" if len(members) == 1 else "the descriptions have"

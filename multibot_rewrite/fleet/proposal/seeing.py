@@ -27,7 +27,7 @@ from multibot_rewrite.fleet.proposal.choosing import (
     processes_with,
 )
 from multibot_rewrite.fleet.proposal.companions import srdf_of
-from multibot_rewrite.fleet.proposal.launches import Bringup
+from multibot_rewrite.fleet.proposal.launches import Bringup, said_of
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
     Looked,
@@ -41,6 +41,7 @@ from multibot_rewrite.fleet.proposal.looking import (
 )
 from multibot_rewrite.fleet.proposal.searching import Found, Undecided, search
 from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.system.records import Place
 
 # Descriptions of a folder that are looked at.
 MOST = 60
@@ -96,8 +97,28 @@ def see(wanted: Wanted) -> Seen:
     """
     wanted.tell(f"looking for robots in {', '.join(wanted.paths)}")
     found = search(wanted.paths, wanted.launch or ())
+    try:
+        return _seen(wanted, found)
+    except UsageError as error:
+        if not found.named or isinstance(error, Undecided):
+            raise
+        # Nothing of the launch file is dropped in silence.
+        graphs = [it.graph for it in found.read]
+        rows = [(said_of(it), it.place) for graph in graphs for it in graph.nodes]
+        unread = (it for graph in graphs for it in graph.notes if not it.parameters)
+        rows += [(it.message, it.place) for it in unread]
+        listed = "; ".join(dict.fromkeys(f"{text} ({_at(place)})" for text, place in rows))
+        file = os.path.relpath(found.named[0].file)
+        raise UsageError(f"{error}; so nothing of {file} is in a fleet: {listed}") from None
+
+
+def _at(it: Place) -> str:
+    return f"{os.path.basename(it.file)}:{it.line}"
+
+
+def _seen(wanted: Wanted, found: Found) -> Seen:
     reach = Reach(trust=wanted.trust)
-    values = NeededValues(found.read)
+    values = NeededValues(found.read, found.launch)
     look_at = partial(look, given=wanted.arguments, reach=reach, values=values)
 
     def look_at_all(paths: Sequence[str]) -> list[Looked]:

@@ -55,6 +55,7 @@ from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.launch.findings import processes_not_known
 from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing, for_any
 from multibot_rewrite.producers.launch.of_robot import (
+    NO_QOS,
     NOTHING,
     Launched,
     without_bridges,
@@ -89,8 +90,8 @@ class RobotEvidence(NamedTuple):
     start all of its nodes and no simulator, the arguments of all that they start, the frames that it
     has in the place of defaults, the transforms that a simulator sends, whether a node of its files
     sends one of these, which no bridge file of its own has, what its launch files hand on to nodes, the
-    processes of these that are no nodes, the environment of all, what places it, and what they do
-    not start on a condition."""
+    processes of these that are no nodes, the environment of all, what places it, what they do not
+    start on a condition, and the quality of service of topics that their bridges set."""
 
     given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]
@@ -107,6 +108,7 @@ class RobotEvidence(NamedTuple):
     environment: tuple[tuple[str, str], ...] = ()
     placing: LaunchedNode | None = None
     idle: tuple[IdleAction, ...] = ()
+    qos: Mapping[str, object] = NO_QOS
 
 
 def robot_nodes(
@@ -194,7 +196,7 @@ def _with_launch(
     if not launched:
         idle = left_idle(it.nodes, it.given, it.known)
         return it._replace(findings=(*it.findings, *idle))
-    handed_on, processes, environment, placing, idle = _of_launch(spec, launched, file)
+    handed_on, processes, environment, placing, idle, qos = _of_launch(spec, launched, file)
     return it._replace(
         findings=(*it.findings, *processes_not_known(processes)),
         unsimulated=launched.whole and not launched.simulated,
@@ -204,6 +206,7 @@ def _with_launch(
         environment=environment,
         placing=placing,
         idle=idle,
+        qos=qos,
     )
 
 
@@ -213,7 +216,8 @@ def _of_launch(spec: RobotSpec, launched: Launched, file: FleetFile) -> tuple[An
     processes = tuple(
         it._replace(once=_is_once(it.name, it.once, file)) for it in launched.processes
     )
-    own = launched.handed_on, processes, launched.environment, launched.placing, launched.idle
+    after = launched.environment, launched.placing, launched.idle, launched.qos
+    own = (launched.handed_on, processes, *after)
     return tuple(for_any(it, spec.name) for it in own) if by_name else own
 
 

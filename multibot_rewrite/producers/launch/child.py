@@ -29,6 +29,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.producers.launch.failures import started_by
 from multibot_rewrite.producers.launch.kept_paths import FOLDER
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
@@ -159,6 +160,8 @@ def _read(order: LaunchOrder, answer: Mapping[str, Any]) -> LaunchGraph | InputE
             return graph_of(answer["graph"])
     except (ValueError, TypeError, LookupError, AttributeError):
         why = "its process gave a wrong answer; a file that tampers with it is not read"
+    with suppress(OSError):
+        why = f"{why}{started_by(read_file(order.file).decode('utf-8', 'replace'))}"
     return InputError(f"{order.file}: the launch file cannot be read: {why}")
 
 

@@ -36,12 +36,19 @@ _REFUSED = f"a launch file may compute and read; {_TRUST}"
 _MODULE = "launch_file"
 _MAKES = "generate_launch_description"
 _ASKED = lazy_compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
+_STARTED = lazy_compile(r"""\bexecutable\s*=\s*["']([\w./-]+)["']""")
 _NEXT_TRIED = lazy_compile(r" - \w+Error: ")
 _OF_ROS_1 = re.compile(
     r"Unknown substitution: (?:arg|find|optenv)\b"
     r"|entity of the type: (?:env|machine|param|remap|rosparam|test)\b"
 )
 _ROS_1 = "it is a launch file of ROS 1; in ROS 2 it is $(find-pkg-share NAME), $(var NAME), exec="
+
+
+def started_by(text: str) -> str:
+    """Return, for people, the programs that the text of a launch file names; empty for none."""
+    programs = dict.fromkeys(_STARTED.findall(text))
+    return f"; by its text it starts {', '.join(programs)}" if programs else ""
 
 
 def failure(error: BaseException) -> str:

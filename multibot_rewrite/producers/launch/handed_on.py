@@ -54,7 +54,8 @@ class HandedOn(NamedTuple):
     and where the launch file has it; ``texts`` are the descriptions among its parameters.
     ``is_unnamed`` is true if only its code has its name. ``files`` are its parameter files, ``clock``
     is its ``use_sim_time``, if it is said. ``number`` is its place in the launch,
-    ``program`` are its package and program or class, ``kind`` is what it is known as."""
+    ``program`` are its package and program or class, ``kind`` is what it is known as. ``description``
+    is that of something else than the robot, which it publishes."""
 
     values: Mapping[str, Any]
     arguments: tuple[str, ...] = ()
@@ -69,6 +70,7 @@ class HandedOn(NamedTuple):
     kind: str = ""
     files: tuple[str, ...] = ()
     clock: bool | None = None
+    description: str = ""
 
     @property
     def names(self) -> list[str]:
@@ -97,13 +99,15 @@ def handed_on(
         values |= {key: one.value for key, one in told.items()}
         values = {key: one for key, one in values.items() if not (it.source and key in told)}
     clock = values.pop(_CLOCK, None)
-    texts = tuple(key for key in (DESCRIPTION, SEMANTIC) if values.pop(key, None) is not None)
+    described = {key: values.pop(key, None) for key in (DESCRIPTION, SEMANTIC)}
+    texts = tuple(key for key, text in described.items() if text is not None)
     own = dict(it for it in node.environment if it not in of_all)
     program = node.package, node.executable
     more = not node.name, node.remappings, number, node.place, program
     found = HandedOn(values, node.arguments, own, node.process, texts, *more)
     files = tuple(dict.fromkeys(it.source for it in node.parameters if it.source))
-    return found._replace(files=files, clock=clock if isinstance(clock, bool) else None)
+    found = found._replace(files=files, description=str(described[DESCRIPTION] or ""))
+    return found._replace(clock=clock if isinstance(clock, bool) else None)
 
 
 def for_any(it: Any, robot: str) -> Any:

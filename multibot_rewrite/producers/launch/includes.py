@@ -25,7 +25,7 @@ from multibot_rewrite.producers.launch.describe import (
     text,
 )
 from multibot_rewrite.producers.launch.failures import is_no_text, missing_package
-from multibot_rewrite.producers.launch.kept_paths import lasting, read_text
+from multibot_rewrite.producers.launch.kept_paths import GONE, lasting, read_text
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchInclude, UnreadArgument
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 
@@ -111,11 +111,13 @@ def simulator(error: BaseException, include: Any, here: Visit) -> list[LaunchedN
 
 
 def not_here(error: BaseException, include: Any, here: Visit) -> list[LaunchedNode]:
-    """A launch file of a package that is missing here, with the arguments that are known."""
+    """A launch file of a package that is missing here, with its arguments; one that is not known has no
+    value that lasts."""
     it, package = included(include, here), missing_package(error)
     if not package or not it.file.startswith(f"{package}/"):
         return []
-    words = tuple(f"{name}:={value}" for name, value in it.arguments if value)
+    values = given(include, here.context, GONE).items()
+    words = tuple(f"{name}:={value}" for name, value in values if value)
     names = package, it.file.removeprefix(f"{package}/"), "", namespace_of(None, here.context)
     environment = tuple(changed_environment(here).items())
     how = here.waits._replace(is_include=True)
@@ -143,8 +145,8 @@ def unread_of(path: str, names: Collection[str], here: Visit) -> None:
         here.unread.append(UnreadArgument(here.place, os.path.basename(path), name, near))
 
 
-def given(include: Any, context: Any) -> dict[str, str]:
-    """The arguments of an include with their values, empty for one that is not known.
+def given(include: Any, context: Any, unknown: str = "") -> dict[str, str]:
+    """The arguments of an include with their values, ``unknown`` for one that is not known.
 
     Raises TypeError for what is no text, as launch does.
     """
@@ -153,7 +155,7 @@ def given(include: Any, context: Any) -> dict[str, str]:
         # What only a run tells, or would fail in one for another reason, is passed over.
         try:
             key = text(name, context)
-            found[key] = ""
+            found[key] = unknown
             found[key] = text(value, context)
         except Exception as error:
             if is_no_text(error):

@@ -15,6 +15,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.rosnames import check_topic_name, expand
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
@@ -54,6 +55,7 @@ from multibot_rewrite.producers.launch.records import (
 from multibot_rewrite.producers.launch.spawner_managers import under_managers
 from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, state_publisher_of
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
 
 # Their words have names, or name files of the robot.
@@ -70,6 +72,12 @@ _DESCRIPTION = "robot_description"
 _DESCRIBED = ("robot_state_publisher", "move_group", "servo_node")
 NO_NAME = "the launch file gives it no name"
 NOTHING: Mapping[str, HandedOn] = {}
+# rclcpp, qos_overriding_options: qos_overrides.TOPIC.publisher.POLICY.
+QOS = "qos_overrides."
+NO_QOS: Mapping[str, object] = {}
+_SPAWNED = (
+    "{} puts something beside the robot into the simulator, which is not started; add it to a world"
+)
 
 
 class Launched(NamedTuple):
@@ -77,7 +85,7 @@ class Launched(NamedTuple):
     its name, the controllers that are spawned by theirs, if that is all that runs, findings, if they
     start a simulator, or what is for one, what each of them is given by its name, and the processes
     that are no nodes. ``environment`` is what all processes have, ``placing`` is what puts the robot
-    into its simulator."""
+    into its simulator, ``qos`` what parameters of bridges to it set for topics."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[Run, ...]
@@ -91,6 +99,7 @@ class Launched(NamedTuple):
     environment: tuple[tuple[str, str], ...] = ()
     placing: LaunchedNode | None = None
     idle: tuple[IdleAction, ...] = ()
+    qos: Mapping[str, object] = NO_QOS
 
 
 class _Pair(NamedTuple):
@@ -128,8 +137,12 @@ def with_launched(
     given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
     unknown = {it.facts.name: it.node for it in pairs if not it.facts.is_known}
     of_all = graph.environment
-    handed = {it.facts.name: _handed(it, of_all, _is_own(it, release)) for it in pairs}
+    own = state_publisher_of([it.facts for it in pairs])
+    handed = {it.facts.name: _handed(it, of_all, own, _is_own(it, release)) for it in pairs}
     numbered = [it._replace(number=at) for at, it in enumerate(graph.nodes)]
+    spawning = [it for it in numbered if program_of(it) in programs().spawners]
+    beside = (LaunchNote(it.place, _SPAWNED.format(it.executable)) for it in spawning[1:])
+    graph = graph._replace(notes=(*graph.notes, *beside))
     processes = (
         it
         for it in numbered
@@ -147,7 +160,7 @@ def with_launched(
         handed,
         passing,
         graph.environment,
-        next((it for it in numbered if program_of(it) in programs().spawners), None)
+        next(iter(spawning), None)
         or next((numbered[it.number] for it in pairs if _may_spawn(it, handed, release)), None),
         graph.idle,
     )
@@ -161,11 +174,17 @@ def _may_spawn(it: _Pair, handed: Mapping[str, HandedOn], release: str) -> bool:
 
 
 def _lasting(graph: LaunchGraph) -> LaunchGraph:
-    """What launch files start, without the words that name what only a launch makes."""
+    """What launch files start, without the words that name what only a launch makes; without launch
+    files that are not here and of which an argument is such: they do not start without it."""
     nodes: list[LaunchedNode] = []
     notes: list[LaunchNote] = []
     for it in graph.nodes:
         words, lost = known_words(it.arguments)
+        if it.process.is_include and lost:
+            names = shorten([one.partition(":=")[0] for one in it.arguments if one not in words])
+            who = f"{it.executable} of {it.package} is not started"
+            notes.append(LaunchNote(it.place, f"{who}: its argument {names} {NOT_KNOWN}"))
+            continue
         nodes.append(it._replace(arguments=words))
         said = (f"an argument of {it.executable} {flag}".rstrip() for flag in lost)
         notes += [LaunchNote(it.place, f"{one} {NOT_KNOWN}", parameters=True) for one in said]
@@ -206,12 +225,17 @@ def _is_own(it: _Pair, release: str) -> bool:
     return known not in built_in(release).nodes if known else not it.facts.is_known
 
 
-def _handed(it: _Pair, of_all: Collection[tuple[str, str]], is_own: bool) -> HandedOn:
-    """What its launch file gives a node; what is built gives a known one its name."""
+def _handed(
+    it: _Pair, of_all: Collection[tuple[str, str]], publisher: str, is_own: bool
+) -> HandedOn:
+    """What its launch file gives a node; what is built gives a known one its name. What publishes
+    another description than the robot's ``publisher`` keeps it."""
     found = handed_on(it.node, it.facts.name, of_all, it.number)
     if it.facts.known == STATIC:
         found = found._replace(values={**found.values, **frames_in(it.node.arguments)})
     texts = () if it.facts.known in _DESCRIBED else found.texts
+    is_other = it.facts.package == STATE_PUBLISHER and it.facts.name != publisher
+    found = found._replace(description=found.description if is_other else "")
     unnamed = found.is_unnamed and is_own and not it.is_second
     return found._replace(texts=texts, is_unnamed=unnamed, kind=it.facts.known)
 
@@ -257,11 +281,14 @@ def _under_manager(
 
 
 def without_bridges(launched: Launched) -> Launched:
-    """Return the same without the bridges to a simulator: those of a build carry what they carry."""
+    """Return the same without the bridges to a simulator: those of a build carry what they carry, with
+    the quality of service that their parameters set."""
     gone = {
         name for name, it in launched.started.items() if passes_topics_on(it.package, it.executable)
     }
+    handed = (launched.handed_on[name].values for name in gone)
     return launched._replace(
+        qos={key: it for own in handed for key, it in own.items() if key.startswith(QOS)},
         nodes=tuple(it for it in launched.nodes if it.name not in gone),
         given=tuple(it for it in launched.given if it.node not in gone),
         handed_on={name: it for name, it in launched.handed_on.items() if name not in gone},

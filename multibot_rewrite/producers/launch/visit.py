@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import cache
+from inspect import getsource
 from typing import Any
 
 from multibot_rewrite.producers.launch.describe import (
@@ -21,7 +22,7 @@ from multibot_rewrite.producers.launch.describe import (
     seconds,
     text,
 )
-from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset
+from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset, started_by
 from multibot_rewrite.producers.launch.idle import wants
 from multibot_rewrite.producers.launch.includes import (
     included,
@@ -104,11 +105,19 @@ def _failed(entity: Any, error: BaseException, here: Visit) -> None:
         here.nodes.extend(known or not_here(error, entity, here))
         if known:
             return
-    reason = failure(error)
+    reason = f"{failure(error)}{_by_its_text(entity)}"
     if here.later and is_unset(error):
         reason = f"{reason.partition(';')[0]}; {_ENDED}"
     message = f"{here.later} {reason}".strip()
     here.failed(error, message, fails=is_certain(error, here.place.file))
+
+
+def _by_its_text(entity: Any) -> str:
+    """What a function of a launch file names that cannot be asked."""
+    function = getattr(entity, "_OpaqueFunction__function", getattr(entity, "function", None))
+    with suppress(OSError, TypeError):
+        return started_by(getsource(function))  # type: ignore[arg-type]
+    return ""
 
 
 def _is(entity: Any, *names: str) -> bool:

@@ -113,6 +113,11 @@ def test_a_package_may_be_beside_that_of_the_file(tree: Path) -> None:
 def test_the_sources_around_a_package(tree: Path) -> None:
     home = package(tree / "work" / "src" / "arm", "arm")
     assert sources_around(str(home / "a.urdf")) == str(tree / "work" / "src")
+    # A workspace that was copied without its history has its packages in folders of src.
+    deep = package(tree / "work" / "src" / "arms" / "demo" / "arm", "arm")
+    assert sources_around(str(deep / "a.urdf")) == str(tree / "work" / "src")
+    lone = package(tree / "copied" / "demo" / "arm", "arm")
+    assert sources_around(str(lone / "a.urdf")) == str(tree / "copied" / "demo")
     fresh = package(tree / "repository" / "src" / "hand", "hand")
     (tree / "repository" / ".git").mkdir()
     assert sources_around(str(fresh / "a.urdf")) == str(tree / "repository")

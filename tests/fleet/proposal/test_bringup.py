@@ -225,6 +225,49 @@ def test_a_xacro_that_a_launch_file_expands_itself(package: Path) -> None:
     assert fleet_of(package)["arguments"] == {"sim": "true", "prefix": "{robot}_"}
 
 
+SWITCHED = """\
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="use_sim" default="false"/>
+  <xacro:property name="mass"><inertial><mass value="1"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></xacro:property>
+  <link name="base_link"><xacro:insert_block name="mass"/></link>
+  <link name="tip"><xacro:insert_block name="mass"/></link>
+  <joint name="j" type="revolute"><parent link="base_link"/><child link="tip"/>
+    <limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+  <ros2_control name="a" type="system"><hardware>
+    <xacro:if value="$(arg use_sim)"><plugin>ign_ros2_control/IgnitionSystem</plugin></xacro:if>
+    <xacro:unless value="$(arg use_sim)"><plugin>acme/System</plugin></xacro:unless></hardware>
+    <joint name="j"><command_interface name="position"/></joint></ros2_control>
+  <xacro:if value="$(arg use_sim)"><gazebo>
+    <plugin filename="libign_ros2_control-system.so" name="ign_ros2_control::Plugin"/>
+  </gazebo></xacro:if></robot>
+"""
+LOADED = DESCRIBED.replace(GIVEN.format("', FindPackageShare('rover'), '"), "use_sim:={}")
+
+
+@pytest.mark.parametrize(
+    ("given", "words", "simulator", "use_sim"),
+    [
+        # Another launch file starts the simulator that this description is for.
+        ("true", [], "gazebo", "true"),
+        ("false", [], "none", None),
+        ("true", ["--simulator", "none"], "none", "false"),
+    ],
+)
+def test_the_description_says_what_the_launch_file_that_is_named_is_for(
+    given: str, words: list[str], simulator: str, use_sim: str | None, package: Path
+) -> None:
+    (package / "urdf/rover.urdf.xacro").write_text(SWITCHED)
+    write(package / "launch", {"up": f"{LOADED.replace('{}', given)}; {DRIVER}"})
+    launch = ["--launch", str(package / "launch/up.launch.py")]
+    fleet = fleet_of(package, "--distro", "humble", *launch, *words)
+    assert fleet["launch"] == "rover/launch/up.launch.py"
+    assert fleet["simulator"] == simulator
+    assert fleet.get("arguments", {}).get("use_sim") == use_sim
+    said = (package.parent / "fleet.yaml").read_text()
+    assert ("up.launch.py is for a simulator" in said) is (simulator == "gazebo")
+
+
 SHOWN = RVIZ[:-1] + f", arguments=['-d', {PATH.format('rviz/rover.rviz')}])"
 BRIDGED = BRIDGE[:-1] + f", parameters=[{{'config_file': {PATH.format('config/bridge.yaml')}}}])"
 CONTROLLED = DRIVER[:-1] + f", name='driver', parameters=[{PATH.format('config/control.yaml')}])"
@@ -251,6 +294,56 @@ def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
         "rviz2 rviz2, since it only looks, or passes on what a person asks for",
     ]
     assert "unread" not in text
+
+
+def test_a_window_that_commands_one_robot_is_each_ones_own(package: Path) -> None:
+    (package / "rviz/rover.rviz").write_text(
+        "Visualization Manager:\n  Tools:\n    - Class: nav2_rviz_plugins/GoalTool\n"
+    )
+    write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}"})
+    fleet_of(package)
+    text = (package.parent / "fleet.yaml").read_text()
+    each, _, once = text.partition("What up.launch.py starts")[2].partition("Once for all")
+    assert "rviz2 rviz2, since panels or displays in it work for one robot alone" in each
+    assert "rviz2" not in once.partition("launch:")[0]
+
+
+CALLED = (
+    "DeclareLaunchArgument('{0}'); "
+    + DRIVER[:-1]
+    + (
+        ", namespace=LaunchConfiguration('{0}'), parameters=[{{'who': LaunchConfiguration('{0}')}}])"
+    )
+)
+CHOSEN = (
+    "DeclareLaunchArgument('robot_name'); "
+    "Node(package='acme', executable=[LaunchConfiguration('robot_name'), '_driver'])"
+)
+
+
+@pytest.mark.parametrize(
+    ("actions", "given", "written"),
+    [
+        (CALLED.format("vehicle_name"), "vehicle_name:=hippo", "'vehicle_name:={robot}'"),
+        (CALLED.format("namespace"), "namespace:=/hippo", "'namespace:=/{robot}'"),
+        # It says what is started, or is no name of a robot.
+        (CHOSEN, "robot_name:=hippo", "robot_name:=hippo"),
+        (CALLED.format("side"), "side:=hippo", "side:=hippo"),
+    ],
+)
+def test_the_name_of_the_vendors_robot_is_that_of_each(
+    actions: str, given: str, written: str, package: Path
+) -> None:
+    write(package / "launch", {"up": f"{PUBLISHER}; {actions}"})
+    file = str(package / "launch/up.launch.py")
+    fleet = fleet_of(package, "--simulator", "none", "--launch", file, given)
+    assert fleet["launch"] == f"rover/launch/up.launch.py {written}"
+    launch = (package.parent / "out/fleet.launch.py").read_text().splitlines()
+    told = [it for it in launch if "'who': " in it]
+    assert all(("name" in it) is ("{robot}" in written) for it in told)
+    assert bool(told) is ("who" in actions)
+    said = "each robot has its own" in (package.parent / "fleet.yaml").read_text()
+    assert said is ("{robot}" in written)
 
 
 NAV2 = (
@@ -455,6 +548,54 @@ def test_its_own_description_that_cannot_be_read_is_one_line(robots: Path, capsy
     assert main(["init", str(robots), "--launch", file, "--yes", "-o", "-"]) == 2
     said = capsys.readouterr().err
     assert len(said.splitlines()) == 1 and "package 'gone' is not found" in said
+
+
+def test_what_a_launch_file_starts_is_named_where_its_description_cannot_be_read(
+    robots: Path, capsys: Any
+) -> None:
+    """In the one line: processes, each with its place, and what of it could not be read."""
+    spawner = (
+        "Node(package='controller_manager', executable='spawner', arguments=['left', 'right'])"
+    )
+    fails = "OpaqueFunction(function=lambda _: [Node(package=1 / 0, executable='hidden')])"
+    actions = f"{READS.format('other', 'example.urdf.xacro')}; {DRIVER}; {spawner}; {fails}"
+    (file,) = write(robots / "other/launch", {"up": actions})
+    assert main(["init", str(robots), "--yes", "--launch", file, "-o", str(robots / "f.yaml")]) == 2
+    (said,) = capsys.readouterr().err.splitlines()
+    for word in (
+        "acme driver (up.launch.py:2)",
+        "controller_manager spawner left right",
+        " hidden (up.launch.py:2)",
+    ):
+        assert word in said
+    assert not (robots / "f.yaml").exists()
+
+
+def test_a_launch_file_that_cannot_be_read_says_what_its_text_starts(
+    robots: Path, capsys: Any
+) -> None:
+    (file,) = write(robots / "other/launch", {"up": f"{DRIVER}; 1 / 0"})
+    assert main(["init", str(robots), "--yes", "--launch", file, "-o", str(robots / "f.yaml")]) == 2
+    (said,) = capsys.readouterr().err.splitlines()
+    assert "ZeroDivisionError" in said and "by its text it starts driver" in said
+
+
+TYPED = """<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:arg name="kind" default=""/>
+<xacro:include filename="$(arg kind).xacro"/><link name="base_link"/><link name="wheel"/>
+<joint name="j" type="continuous"><parent link="base_link"/><child link="wheel"/></joint></robot>"""
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_a_description_that_needs_a_value_has_that_of_a_launch_file(
+    named: bool, package: Path
+) -> None:
+    """By its own default it does not expand."""
+    (package / "urdf/rover.urdf.xacro").write_text(TYPED)
+    (package / "urdf/big.xacro").write_text('<robot xmlns:xacro="x"/>')
+    write(package / "launch", {"up": f"{LOADED.replace('use_sim:={}', 'kind:=big')}; {DRIVER}"})
+    words = ["--launch", str(package / "launch/up.launch.py")] if named else []
+    assert fleet_of(package, "--simulator", "none", *words)["arguments"] == {"kind": "big"}
 
 
 def test_a_question_about_files_keeps_the_launch_file(robots: Path, capsys: Any) -> None:
