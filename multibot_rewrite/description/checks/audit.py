@@ -133,7 +133,7 @@ def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         section = host.node.section
         if section is None or section.type != "plugin" or section.ros != "2":
             continue
-        flavours = tree.vocabulary.find("plugin", section.names[0])
+        flavours = tree.vocabulary.of_every_ros("plugin", section.names[0])
         theirs = {tag for other in flavours if other.ros == "1" for tag in other.tags}
         if not theirs:
             continue

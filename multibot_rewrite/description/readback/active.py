@@ -16,6 +16,7 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.releases import ROS_1, ROS_2
 from multibot_rewrite.description.readback.parameters import given_at, holds
 from multibot_rewrite.description.readback.xml import child_text
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
@@ -25,7 +26,6 @@ from multibot_rewrite.description.rewriters.vocabulary.grammar import split_open
 # (gazebosim/gz-sim src/SystemLoader.cc).
 _ENDING = lazy_compile(r"\.(?:so|dylib|dll)\Z")
 _SYSTEM = lazy_compile(r"(?:ignition-gazebo|gz-sim)\d*-?(.*)")
-ROS_1, ROS_2 = "1", "2"
 # Every plugin that is not known and has a <ros> is a node.
 WITH_ROS = "any_with_ros"
 

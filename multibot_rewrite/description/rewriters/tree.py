@@ -317,10 +317,10 @@ def _flavour(found: Sequence[VocabularySection], element: _Element) -> Vocabular
 
 
 @lru_cache(maxsize=16)
-def builtin_tree(vocabulary: tuple[str, ...], release: str) -> Tree:
+def builtin_tree(vocabulary: tuple[str, ...], release: str, ros: str = "") -> Tree:
     """The tree of a release: of the vocabulary built in, installed, and named in ``vocabulary``; made
-    once."""
-    sections = load_vocabulary(vocabulary, release)
+    once. ``ros`` is "1" or "2" where it is known which of them loads the plugins."""
+    sections = load_vocabulary(vocabulary, release, ros=ros)
     try:
         tree = Tree(sections)
         if sections.extended:
