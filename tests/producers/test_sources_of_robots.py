@@ -10,6 +10,7 @@ from given_parameters import run_given
 from lxml import etree
 
 from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import (
     UNKNOWN,
@@ -173,6 +174,9 @@ HARDWARE = (
         ("fake_components/GenericSystem", {"robot_ip": "10.0.0.2"}, []),
         ("acme/Arm", {"robot_ip": ""}, []),
         ("acme/Arm", {}, []),
+        # What a known class does not read it does not open.
+        ("gz_ros2_control/GazeboSimSystem", {"robot_ip": "10.0.0.2"}, []),
+        ("ur_robot_driver/URPositionHardwareInterface", {"serial_port": "/dev/ttyUSB0"}, []),
     ],
 )
 def test_the_devices_of_a_description(
@@ -180,9 +184,46 @@ def test_the_devices_of_a_description(
 ) -> None:
     inside = "".join(f'<param name="{name}">{it}</param>' for name, it in params.items())
     root = etree.fromstring(HARDWARE.format(plugin, inside))
-    made = [*of_hardware(root, "/m", AT)]
+    made = [*of_hardware(root, "/m", AT, load_vocabulary((), "jazzy"))]
     assert [(it.kind, it.value) for it in made] == found
     assert all(it == Address(it.kind, "robot_ip", it.value, "/m", AT) for it in made)
+
+
+@pytest.mark.parametrize(
+    ("plugin", "params", "found"),
+    [
+        (
+            "robotiq_driver/RobotiqGripperHardwareInterface",
+            {},
+            [("computer", "COM_port", "/dev/ttyUSB0")],
+        ),
+        ("ethercat_driver/EthercatDriver", {}, [("computer", "master_id", "0")]),
+        ("dynamixel_hardware/DynamixelHardware", {"use_dummy": "true", "usb_port": "/dev/a"}, []),
+        (
+            "ur_robot_driver/URPositionHardwareInterface",
+            {"robot_ip": "10.0.0.2", "reverse_port": "50001", "kinematics/hash": "calib_1"},
+            [
+                ("device", "robot_ip", "10.0.0.2"),
+                ("computer", "reverse_port", "50001"),
+                ("calibration", "kinematics/hash", "calib_1"),
+            ],
+        ),
+        (
+            "lbr_ros2_control::SystemInterface",
+            {"port_id": "30200", "remote_host": "INADDR_ANY"},
+            [("computer", "port_id", "30200")],
+        ),
+    ],
+)
+def test_what_a_known_class_opens_is_that_of_the_vocabulary(
+    plugin: str, params: dict[str, str], found: list[tuple[str, str, str]]
+) -> None:
+    """default_serial_factory.cpp of robotiq_driver, ec_master.hpp of ethercat_driver_ros2,
+    hardware_interface.cpp:700 of ur_robot_driver, system_interface.cpp:393 of lbr_fri_ros2_stack."""
+    inside = "".join(f'<param name="{name}">{it}</param>' for name, it in params.items())
+    root = etree.fromstring(HARDWARE.format(plugin, inside))
+    made = of_hardware(root, "/m", AT, load_vocabulary((), "jazzy"))
+    assert [(it.kind, it.name, it.value) for it in made] == found
 
 
 @pytest.mark.parametrize(

@@ -96,11 +96,19 @@ def sensor_sections(sensor: _Element, vocabulary: Vocabulary) -> list[Vocabulary
 PLUGIN, HARDWARE, SENSOR, INCLUDE = "plugin", "hardware class", "sensor type", "included model"
 # A number is an address of which it is known how that of the next robot is made.
 ADDRESS, NUMBER, FILE = "address", "number", "file"
+# What is of the computer that a driver runs on.
+DEVICE, PORT = "device", "port"
 NOTHING, UNKNOWN, NAMESPACE = "nothing", "unknown", "namespace"
 # The kind of what only a namespace keeps apart.
 RELATIVE = "relative names of"
-# A port that the system gives, every address of a machine, its loopback: no two robots meet there.
-ANY_ADDRESS = frozenset({"0", "0.0.0.0", "lo"})
+# No device at all; a port that the system gives, every address of a machine, its loopback: no two
+# robots meet there.
+NOWHERE = frozenset(
+    (
+        *("", '""', "R", "-1", "0", "none", "None", "INADDR_ANY", "0.0.0.0"),
+        *("127.0.0.1", "R127.0.0.1", "localhost", "lo"),
+    )
+)
 # Kinds of names that something runs by: a section with one of them says what it opens.
 _OPENED = frozenset({"topic", "subtopic", "service", "stem", "namespace"})
 # A <plugin> in these is a class that is loaded by what is around it, or MJCF, which runs nothing.
@@ -187,10 +195,11 @@ def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, st
     if NAMESPACE in section.opens:
         yield RELATIVE, section.names[0], "opens"
     for word in section.opens:
-        kind, step, when, path, usual = split_opens(word)
-        if not path or (when and not holds(host, when)):
+        it = split_opens(word)
+        if not it.path or (it.when and not holds(host, it.when)):
             continue
-        values = [it for it in given_at(host, path) if it]
-        for value in values or ([usual] if usual else []):
-            if value not in ANY_ADDRESS:
-                yield NUMBER if step else kind, value, path
+        values = [value for value in given_at(host, it.path) if value]
+        for value in values or ([it.default] if it.default else []):
+            # The first device of its kind has the number 0.
+            if value not in NOWHERE or (it.kind == DEVICE and value == "0"):
+                yield NUMBER if it.step else it.kind, value, it.path

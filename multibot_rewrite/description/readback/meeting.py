@@ -15,7 +15,14 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.naming import NAMESPACE, Naming, is_keyword, is_of_world
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.description.readback.active import ADDRESS, FILE, NUMBER, RELATIVE
+from multibot_rewrite.description.readback.active import (
+    ADDRESS,
+    DEVICE,
+    FILE,
+    NUMBER,
+    PORT,
+    RELATIVE,
+)
 from multibot_rewrite.description.readback.nodes import (
     ACTION,
     BELOW,
@@ -32,6 +39,8 @@ from multibot_rewrite.description.readback.reading import FRAME, IN_CODE, NODE, 
 TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
 FRAMES, LOOKUP, NOT_TAKEN = "MG402", "MB425", "MR105"
 OPENED = "MB412"
+# What two robots may both have on computers of their own.
+OF_COMPUTER = frozenset({DEVICE, PORT})
 # What is said of a number that each further robot got in the place of such a one.
 NUMBERED = "MF845"
 SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN, OPENED})
@@ -58,9 +67,7 @@ _CODES = {
     NODE: TWO_NODES,
     RELATIVE: TWO_NODES,
     FRAME: FRAMES,
-    ADDRESS: OPENED,
-    NUMBER: OPENED,
-    FILE: OPENED,
+    **dict.fromkeys((ADDRESS, DEVICE, FILE, NUMBER, PORT), OPENED),
 }
 
 
@@ -148,6 +155,8 @@ def advice(name: RuntimeName, together: bool = False) -> str:
         return "ROS 1 has one /tf: use --layout frames-per-robot"
     if name.kind == NUMBER and not together:
         return "name all robots in one call, or in a fleet file: each gets a number of its own"
+    if name.kind in OF_COMPUTER:
+        return f"{_ADVICE[OPENED]}; it is right where each robot has a computer of its own"
     if name.kind == RELATIVE:
         return "give each robot a namespace: use --layout tf-per-robot or both"
     if name.path == IN_CODE or (name.path.startswith("/") and code_of(name) in _ADVICE):

@@ -180,29 +180,16 @@ PARTLY_NAMESPACED = declare("MF706", "plugins-partly-namespaced", WARNING, forma
 MODEL_OF_OTHER_NAME = declare("MF707", "model-of-other-name", WARNING, formats=("fleet",))
 
 
-_NOT_LOADED = (
-    "is of ROS 1: it is not loaded",
-    "put the plugin of ROS 2 in its place, or delete it",
-)
-_READ_BY_ROS_1 = (
-    "has parameters of ROS 1, which ROS 2 does not read: its topics are the same for all robots",
-    "write those of ROS 2, with <ros><namespace>",
-)
 PLUGIN_OF_ROS_1 = declare("MF713", "plugin-of-ros-1", WARNING, formats=("fleet",))
 
 
 def _of_ros_1(robot: RewrittenRobot) -> Iterator[Finding]:
-    """The plugins that no section of ROS 2 has, and those whose parameters are of ROS 1."""
-    known = robot.member.vocabulary
-    told: dict[str, bool] = {}
-    for host in robot.member.inventory.hosts:
-        section = host.node.section
-        if section is not None and section.type == "plugin" and section.ros == "1":
-            both = any(it.ros != "1" for it in known.find("plugin", section.names[0]))
-            told[host.element.get("filename") or section.names[0]] = both
-    for name, both in told.items():
-        said, hint = _READ_BY_ROS_1 if both else _NOT_LOADED
-        message = f"robot {robot.spec.name!r}: plugin {name} {said}"
+    """The plugins that no section of ROS 2 has."""
+    of_ros_1 = (it for it in robot.member.inventory.served if it[1].type == "plugin")
+    names = (host.get("filename") or it.names[0] for host, it in of_ros_1 if it.ros == "1")
+    for name in dict.fromkeys(names):
+        message = f"robot {robot.spec.name!r}: plugin {name} is of ROS 1: it is not loaded"
+        hint = "put the plugin of ROS 2 in its place, or delete it"
         yield at_robot(PLUGIN_OF_ROS_1, robot, message, hint)
 
 

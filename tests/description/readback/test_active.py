@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import pytest
+from lxml import etree
 
-from multibot_rewrite import rewrite, strip
+from multibot_rewrite import rewrite, rewrite_all, strip
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.checks.verdict import GIVEN, given
 from multibot_rewrite.description.readback.active import active_parts, says_what_it_opens
@@ -152,6 +153,59 @@ def test_a_port_is_one_robots() -> None:
     assert why(robot(plugin("ArduPilotPlugin"))) == ("1 resource shared by all robots",)
     given = plugin("ArduPilotPlugin", "<fdm_port_in>0</fdm_port_in>")
     assert why(robot(given)) == ()
+
+
+def own(class_: str, **params: str) -> str:
+    inside = "".join(f'<param name="{name}">{it}</param>' for name, it in params.items())
+    return hardware(class_).replace("</hardware>", f"{inside}</hardware>")
+
+
+@pytest.mark.parametrize(
+    ("inside", "shared"),
+    [
+        # default_serial_factory.cpp:41 of robotiq_driver: /dev/ttyUSB0 where nothing is given.
+        (own("robotiq_driver/RobotiqGripperHardwareInterface"), 1),
+        (own("robotiq_driver/RobotiqGripperHardwareInterface", COM_port="none"), 0),
+        (own("dynamixel_hardware/DynamixelHardware", usb_port="/dev/ttyUSB0"), 1),
+        (own("dynamixel_hardware/DynamixelHardware", usb_port="/dev/a", use_dummy="true"), 0),
+        # ec_master.hpp:34: the master 0.
+        (own("ethercat_driver/EthercatDriver"), 1),
+        (own("openarm_hardware/OpenArm_v10HW"), 1),
+        # hardware_interface.cpp:700 to 714 of ur_robot_driver.
+        (own("ur_robot_driver/URPositionHardwareInterface", reverse_port="50001"), 1),
+        (own("ur_robot_driver/URPositionHardwareInterface", reverse_port="0"), 0),
+        (own("mock_components/GenericSystem", serial_port="/dev/ttyUSB0"), 0),
+    ],
+)
+def test_what_a_driver_opens_on_its_computer_is_one_robots(inside: str, shared: int) -> None:
+    made = rewrite(robot(inside), "robot1", affix="prefix")
+    found = [it for it in made.findings if it.code == "MB412"]
+    assert len(found) == shared
+    assert all("a computer of its own" in it.hint for it in found)
+    assert any("resource" in it for it in made.not_proved) == bool(shared)
+
+
+@pytest.mark.parametrize(
+    ("inside", "numbers"),
+    [
+        # system_interface.cpp:394 of lbr_ros2_control: 30200 to 30209.
+        (own("lbr_ros2_control::SystemInterface", port_id="30208"), ["30208", "30209", "30208"]),
+        (
+            plugin("ArduPilotPlugin", "<fdm_port_in>65530</fdm_port_in>"),
+            ["65530", "65530", "65530"],
+        ),
+        (
+            plugin("ArduPilotPlugin", "<fdm_port_in>65510</fdm_port_in>"),
+            ["65510", "65520", "65530"],
+        ),
+    ],
+)
+def test_numbers_end_where_the_last_one_is(inside: str, numbers: list[str]) -> None:
+    made = [*rewrite_all(robot(inside), ["a", "b", "c"])]
+    found = [etree.fromstring(one.data).xpath("string(//fdm_port_in|//param)") for one in made]
+    assert found == numbers
+    is_shared = len(set(numbers)) < len(numbers)
+    assert all(any("resource" in it for it in one.not_proved) == is_shared for one in made)
 
 
 # ---------------------------------------------------------------- gz-transport
