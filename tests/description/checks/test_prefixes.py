@@ -29,7 +29,7 @@ def test_a_prefix_counts_as_written_where_it_has_its_default(
     assert any(repr(value) in it.message for it in told.findings if it.code == "MB422")
     made = rewrite(text, "robot1", layout=layout, affix="prefix")
     assert made.not_proved == ()
-    assert f"<floor_link_prefix>robot1_{value}</floor_link_prefix>" in made.text
+    assert f"<floor_link_prefix>robot1/{value}</floor_link_prefix>" in made.text
 
 
 SENSOR = '<sensor name="{}" type="camera"/>'
