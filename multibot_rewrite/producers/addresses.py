@@ -11,12 +11,12 @@ from itertools import pairwise
 from lxml.etree import _Element
 
 from multibot_rewrite.base.bounded import load_own_yaml
-from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.readback.active import (
     ADDRESS,
     NOWHERE,
     RELATIVE,
     hardware_section,
+    is_device,
     opened,
     says_what_it_opens,
 )
@@ -32,7 +32,6 @@ from multibot_rewrite.producers import evidence
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import CALIBRATION, COMPUTER, DEVICE, OWN, Address, Place
 
-_DEVICE = lazy_compile(r"/dev/\S+|v?can\d+|COM\d+")
 # Those below are of services of the system.
 _FREE_PORTS = 1024
 _OFF = ("", "false", "no", "off")
@@ -107,7 +106,7 @@ def held_by(name: str, text: str) -> str:
 
 
 def _of_value(text: str) -> str:
-    return COMPUTER if _DEVICE.fullmatch(text) else ""
+    return COMPUTER if is_device(text) else ""
 
 
 def is_of_network(text: str) -> bool:

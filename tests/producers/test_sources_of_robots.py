@@ -174,9 +174,9 @@ HARDWARE = (
         ("fake_components/GenericSystem", {"robot_ip": "10.0.0.2"}, []),
         ("acme/Arm", {"robot_ip": ""}, []),
         ("acme/Arm", {}, []),
-        # What a known class does not read it does not open.
+        # What a class is known to open nothing of.
         ("gz_ros2_control/GazeboSimSystem", {"robot_ip": "10.0.0.2"}, []),
-        ("ur_robot_driver/URPositionHardwareInterface", {"serial_port": "/dev/ttyUSB0"}, []),
+        ("gz_ros2_control/GazeboSimSystem", {"robot_ip": "/dev/ttyUSB0"}, []),
     ],
 )
 def test_the_devices_of_a_description(

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from lxml.etree import _Element
+
 from multibot_rewrite.base.nearest import SLIP, Guesses
 from multibot_rewrite.base.releases import CLASSIC, ROS_1, ROS_2, lacks_classic
 from multibot_rewrite.description.checks.problem import Problem
@@ -14,6 +16,8 @@ from multibot_rewrite.description.readback.active import (
     PLUGIN,
     ActivePart,
     active_parts,
+    is_loaded,
+    plugin_name,
 )
 from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
@@ -23,6 +27,7 @@ ANOTHER_RELEASE = (
     "name the release that the description is for with --distro, or distro: in a fleet file"
 )
 SAY_IT = "say it in a vocabulary file: a line for each topic and service, or opens: nothing"
+NOT_LOADED = "MB112"
 CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 
 
@@ -37,6 +42,10 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     old = next((it for it in known if it.name.startswith(CLASSIC)), None)
     if old and not lacks_classic(release, inventory.document.source):
         old = None
+    for plugin in root.iter(PLUGIN):
+        if not is_loaded(plugin):
+            message = f"nothing loads the <plugin> {plugin_name(plugin)!r} in <{_around(plugin)}>"
+            yield Problem(plugin, message, None, "move it into a <gazebo>", (), NOT_LOADED)
     by_ros = _by_ros(parts, tree.vocabulary)
     for part in parts:
         if not part.is_known:
@@ -52,6 +61,11 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             )
             hint = "name the ROS 2 release with --distro, or write it for ROS 2, with <ros>"
             yield Problem(part.element, message, None, hint, (), CODES[PLUGIN])
+
+
+def _around(plugin: _Element) -> str:
+    parent = plugin.getparent()
+    return "" if parent is None else str(parent.tag)
 
 
 def _by_ros(parts: Iterable[ActivePart], vocabulary: Vocabulary) -> dict[str, list[ActivePart]]:

@@ -18,7 +18,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.releases import ROS_1, ROS_2
 from multibot_rewrite.description.readback.parameters import given_at, holds
-from multibot_rewrite.description.readback.xml import child_text
+from multibot_rewrite.description.readback.xml import child_text, text_of
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
 
@@ -96,9 +96,12 @@ def sensor_sections(sensor: _Element, vocabulary: Vocabulary) -> list[Vocabulary
 PLUGIN, HARDWARE, SENSOR, INCLUDE = "plugin", "hardware class", "sensor type", "included model"
 # A number is an address of which it is known how that of the next robot is made.
 ADDRESS, NUMBER, FILE = "address", "number", "file"
+_DEVICE = lazy_compile(r"/dev/\S+|v?can\d+|COM\d+")
 # What is of the computer that a driver runs on.
 DEVICE, PORT = "device", "port"
-NOTHING, UNKNOWN, NAMESPACE = "nothing", "unknown", "namespace"
+NOTHING, UNKNOWN, NAMESPACE, TRANSFORMS = "nothing", "unknown", "namespace", "transforms"
+# What is sent or heard where no rule reaches, on the one topic that all have: frames keep robots apart.
+TRANSFORMS_ON = "transforms on"
 # The kind of what only a namespace keeps apart.
 RELATIVE = "relative names of"
 # No device at all; a port that the system gives, every address of a machine, its loopback: no two
@@ -111,6 +114,8 @@ NOWHERE = frozenset(
 )
 # Kinds of names that something runs by: a section with one of them says what it opens.
 _OPENED = frozenset({"topic", "subtopic", "service", "stem", "namespace"})
+# Of a URDF itself, in which nothing loads a <plugin>.
+_PARTS = frozenset({"robot", "link", "joint", "sensor", "ros2_control"})
 # A <plugin> in these is a class that is loaded by what is around it, or MJCF, which runs nothing.
 _NO_PLUGINS = frozenset({"hardware", "transmission", "raw_inputs", "mujoco_inputs", "extension"})
 
@@ -153,7 +158,8 @@ def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]
     for element in root.iter(*every):
         every[str(element.tag)].append(element)
     for plugin in every["plugin"]:
-        if not _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors()):
+        inside = _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors())
+        if is_loaded(plugin) and not inside:
             section, known = plugin_section(plugin, vocabulary)
             yield ActivePart(PLUGIN, plugin, plugin_name(plugin), section if known else None)
     yield from hardware_parts(root, vocabulary)
@@ -173,6 +179,12 @@ def hardware_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePar
     for system in root.iter("ros2_control"):
         if class_ := hardware_class(system):
             yield ActivePart(HARDWARE, system, class_, hardware_section(system, vocabulary))
+
+
+def is_loaded(plugin: _Element) -> bool:
+    """Does a simulator look for a plugin at this place? In a URDF in its <gazebo> and in those of other
+    simulators (sdformat parser_urdf.cc, webots_ros2_driver WebotsNode.cpp)."""
+    return not _PARTS.issuperset(str(it.tag) for it in plugin.iterancestors())
 
 
 def plugin_name(plugin: _Element) -> str:
@@ -206,6 +218,8 @@ def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, st
     relative names that no row has."""
     if NAMESPACE in section.opens:
         yield RELATIVE, section.names[0], "opens"
+    if TRANSFORMS in section.opens:
+        yield TRANSFORMS_ON, "/tf", "its own listener"
     for word in section.opens:
         it = split_opens(word)
         if not it.path or (it.when and not holds(host, it.when)):
@@ -215,3 +229,14 @@ def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, st
             # The first device of its kind has the number 0.
             if value not in NOWHERE or (it.kind == DEVICE and value == "0"):
                 yield NUMBER if it.step else it.kind, value, it.path
+    if host.tag == "ros2_control" and NOTHING not in section.opens:
+        paths = {split_opens(word).path for word in section.opens}
+        for param in host.iterfind("hardware/param"):
+            path = f"hardware/param[@name={param.get('name', '')}]"
+            if path not in paths and is_device(text := text_of(param)):
+                yield DEVICE, text, path
+
+
+def is_device(text: str) -> bool:
+    """Is this the name of a device of a computer, whatever parameter has it?"""
+    return _DEVICE.fullmatch(text) is not None

@@ -22,13 +22,13 @@ from multibot_rewrite.description.readback.active import (
     NUMBER,
     PORT,
     RELATIVE,
+    TRANSFORMS_ON,
 )
 from multibot_rewrite.description.readback.nodes import (
     ACTION,
     BELOW,
     SERVICE,
     TOPIC,
-    TRANSFORMS,
     ReadNode,
     RuntimeName,
     full_name,
@@ -63,7 +63,7 @@ CAMERA_INFO = "camera_info"
 Place = tuple[str, int, str, str, int]
 # The rule that is about a kind of shared name.
 _CODES = {
-    TRANSFORMS: DATA,
+    TRANSFORMS_ON: DATA,
     NODE: TWO_NODES,
     RELATIVE: TWO_NODES,
     FRAME: FRAMES,
@@ -116,7 +116,7 @@ def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
         elif it.kind in (TOPIC, BELOW, SERVICE, ACTION):
             # __default_topic__ is no topic: the simulator makes one from the model's name.
             shared = bare in naming.shared_topics or is_keyword(bare) or is_of_world(it.name)
-        elif it.kind == TRANSFORMS:
+        elif it.kind == TRANSFORMS_ON:
             shared = naming.layout.frames
         else:
             shared = it.kind == RELATIVE and naming.topics == NAMESPACE
@@ -151,8 +151,8 @@ def said(who: str, *names: RuntimeName) -> str:
 def advice(name: RuntimeName, together: bool = False) -> str:
     """What to do about a shared name, but for those of controllers; ``together`` where its robots were
     rewritten in one call, so that each has a number of its own where it can have one."""
-    if name.kind == TRANSFORMS:
-        return "ROS 1 has one /tf: use --layout frames-per-robot"
+    if name.kind == TRANSFORMS_ON:
+        return "no rule moves it: use --layout frames-per-robot"
     if name.kind == NUMBER and not together:
         return "name all robots in one call, or in a fleet file: each gets a number of its own"
     if name.kind in OF_COMPUTER:

@@ -15,7 +15,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.readback.xml import child_text, is_on, values_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT
+from multibot_rewrite.description.rewriters.vocabulary.grammar import MODEL as OF_FILE, SENT
 from multibot_rewrite.description.rewriters.vocabulary.values import WiredTopic, is_type
 
 MODEL = "{model}/"
@@ -33,9 +33,12 @@ def values_of(host: _Element, site: SiteRow) -> list[str]:
 
 def _applies(host: _Element, site: SiteRow) -> bool:
     """Has the sibling that decides this text? It stands beside the last step of the path."""
-    sibling, _, text = site.when.partition("=")
+    sibling, _, wanted = site.when.partition("=")
     above = site.path.rpartition("/")[0]
-    return text in values_at(host, f"{above}/{sibling}" if above else sibling)
+    texts = set(wanted.split("|"))
+    if OF_FILE in texts:
+        texts |= {it.get("name") or "" for it in host.getroottree().iter("robot", "model")}
+    return not texts.isdisjoint(values_at(host, f"{above}/{sibling}" if above else sibling))
 
 
 def default_of(host: _Element, default: str) -> str:
@@ -146,11 +149,11 @@ def wired_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[Wir
         if it.when and not holds(plugin, it.when):
             continue
         path = it.name.partition("{")[2].partition("}")[0]
-        for name in _filled(plugin, section, it.name):
+        for name in filled(plugin, section, it.name):
             yield it._replace(name=name, type=_type(plugin, it.type)), path
 
 
-def _filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator[str]:
+def filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator[str]:
     """The name for each value of the first path in it, and so on."""
     head, slot, rest = name.partition("{")
     if not slot:
@@ -159,7 +162,7 @@ def _filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator
     path, _, tail = rest.partition("}")
     site = next((it for it in section.sites if it.path == path), None)
     for value in given_at(plugin, path) if site is None else values_of(plugin, site):
-        yield from _filled(plugin, section, f"{head}{value}{tail}")
+        yield from filled(plugin, section, f"{head}{value}{tail}")
 
 
 def _type(plugin: _Element, type_: str) -> str:

@@ -229,6 +229,8 @@ def _unknown_child(
         homes = [it.name for it in schema.sections.values() if child.tag in it.children]
         tags = sorted({home.rpartition("_")[2] for home in homes} - {str(element.tag)})
         hint = f"move it into {' or '.join(f'<{tag}>' for tag in tags)}" if tags else "delete it"
+        if child.tag == "plugin" and child.get("filename"):
+            hint = "move it into a <gazebo>"
         yield fault("misplaced", child, None, message, hint)
     elif section.name != ROBOT:
         yield fault("not-read", child, None, message)

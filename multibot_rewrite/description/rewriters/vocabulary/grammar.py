@@ -61,6 +61,8 @@ OPTIONS = ("form", "default", "when", "empty", "fill", *WIRES)
 RELEASES = "releases="
 # A topic that comes from outside: the robot's own only where something in the file sends it.
 SENT = "sent"
+# Any model of the file, among the texts of a sibling on which a row depends.
+MODEL = "{model}"
 EMPTY = ("default", "model", "itself")
 FORMS = (
     *("whole", "list", "scoped", "words", "suffixed", "member", "transport"),
@@ -72,7 +74,7 @@ _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
 _ONE_STEP = lazy_compile(_STEP)
 _SWITCH = lazy_compile(rf"{_NAME}=[^\s=]+(?:=on)?")
-_BARE_OPENS = ("nothing", "model", "namespace", "world", "unknown")
+_BARE_OPENS = ("nothing", "model", "namespace", "transforms", "world", "unknown")
 _OPENS = lazy_compile(
     r"(address|device|port|file)(?:\+([1-9]\d*)(?:\.\.([1-9]\d*))?)?:"
     r"(?:([^\s?]+)\?)?((?:[^\s=\[]|\[@[^\]]*\])+)(?:=(\S+))?"
@@ -250,7 +252,7 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     opened = [word for word in words[1:] if key == "opens" and word not in _BARE_OPENS]
     if wrong := [word for word in opened if not _OPENS.fullmatch(word)]:
         raise VocabularyError(
-            f"{place}: opens: {wrong[0]!r} is not nothing, model, namespace, world, unknown, "
+            f"{place}: opens: {wrong[0]!r} is not {', '.join(_BARE_OPENS)}, "
             "address:PATH=DEFAULT, address+STEP..LAST:PATH=DEFAULT, device:PATH, port:PATH or file:PATH"
         )
     tuple(wired_topics(place, {key: value}))
