@@ -20,6 +20,7 @@ from multibot_rewrite.description.readback.nodes import (
 from multibot_rewrite.description.readback.other_topics import of_others, resolved
 from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
+from multibot_rewrite.description.rewriters.vocabulary.grammar import MODEL as OF_MODEL
 
 NODE, FRAME = "node", "frame"
 # Where a frame is written that no parameter holds.
@@ -124,9 +125,7 @@ def _of_first_senders(
     sent: set[_Element] = set()
     partly: set[int] = set()
     for it in hosts:
-        sites = [
-            s for s in it.section.sites if parameters.MODEL in s.default and s.kinds[0] == FRAME
-        ]
+        sites = [s for s in it.section.sites if OF_MODEL in s.default and s.kinds[0] == FRAME]
         if it.number not in numbers:
             sent |= {
                 models[it.number] for s in sites if parameters.default_of(it.element, s.default)

@@ -63,6 +63,8 @@ RELEASES = "releases="
 SENT = "sent"
 # Any model of the file, among the texts of a sibling on which a row depends.
 MODEL = "{model}"
+# What stands for it in a name that is made of one: no XML can hold that character.
+SPAWNED = "\x01/"
 EMPTY = ("default", "model", "itself")
 FORMS = (
     *("whole", "list", "scoped", "words", "suffixed", "member", "transport"),
