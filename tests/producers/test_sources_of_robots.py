@@ -147,6 +147,13 @@ _NESTED = """<sdf><model name="r"><model name="arm"><link name="hand"><sensor na
         (_ON_PLATE.format("", ""), "robot1/base/s", "plate"),
         (_ON_PLATE.format("", _KEPT), "robot1/plate/s", "plate"),
         (_ON_PLATE.format("<gz_frame_id>laser</gz_frame_id>", ""), "laser", "plate"),
+        # Sensor.cc of gz-sensors8 reads no <frame_id>, and no <ignition_frame_id>.
+        (_ON_PLATE.format("<frame_id>laser</frame_id>", ""), "robot1/base/s", "plate"),
+        (
+            _ON_PLATE.format("<ignition_frame_id>l</ignition_frame_id>", ""),
+            "robot1/base/s",
+            "plate",
+        ),
         (_NESTED, "robot1/arm/hand/s", "hand"),
     ],
 )
@@ -154,11 +161,23 @@ def test_the_frame_of_a_sensor_is_its_place_or_what_it_says(
     text: str, frame: str, link: str
 ) -> None:
     """gz-sim Sensors.cc: model::link::sensor without the world; sdformat merges fixed links."""
-    sensors = [*sensor_frames(etree.fromstring(text), "robot1")]
+    sensors = [*sensor_frames(etree.fromstring(text), "robot1", "jazzy")]
     for topic in ("scan", "/scan/points"):
         found = sensor_on(topic, sensors)
         assert found and (found.frame, found.link) == (frame, link)
     assert sensor_on("/scanner", sensors) is None
+
+
+@pytest.mark.parametrize(
+    ("release", "frame"),
+    [("humble", "old"), ("jazzy", "gz"), ("kilted", "sdf"), ("lyrical", "sdf")],
+)
+def test_the_parameter_that_names_a_frame_is_that_of_the_release(release: str, frame: str) -> None:
+    """ign-sensors6 Sensor.cc:148 ignition_frame_id first, gz-sensors8 Sensor.cc:188 gz_frame_id alone,
+    gz-sensors9 Sensor.cc:181 sdf's FrameId first."""
+    inside = "<frame_id>sdf</frame_id><gz_frame_id>gz</gz_frame_id><ignition_frame_id>old</ignition_frame_id>"
+    root = etree.fromstring(_ON_PLATE.format(inside, ""))
+    assert [it.frame for it in sensor_frames(root, "robot1", release)] == [frame]
 
 
 HARDWARE = (

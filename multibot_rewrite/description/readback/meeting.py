@@ -58,6 +58,10 @@ _ADVICE = {
     OPENED: "write another for each robot, or give it by `arguments` of a fleet file",
     FRAMES: f"set the frame for each robot, or {_OF_FRAME}",
 }
+_OF_KIND = {
+    TRANSFORMS_ON: "no rule moves it: use --layout frames-per-robot",
+    RELATIVE: "give each robot a namespace: use --layout tf-per-robot or both",
+}
 CAMERA_INFO = "camera_info"
 # The element of a name, its parameter, and the how manieth it is there.
 Place = tuple[str, int, str, str, int]
@@ -151,16 +155,16 @@ def said(who: str, *names: RuntimeName) -> str:
 def advice(name: RuntimeName, together: bool = False) -> str:
     """What to do about a shared name, but for those of controllers; ``together`` where its robots were
     rewritten in one call, so that each has a number of its own where it can have one."""
-    if name.kind == TRANSFORMS_ON:
-        return "no rule moves it: use --layout frames-per-robot"
+    if name.kind in _OF_KIND:
+        return _OF_KIND[name.kind]
     if name.kind == NUMBER and not together:
         return "name all robots in one call, or in a fleet file: each gets a number of its own"
     if name.kind in OF_COMPUTER:
         return f"{_ADVICE[OPENED]}; it is right where each robot has a computer of its own"
-    if name.kind == RELATIVE:
-        return "give each robot a namespace: use --layout tf-per-robot or both"
     if name.path == IN_CODE or (name.path.startswith("/") and code_of(name) in _ADVICE):
         return _for_code(name)
+    if "/../" in name.path:
+        return "use --topics namespace or prefix, which leave the last part of a topic alone"
     of_all = f"use --layout both, which renames {name.kind}s for each robot"
     return _ADVICE.get(code_of(name), of_all)
 

@@ -166,7 +166,10 @@ def filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator[
     site = next((it for it in section.sites if it.path == path), None)
     # A value may hold what looks like a path: it is none.
     ends = list(filled(plugin, section, tail))
-    for value in given_at(plugin, path) if site is None else values_of(plugin, site):
+    values = given_at(plugin, path) if site is None else values_of(plugin, site)
+    if "/../" in path:
+        values = [it for it in (default_of(plugin, path),) if it]
+    for value in values:
         yield from (f"{head}{value}{end}" for end in ends)
 
 

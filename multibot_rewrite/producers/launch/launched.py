@@ -126,9 +126,9 @@ def world_files(it: LaunchedNode) -> list[str]:
     return [word for word in words if word.endswith(_WORLDS)]
 
 
-def sensors_of(models: Iterable[InSimulator]) -> list[SensorFrame]:
+def sensors_of(models: Iterable[InSimulator], release: str) -> list[SensorFrame]:
     """The sensors of the models."""
-    return [sensor for it in models for sensor in sensor_frames(it.root, it.name)]
+    return [sensor for it in models for sensor in sensor_frames(it.root, it.name, release)]
 
 
 NOT_WHOLE, NOT_KNOWN = "launch-not-whole", "node-not-known"

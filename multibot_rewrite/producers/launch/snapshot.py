@@ -121,7 +121,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     )
     simulated = models_in_simulator(models, known.release)
     found = Launched(graph, nodes, spawned, models, simulated, system, known.release, bridged)
-    heard = [*_heard(nodes, sensors_of(simulated))]
+    heard = [*_heard(nodes, sensors_of(simulated, known.release))]
     heard += _measured(parts, frames_of_plugins(models.found))
     return found._replace(system=system._replace(heard=tuple(heard)))
 
