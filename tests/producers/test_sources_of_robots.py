@@ -175,7 +175,8 @@ def test_the_frame_of_a_sensor_is_its_place_or_what_it_says(
 def test_the_parameter_that_names_a_frame_is_that_of_the_release(release: str, frame: str) -> None:
     """ign-sensors6 Sensor.cc:148 ignition_frame_id first, gz-sensors8 Sensor.cc:188 gz_frame_id alone,
     gz-sensors9 Sensor.cc:181 sdf's FrameId first."""
-    inside = "<frame_id>sdf</frame_id><gz_frame_id>gz</gz_frame_id><ignition_frame_id>old</ignition_frame_id>"
+    texts = {"frame_id": "sdf", "gz_frame_id": "gz", "ignition_frame_id": "old"}
+    inside = "".join(f"<{name}>{text}</{name}>" for name, text in texts.items())
     root = etree.fromstring(_ON_PLATE.format(inside, ""))
     assert [it.frame for it in sensor_frames(root, "robot1", release)] == [frame]
 
