@@ -5,7 +5,7 @@ it says where: at the place of a record, and of what is beside it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
 from pkgutil import iter_modules
@@ -140,7 +140,16 @@ NOT_EXPORTED = declare(
 CLAIMED_TWICE = declare(
     "MB240", "interface-claimed-twice", WARNING, formats=(SYSTEM,), options=system_options()
 )
+OF_NO_NODE = declare("MB244", "section-of-no-node", ERROR, formats=(LAUNCH,))
 ONE_DEVICE = declare("MB412", "one-device", WARNING, formats=(SYSTEM,), options=system_options())
+
+
+def said_of_section(path: str, readers: Sequence[str]) -> tuple[str, str]:
+    """Return message and hint about a section that is for no node, though it has these nodes' name."""
+    names = sorted(set(readers))
+    base = names[0].rpartition("/")[2]
+    message = f"section {path} matches no node: {' and '.join(names)} get nothing of it"
+    return message, f"write {names[0] if len(names) == 1 else f'/**/{base}'}:"
 
 
 class Placed(Protocol):

@@ -193,14 +193,12 @@ def _of_ros_1(robot: RewrittenRobot) -> Iterator[Finding]:
         yield at_robot(PLUGIN_OF_ROS_1, robot, message, hint)
 
 
-def written_out(robot: RewrittenRobot) -> frozenset[str]:
-    """The gz topics of the robot's plugins that stand in its description."""
-    inventory = robot.member.inventory
-    bridged, _ = bridged_topics({robot.spec.namespace: inventory}, robot.topics.naming)
-    texts = {
-        text_of(it) for plugin in inventory.document.root.iter("plugin") for it in plugin.iter()
-    }
-    return frozenset(texts & {it.gz for it in bridged})
+def _made(robot: RewrittenRobot) -> set[str]:
+    """The gz topics that the robot's plugins make, as the model is spawned."""
+    spec, inventory = robot.spec, robot.member.inventory
+    names = {spec.namespace: spec.model}
+    bridged, _ = bridged_topics({spec.namespace: inventory}, robot.topics.naming, names)
+    return {it.gz for it in bridged}
 
 
 def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
@@ -209,9 +207,14 @@ def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
     own = model_name(inventory)
     if own == robot.spec.model:
         return
-    fixed = written_out(robot)
+    made, plugins = _made(robot), inventory.document.root.iter("plugin")
+    fixed = made.intersection(text_of(it) for plugin in plugins for it in plugin.iter())
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
-        if claim.site.role == "uses" and any(it.kind == "model" and it.text == own for it in names):
+        _, model, rest = claim.value.partition(f"/model/{own}/")
+        # Where models keep their names, no name is found in the topics of systems.
+        made_of_it = bool(model) and f"/model/{robot.spec.model}/{rest}" in made
+        is_used = any(it.kind == "model" and it.text == own for it in names)
+        if claim.site.role == "uses" and (is_used or made_of_it):
             if text_of(claim.element) in fixed:
                 continue
             who = f"robot {robot.spec.name!r} is spawned as {robot.spec.model!r}"
