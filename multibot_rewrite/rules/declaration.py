@@ -93,9 +93,11 @@ def planned_rule(
     return declared
 
 
-def launch_rule(code: str, name: str, *, level: str = ERROR) -> Callable[[_Check], Rule]:
+def launch_rule(
+    code: str, name: str, *, level: str = ERROR, **options: object
+) -> Callable[[_Check], Rule]:
     """Make a function a rule about what a launch starts: it gets a ``Launched`` and yields findings."""
-    return rule(code, name, level, formats=(LAUNCH,))
+    return rule(code, name, level, formats=(LAUNCH,), options=options)
 
 
 def of_robots(find: _FileCheck) -> _FileCheck:

@@ -34,6 +34,7 @@ from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.knowledge.conditions import UNSENT, said
+from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
@@ -218,6 +219,9 @@ def _started(given: _Given, name: str) -> Start:
     program = _program(given, name)
     assert program is not None
     made = _with_own(given.plan, given.robot, start_of(it, program, _parameters(given, name)), name)
+    if made.name == facts.kind and names_its_process(facts.kind, given.release):
+        # Its code calls it so.
+        made = made._replace(name="")
     own = given.values.get((given.robot.spec.name, name), {})
     words = made.arguments
     if facts.kind == STATIC:
