@@ -219,11 +219,13 @@ def _started(given: _Given, name: str) -> Start:
     program = _program(given, name)
     assert program is not None
     made = _with_own(given.plan, given.robot, start_of(it, program, _parameters(given, name)), name)
-    if made.name == facts.kind and names_its_process(facts.kind, given.release):
-        # Its code calls it so.
-        made = made._replace(name="")
     own = given.values.get((given.robot.spec.name, name), {})
     words = made.arguments
+    if made.name and names_its_process(facts.kind, given.release):
+        # A rule for the one node that its code calls so.
+        rule = f"{facts.kind}:__node:={made.name}"
+        words = (*words, *(("--ros-args", "-r", rule) if made.name != facts.kind else ()))
+        made = made._replace(name="")
     if facts.kind == STATIC:
         words = with_frames([path_of(it) for it in words], own)
     placing = given.plan.evidence_of(given.robot).placing

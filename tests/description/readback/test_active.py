@@ -336,10 +336,29 @@ def test_services_of_the_world_keep_their_names() -> None:
         assert 'name="/world/w/set_pose"' in made.text
 
 
-def test_a_bounding_box_camera_has_an_own_camera_info() -> None:
-    """gz-sensors BoundingBoxCameraSensor.cc:237 calls CameraSensor.cc:597 AdvertiseInfo."""
-    sensor = '<sensor name="s" type="boundingbox_camera"><topic>/boxes/a</topic><camera/></sensor>'
-    made = rewrite(robot(f'<gazebo reference="a">{sensor}</gazebo>'), "robot1", distro="jazzy")
+SENSOR = (
+    '<gazebo reference="a"><sensor name="s" type="{}"><topic>/boxes/a</topic>{}</sensor></gazebo>'
+)
+INFO = "<camera><camera_info_topic>/own</camera_info_topic></camera>"
+
+
+@pytest.mark.parametrize("inside", ["<camera/>", INFO])
+@pytest.mark.parametrize(
+    "type_", ["boundingbox_camera", "depth_camera", "thermal_camera", "wideanglecamera"]
+)
+def test_the_camera_info_of_other_cameras_is_beside_their_image(type_: str, inside: str) -> None:
+    """gz-sensors8 CameraSensor.cc:391: Load alone reads <camera_info_topic>, and these call that of
+    Sensor; :664 AdvertiseInfo replaces the last part of the image's topic."""
+    text = robot(SENSOR.format(type_, inside))
+    made = rewrite(text, "robot1", distro="jazzy")
+    assert made.not_proved == ("1 topic shared by all robots",)
+    assert any("/boxes/a/camera_info" in it.message for it in made.findings)
+    assert "camera_info_topic>" not in made.text.replace(INFO, "")
+    assert rewrite(text, "robot1", topics="prefix", distro="jazzy").not_proved == ()
+
+
+def test_a_camera_has_an_own_camera_info() -> None:
+    made = rewrite(robot(SENSOR.format("camera", "<camera/>")), "robot1", distro="jazzy")
     assert "<camera_info_topic>/boxes/camera_info/robot1</camera_info_topic>" in made.text
     # Its image is a_image, and image_transport looks beside it.
     assert made.not_proved == () and [it.code for it in made.findings] == ["MB439"]
