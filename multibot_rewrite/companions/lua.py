@@ -23,12 +23,8 @@ FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_fram
 OWN_FILES = frozenset(
     f"{it}.lua"
     for it in (
-        "map_builder",
-        "map_builder_server",
-        "pose_graph",
-        "trajectory_builder",
-        "trajectory_builder_2d",
-        "trajectory_builder_3d",
+        *("map_builder", "map_builder_server", "pose_graph", "trajectory_builder"),
+        *("trajectory_builder_2d", "trajectory_builder_3d"),
     )
 )
 # An opening bracket or quote that the patterns before it did not close is an error.

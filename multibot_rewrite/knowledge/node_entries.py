@@ -47,14 +47,7 @@ from multibot_rewrite.system.records import ACTION, PUBLISHES, ROLES, SERVICE, S
 # A node with parameters and none of these is known by them alone: nobody says what it publishes.
 GRAPH_KEYS = (*ROLES, "with", "host", "plugin", "claims", "frames", "sends", "ids")
 GRAPH_WORDS = (
-    "shared",
-    "note",
-    "when",
-    "fixed",
-    "apart",
-    "programs",
-    "component",
-    "prefix_switch",
+    *("shared", "note", "when", "fixed", "apart", "programs", "component", "prefix_switch"),
     "unmanaged",
 )
 SENT_KEYS = ("child", "if")

@@ -45,11 +45,7 @@ _ORDER = (ERROR, WARNING, NOTE, INCONCLUSIVE)
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.
 COMMON_PACKAGES = (
-    "rcl_interfaces",
-    "lifecycle_msgs",
-    "type_description_interfaces",
-    "bond",
-    "tf2_msgs",
+    *("rcl_interfaces", "lifecycle_msgs", "type_description_interfaces", "bond", "tf2_msgs"),
 )
 # Stands for the bridge that should carry a topic; a space cannot be in the name of a real node.
 BRIDGE = "a ros_gz_bridge"

@@ -15,6 +15,7 @@ from multibot_rewrite.description.readback.active import (
     ADDRESS,
     NOWHERE,
     RELATIVE,
+    TRANSFORMS_ON,
     hardware_section,
     is_device,
     opened,
@@ -38,35 +39,32 @@ _OFF = ("", "false", "no", "off")
 
 
 def of_hardware(
-    root: _Element, node: str, place: Place, vocabulary: Vocabulary
+    root: _Element, node: str, place: Place, vocabulary: Vocabulary, of_networks: bool = False
 ) -> Iterator[Address]:
     """The devices of a description: what its classes are known to open, of others what parameters of
-    that name hold; none of a component whose address is nowhere."""
+    that name hold, with ``of_networks`` any address; none of a component whose address is nowhere."""
     for system in root.iterfind("ros2_control"):
         section = hardware_section(system, vocabulary)
         params = system.iterfind("hardware/param")
-        values = ((it.get("name", ""), (it.text or "").strip()) for it in params)
-        held = [(kind, *it) for it in values if (kind := of_param(*it))]
+        values = [(it.get("name", ""), (it.text or "").strip()) for it in params]
+        held = [(_known().get(it[0]) or _of_value(it[1]), *it) for it in values]
+        if of_networks:
+            held = [(it[0] or (DEVICE if is_of_network(it[2]) else ""), *it[1:]) for it in held]
         if section is not None and says_what_it_opens(section):
-            held = [*opened_by(system, section), *(it for it in held if it[0] == CALIBRATION)]
+            held = [*_opened_by(system, section), *(it for it in held if it[0] == CALIBRATION)]
         elif any(kind == DEVICE and text in NOWHERE for kind, _, text in held):
             continue
         else:
-            held = [it for it in held if it[2] not in NOWHERE]
+            held = [it for it in held if it[0] and it[2] not in NOWHERE]
         yield from dict.fromkeys(Address(*it, node, place) for it in held)
 
 
-def opened_by(system: _Element, section: VocabularySection) -> Iterator[tuple[str, str, str]]:
+def _opened_by(system: _Element, section: VocabularySection) -> Iterator[tuple[str, str, str]]:
     """Return kind, parameter and value of what a known class of hardware opens."""
     for kind, value, path in opened(system, section):
-        if kind != RELATIVE:
+        if kind not in (RELATIVE, TRANSFORMS_ON):
             label = split_step(split_path(path)[0][-1])[2] or path
             yield DEVICE if kind == ADDRESS else COMPUTER, label, value
-
-
-def of_param(name: str, text: str) -> str:
-    """Return the kind of what a parameter of hardware that is not known holds; empty for nothing."""
-    return _known().get(name, _of_value(text))
 
 
 def of_parameters(

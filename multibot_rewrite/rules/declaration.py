@@ -56,10 +56,7 @@ def system_rule(
 
 
 def system_options(
-    absence: bool = False,
-    drawn: Drawn = "",
-    all_ends: bool = False,
-    meant: tuple[str, ...] = (),
+    absence: bool = False, drawn: Drawn = "", all_ends: bool = False, meant: tuple[str, ...] = ()
 ) -> dict[str, object]:
     """Return the options of a rule about any system, as in ``system_rule``."""
     options: dict[str, object] = {"absence": absence, "drawn": drawn, "all_ends": all_ends}

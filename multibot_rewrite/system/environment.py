@@ -37,12 +37,8 @@ MAX_DOMAIN = 232
 RANGES = ("OFF", "LOCALHOST", "SUBNET", "SYSTEM_DEFAULT")
 DEFAULT_RANGE = "SUBNET"
 KNOWN_RMW = (
-    "rmw_fastrtps_cpp",
-    "rmw_fastrtps_dynamic_cpp",
-    "rmw_cyclonedds_cpp",
-    "rmw_connextdds",
-    "rmw_zenoh_cpp",
-    "rmw_gurumdds_cpp",
+    *("rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp", "rmw_cyclonedds_cpp", "rmw_connextdds"),
+    *("rmw_zenoh_cpp", "rmw_gurumdds_cpp"),
 )
 # So many participants of a machine are found by unicast: under LOCALHOST, of a peer under SUBNET.
 LOCAL_LIMIT, PEER_LIMIT = 32, 4

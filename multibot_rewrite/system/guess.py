@@ -23,13 +23,7 @@ from multibot_rewrite.system.tool_nodes import is_tool
 
 # Topics of a robot's body: two of them are enough, or one of tf.
 BODY = (
-    "cmd_vel",
-    "odom",
-    "joint_states",
-    "robot_description",
-    "tf",
-    "tf_static",
-    "initialpose",
+    *("cmd_vel", "odom", "joint_states", "robot_description", "tf", "tf_static", "initialpose"),
     "scan",
 )
 _TF = frozenset(("tf", "tf_static"))

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from lxml.etree import _Element
-
 from multibot_rewrite.base.nearest import SLIP, Guesses
 from multibot_rewrite.base.releases import CLASSIC, ROS_1, ROS_2, lacks_classic
 from multibot_rewrite.description.checks.problem import Problem
@@ -44,7 +42,7 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         old = None
     for plugin in root.iter(PLUGIN):
         if not is_loaded(plugin):
-            message = f"nothing loads the <plugin> {plugin_name(plugin)!r} in <{_around(plugin)}>"
+            message = f"nothing loads the <plugin> {plugin_name(plugin)!r} here"
             yield Problem(plugin, message, None, "move it into a <gazebo>", (), NOT_LOADED)
     by_ros = _by_ros(parts, tree.vocabulary)
     for part in parts:
@@ -61,11 +59,6 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             )
             hint = "name the ROS 2 release with --distro, or write it for ROS 2, with <ros>"
             yield Problem(part.element, message, None, hint, (), CODES[PLUGIN])
-
-
-def _around(plugin: _Element) -> str:
-    parent = plugin.getparent()
-    return "" if parent is None else str(parent.tag)
 
 
 def _by_ros(parts: Iterable[ActivePart], vocabulary: Vocabulary) -> dict[str, list[ActivePart]]:

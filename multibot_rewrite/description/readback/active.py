@@ -64,12 +64,11 @@ def _keys(plugin: _Element) -> Iterator[str]:
 
 
 def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
-    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros> and has <ros2_control>; in
-    a robot without them the release that reads more of the parameters counts, ROS 2 if both do."""
+    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros>; without one the release that
+    reads more of the parameters counts, ROS 2 if both do."""
     by_release = {section.ros: section for section in found}
     new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
-    own = plugin.find("ros") is not None
-    if old is None or own or plugin.getroottree().find("ros2_control") is not None:
+    if old is None or plugin.find("ros") is not None:
         return new
     tags = {child.tag for child in plugin}
     return old if len(tags & old.tags) > len(tags & new.tags) else new

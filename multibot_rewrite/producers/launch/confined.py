@@ -43,18 +43,8 @@ from multibot_rewrite.producers.launch.records import LaunchOrder
 _LIBRARIES = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache")
 # Variables that are no secret, beside those that xacro sees.
 _PLAIN = (
-    "COLUMNS",
-    "DISPLAY",
-    "HOME",
-    "HOSTNAME",
-    "LANG",
-    "LOGNAME",
-    "PATH",
-    "USER",
-    "MULTIBOT_",
-    "LD_LIBRARY_PATH",
-    "LINES",
-    "PYTHONPATH",
+    *("COLUMNS", "DISPLAY", "HOME", "HOSTNAME", "LANG", "LOGNAME", "PATH", "USER", "MULTIBOT_"),
+    *("LD_LIBRARY_PATH", "LINES", "PYTHONPATH"),
 )
 NOT_FENCED = (
     "a launch file is a program, and this system has not both Landlock and seccomp to fence it in;"

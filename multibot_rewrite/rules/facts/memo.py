@@ -111,17 +111,8 @@ def since_jazzy(subject: Subject) -> str:
 # Types that render what is in front of them, along x of their pose.
 CAMERAS = frozenset(
     (
-        "camera",
-        "depth",
-        "depth_camera",
-        "rgbd_camera",
-        "rgbd",
-        "thermal",
-        "thermal_camera",
-        "segmentation_camera",
-        "boundingbox_camera",
-        "wideanglecamera",
-        "wide_angle_camera",
+        *("camera", "depth", "depth_camera", "rgbd_camera", "rgbd", "thermal", "thermal_camera"),
+        *("segmentation_camera", "boundingbox_camera", "wideanglecamera", "wide_angle_camera"),
     )
 )
 LIDARS = frozenset(("ray", "gpu_ray", "lidar", "gpu_lidar"))

@@ -94,16 +94,14 @@ no_manager = spawner_managers.NO_MANAGER._replace(
 @launch_rule("MG730", "name-of-a-whole-process", distro="humble")
 def names_all(launched: Launched) -> Iterator[Finding]:
     """A manager that gets a name, where it loads controllers."""
-    controllers: dict[str, list[str]] = defaultdict(list)
-    for it in launched.spawned:
-        controllers[it.manager].append(it.name)
     given = {it.place for it in launched.graph.nodes if it.name}
-    for it in launched.nodes:
-        others = sorted({*controllers[it.full_name]})
-        if it.place in given and others and names_its_process(it.fact.known, launched.release):
-            message = f"name= renames every node of the process: {shorten(others)} become {it.node}"
+    for run in (it for it in launched.nodes if it.place in given):
+        others = {it.name for it in launched.spawned if it.manager == run.full_name}
+        if others and names_its_process(run.fact.known, launched.release):
+            who = shorten(sorted(others))
+            message = f"name= renames every node of the process: {who} become {run.node}"
             hint = "leave name= out: its code calls it controller_manager"
-            yield at(names_all, it.place, message, hint)
+            yield at(names_all, run.place, message, hint)
 
 
 def _is(it: Run, known: str) -> bool:

@@ -209,11 +209,7 @@ def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Ite
 
 
 def _unknown_child(
-    element: etree._Element,
-    child: etree._Element,
-    section: UrdfPart,
-    schema: Schema,
-    meant: str,
+    element: etree._Element, child: etree._Element, section: UrdfPart, schema: Schema, meant: str
 ) -> Iterator[Problem]:
     """A child that the schema does not have in its parent."""
     message = f"no parser reads <{child.tag}> inside <{element.tag}>"

@@ -31,10 +31,7 @@ _SLIP = 0.85
 MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
 # Every node serves them, or many do: another one of such a type says nothing.
 COMMON = (
-    "rcl_interfaces/",
-    "lifecycle_msgs/",
-    "std_srvs/",
-    "type_description_interfaces/",
+    *("rcl_interfaces/", "lifecycle_msgs/", "std_srvs/", "type_description_interfaces/"),
     "std_msgs/",
 )
 # Of such a type are many topics that have nothing to do with each other.

@@ -8,16 +8,12 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import NOTE, URDF, WARNING, rule
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.readback.active import (
-    NOWHERE,
-    hardware_section,
-    says_what_it_opens,
-)
-from multibot_rewrite.producers.addresses import is_of_network, of_param, opened_by
+from multibot_rewrite.producers.addresses import of_hardware
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.description.multirobot.topics import AS_WRITTEN, process_wide_plugins
 from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.system.records import NOWHERE
 
 
 @rule("MB411", "one-controller-file", NOTE)
@@ -36,29 +32,19 @@ def one_controller_file(subject: Subject) -> Iterator[Problem]:
 def _one_device(subject: Subject) -> Iterator[Problem]:
     """What the hardware of the description opens, of classes that are not known what parameters of such
     a name or value hold, where it is the same for every robot."""
-    root, vocabulary = subject.document.root, subject.tree.vocabulary
-    for system in root.iterfind("ros2_control"):
-        section = hardware_section(system, vocabulary)
-        is_known = section is not None and says_what_it_opens(section)
-        params = [*system.iterfind("hardware/param")]
-        starts = starts_of(subject, params)
-        held = {(it.get("name", ""), (it.text or "").strip()): it for it in params}
-        opened = opened_by(system, section) if section and is_known else ()
-        found = [(name, text) for _, name, text in opened]
-        if not is_known:
-            found = [it for it in held if _leads_somewhere(*it)]
-        for name, text in dict.fromkeys(found):
-            element = held.get((name, text))
-            if element is None:
-                message = f"{name} is not given: it is {text!r} for every robot"
-                yield Problem(system, message, "", "make it a xacro argument")
-            elif is_fixed(subject, starts[element], ""):
-                message = f"parameter {name!r} is {text!r} for every robot"
-                yield Problem(element, message, "", "make it a xacro argument")
-
-
-def _leads_somewhere(name: str, text: str) -> bool:
-    return text not in NOWHERE and bool(of_param(name, text) or is_of_network(text))
+    root = subject.document.root
+    params = [*root.iterfind("ros2_control/hardware/param")]
+    starts = starts_of(subject, params)
+    held = {(it.get("name", ""), (it.text or "").strip()): it for it in params}
+    for it in of_hardware(root, "", NOWHERE, subject.tree.vocabulary, of_networks=True):
+        element = held.get((it.name, it.value))
+        if element is None:
+            message = f"{it.name} is not given: it is {it.value!r} for every robot"
+            system = next(root.iter("ros2_control"), root)
+            yield Problem(system, message, "", "make it a xacro argument")
+        elif is_fixed(subject, starts[element], ""):
+            message = f"parameter {it.name!r} is {it.value!r} for every robot"
+            yield Problem(element, message, "", "make it a xacro argument")
 
 
 one_device = declaration.ONE_DEVICE._replace(
