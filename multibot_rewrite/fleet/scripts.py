@@ -21,10 +21,7 @@ from multibot_rewrite.companions.params.rcl_parameters import check_values
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.file.fleet_file import (
-    FleetFile,
-    read_fleet,
-)
+from multibot_rewrite.fleet.file.fleet_file import FleetFile, read_fleet
 from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.file.robot_spec import Sources
 from multibot_rewrite.fleet.fleet import Fleet

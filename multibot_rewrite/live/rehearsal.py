@@ -26,11 +26,7 @@ from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.spelling.of_runs import ACTION_PARTS
 from multibot_rewrite.spelling.records import Rules, Run, Table
 from multibot_rewrite.spelling.transforms import Edges
-from multibot_rewrite.spelling.way_checks import (
-    bound_to,
-    is_stand_in,
-    running_nodes,
-)
+from multibot_rewrite.spelling.way_checks import bound_to, is_stand_in, running_nodes
 from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.environment import settings
 from multibot_rewrite.system.records import (

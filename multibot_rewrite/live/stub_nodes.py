@@ -19,13 +19,7 @@ from typing import Any, NamedTuple
 from multibot_rewrite.base.conventions import CLIENT, LISTENER
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.live.rehearsal import (
-    TF,
-    Stub,
-    action_parts,
-    from_order,
-    substitute_type,
-)
+from multibot_rewrite.live.rehearsal import TF, Stub, action_parts, from_order, substitute_type
 from multibot_rewrite.producers.ros import ros
 from multibot_rewrite.producers.ros.look import own_ends
 from multibot_rewrite.producers.ros.request import Send, run_worker

@@ -16,12 +16,7 @@ from multibot_rewrite.base.rosnames import bind, expand
 from multibot_rewrite.description.readback.nodes import ReadNode
 from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.controller_ways import controller_way
-from multibot_rewrite.knowledge.records import (
-    Endpoint,
-    FrameParameter,
-    NodeFacts,
-    SentTransform,
-)
+from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.spelling.of_runs import (
     asked_alone,
     asked_beside,
@@ -32,12 +27,7 @@ from multibot_rewrite.spelling.of_runs import (
     with_names,
 )
 from multibot_rewrite.spelling.records import Rule, Run, Table
-from multibot_rewrite.spelling.table_checks import (
-    PROBE,
-    asked_for,
-    unreachable,
-    useless_rules,
-)
+from multibot_rewrite.spelling.table_checks import PROBE, asked_for, unreachable, useless_rules
 from multibot_rewrite.spelling.way_checks import NOT_TAKEN, is_stand_in, not_taken
 
 NOTHING: Mapping[str, Sequence[Run]] = {}

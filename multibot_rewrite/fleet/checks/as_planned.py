@@ -33,15 +33,7 @@ from multibot_rewrite.spelling.ways import HOST, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.parameters import LIST_CONTROLLERS
-from multibot_rewrite.system.records import (
-    RUNS,
-    SERVES,
-    Environment,
-    Place,
-    System,
-    doubts,
-    surely,
-)
+from multibot_rewrite.system.records import RUNS, SERVES, Environment, Place, System, doubts, surely
 
 # Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
 # no parameter file names. Between robots they are the build's.

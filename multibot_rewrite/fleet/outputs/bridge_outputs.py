@@ -15,14 +15,7 @@ from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
 from multibot_rewrite.companions.bridge_entry import BOTH, GZ, MODEL_SLOT, ROS
 from multibot_rewrite.companions.context import FileTemplate, fill_template
 from multibot_rewrite.companions.rviz.read_config import text_of
-from multibot_rewrite.companions.yaml_text import (
-    blocks,
-    cut_out,
-    found_at,
-    items,
-    moved,
-    read_yaml,
-)
+from multibot_rewrite.companions.yaml_text import blocks, cut_out, found_at, items, moved, read_yaml
 from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
@@ -72,10 +65,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
         groups.append(GroupBridges(group, bridges))
     for group, files in groups:
         for file in files.values():
-            yield from (
-                *file.own.findings,
-                *wrong_in_file(plan, file.own.file, group.robots),
-            )
+            yield from (*file.own.findings, *wrong_in_file(plan, file.own.file, group.robots))
         for robot in group.robots:
             made = list(_for_robot(robot, files, topics))
             yield from made

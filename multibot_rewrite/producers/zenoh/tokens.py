@@ -16,12 +16,7 @@ from functools import lru_cache
 from math import inf
 from typing import NamedTuple
 
-from multibot_rewrite.producers.rosgraph.reading import (
-    DURABILITY,
-    HISTORY,
-    LIVELINESS,
-    RELIABILITY,
-)
+from multibot_rewrite.producers.rosgraph.reading import DURABILITY, HISTORY, LIVELINESS, RELIABILITY
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
