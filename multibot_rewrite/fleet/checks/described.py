@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.rules.settings import Settings
@@ -30,7 +31,9 @@ def wrong_in_descriptions(
     }
     for file, (document, made, it) in documents.items():
         distro = it.vocabulary.release
-        settings = Settings(vocabulary=vocabulary, distro=distro, simulated=file in in_gazebo)
+        settings = Settings(
+            vocabulary=vocabulary, distro=distro, ros=ROS_2, simulated=file in in_gazebo
+        )
         told = {(one.code, one.message) for one in it.shared}
         for one in _linted(document, made, settings, file in in_gazebo - sure):
             if (one.code, one.message) not in told:

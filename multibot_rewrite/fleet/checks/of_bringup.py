@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -67,7 +68,7 @@ def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
     from multibot_rewrite.lint.check import lint_data
     from multibot_rewrite.rules.settings import Settings
 
-    found = lint_data(path, read_file(path), Settings(distro=release))
+    found = lint_data(path, read_file(path), Settings(distro=release, ros=ROS_2))
     return {(it.code, it.line) for it in found if it.level == ERROR}
 
 

@@ -147,10 +147,7 @@ def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
 
 
 def _is_decided(
-    raw: Endpoint,
-    lists: Iterable[str],
-    values: Mapping[str, Given],
-    of_stack: Iterable[Endpoint],
+    raw: Endpoint, lists: Iterable[str], values: Mapping[str, Given], of_stack: Iterable[Endpoint]
 ) -> bool:
     """Do the parameters say whether it exists, or how it is called?"""
     needed = list(lists)

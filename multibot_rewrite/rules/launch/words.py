@@ -10,20 +10,26 @@ from __future__ import annotations
 import os
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping
+from contextlib import suppress
 from itertools import pairwise
 from math import isclose, pi
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
+from multibot_rewrite.companions.params.sections import RawSection, meant_for, raw_sections
+from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.producers.launch.handed_on import document_of
 from multibot_rewrite.producers.launch.known_node import STATIC
 from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.rules.declaration import LAUNCH, at, launch_rule
+from multibot_rewrite.rules.declaration import LAUNCH, OF_NO_NODE, at, launch_rule, said_of_section
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table_checks import RULE_WITHOUT_NAME
+from multibot_rewrite.system.records import Place
 
 _ANGLES = ("--roll", "--pitch", "--yaw")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")
@@ -122,6 +128,29 @@ def not_there(launched: Launched) -> Iterator[Finding]:
             told.add(key)
             message = f"{who} is given {path}, which is not there"
             yield at(not_there, place, message, _PATH, names=(path,))
+
+
+def _of_no_node(launched: Launched) -> Iterator[Finding]:
+    """By the nodes that run. What a launch makes of a file is no file of the user."""
+    nodes = {it.full_name for it in launched.nodes} | {it.name for it in launched.system.nodes}
+    readers: dict[tuple[Place, str], list[str]] = defaultdict(list)
+    for run in launched.nodes:
+        readers[run.place, run.program].append(run.full_name)
+    found: dict[tuple[str, str], tuple[RawSection, list[str]]] = {}
+    for node in (it for it in launched.graph.nodes if not it.container):
+        names = readers[node.place, f"{node.package}/{node.executable}"]
+        for text in (it for it in node.parameters if it.file):
+            with suppress(InputError):
+                sections = raw_sections(document_of(text.file, text.text))
+                for reader in names:
+                    if section := meant_for(sections, reader, nodes):
+                        key = text.file, section.path
+                        found.setdefault(key, (section, []))[1].append(reader)
+    for (file, path), (section, names) in found.items():
+        yield at(of_no_node, Place(file, line_of(section.keys[0])), *said_of_section(path, names))
+
+
+of_no_node = OF_NO_NODE._replace(check=_of_no_node)
 
 
 @launch_rule("MG715", "include-argument-not-read")

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
@@ -14,6 +15,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.readback.reading import read_tree
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.description.sources.read import read_file
@@ -68,6 +70,33 @@ interface_not_exported = declaration.NOT_EXPORTED._replace(
 )
 interface_claimed_twice = declaration.CLAIMED_TWICE._replace(
     check=_claimed_twice, formats=(URDF,), options={}, examples="MB240-urdf"
+)
+
+
+def _of_no_node(subject: Subject) -> Iterator[Problem]:
+    """The section of the manager that a plugin makes, in the file that it is given."""
+    systems = subject.elements.tops("ros2_control")
+    files = [it for it in (_files(subject, systems[0]) if systems else ()) if _place(it[0]) == ""]
+    if not files:
+        return
+    from multibot_rewrite.companions.params.sections import meant_for, raw_sections
+    from multibot_rewrite.companions.yaml_text import read_yaml
+
+    plugins = list(subject.document.root.iter("plugin"))
+    nodes = read_tree(subject.document.root, subject.tree.vocabulary).nodes
+    managers = {plugins[it.number]: it.manager for it in nodes if it.manager}
+    for element, path, _ in files:
+        plugin = element.getparent()
+        manager = "" if plugin is None else managers.get(plugin, "")
+        with suppress(InputError):
+            sections = raw_sections(read_yaml(read_file(path), path)) if manager else ()
+            if section := meant_for(sections, manager, ()):
+                message, hint = declaration.said_of_section(section.path, [manager])
+                yield Problem(element, f"{os.path.basename(path)}: {message}", "", hint)
+
+
+section_of_no_node = declaration.OF_NO_NODE._replace(
+    check=_of_no_node, formats=(URDF,), options={}, examples="MB244-urdf"
 )
 
 
