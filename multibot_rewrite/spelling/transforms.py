@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.chains import chain_ends
 from multibot_rewrite.base.naming import Naming, spelled
 from multibot_rewrite.knowledge.conditions import holds
-from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.knowledge.records import FrameParameter, NodeFacts
 from multibot_rewrite.system.records import PUBLISHES, Edge, edge_of
 
 if TYPE_CHECKING:
@@ -51,13 +51,19 @@ def edges_of(
         named = _once(by_naming) if _is_static(node) else by_naming
         frames = [
             frame._replace(default=plain.get(("link", frame.default)) or named(frame.default))
-            if frame.default and not (frame.in_code or frame.is_kept)
+            if frame.default and not (frame.in_code or frame.is_kept or _of_shared(frame, naming))
             else frame
             for frame in node.frames
         ]
         own = [*sent_by(node._replace(frames=tuple(frames)), root)]
         result[robot, node.name] = tree if node.name == described else own
     return result
+
+
+def _of_shared(frame: FrameParameter, naming: Naming) -> bool:
+    """Does code make it of a frame that robots share, as map_ned of map?"""
+    made = "<" in frame.parameter
+    return made and any(frame.default.startswith(f"{it}_") for it in naming.shared_frames)
 
 
 def state_publisher_of(nodes: Sequence[NodeFacts]) -> str:
@@ -124,9 +130,9 @@ def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
     values = {frame.parameter: frame.default for frame in node.frames}
     given = {frame.parameter for frame in node.frames if frame.given}
     static = _is_static(node)
-    for parent, child, _ in (it for it in node.sends if holds(it.condition, values.get)):
-        base = root and "odom" not in child and child not in given
-        edge = edge_of(values[parent], root if base else values[child], static)
+    for parent, child, _, fixed in (it for it in node.sends if holds(it.condition, values.get)):
+        base = root and not fixed and "odom" not in child and child not in given
+        edge = edge_of(values[parent], root if base else values[child], static or fixed)
         # A frame that only a file sets; a frame below itself, which tf2 refuses (buffer_core.cpp).
         if edge.parent not in ("", edge.child) and "<" not in edge.child:
             yield edge

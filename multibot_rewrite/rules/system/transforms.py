@@ -86,7 +86,8 @@ def robots_frames_collide(seen: Index) -> Iterator[Finding]:
     for tree in seen.trees:
         who = collide(seen, tree)
         if who:
-            bare = _bare_frames(seen, tree)
+            above = [it.parent for it in _sent_by_several_robots(seen, tree)]
+            bare = [*unique((*_without_robot(seen, above), *_bare_frames(seen, tree)))]
             message = f"{who} on {tree.topic}: {shorten(bare, SEVERAL)}"
             cause = _apart(seen, tree, robots_of(seen, tree.senders))
             yield robots_frames_collide.finding(
@@ -108,7 +109,8 @@ def collide(seen: Index, tree: Tree) -> str:
         without = {robot for robot in robots if robot not in named}
         who = nameless or robots
         # In a recording nobody is known to have sent them.
-        if who and (len(without) > 1 or (not without and of_all & bare)):
+        alike = any(True for _ in _sent_by_several_robots(seen, tree))
+        if who and (len(without) > 1 or alike or (not without and of_all & bare)):
             send = "sends" if len(who) == 1 else "send"
             return f"{and_then(who)} {send} frames without a robot's name"
     # As where two robots have no namespace.
@@ -130,8 +132,20 @@ def _may_meet(seen: Index, tree: Tree) -> bool:
 
 
 def _bare_frames(seen: Index, tree: Tree) -> list[str]:
-    children = unique(edge.child for edge in tree.edges)
-    return [it for it in children if not seen.frame_robot(it) and it not in WORLD_FRAMES]
+    return _without_robot(seen, (edge.child for edge in tree.edges))
+
+
+def _without_robot(seen: Index, frames: Iterable[str]) -> list[str]:
+    each = unique(frames)
+    return [it for it in each if not seen.frame_robot(it) and it not in WORLD_FRAMES]
+
+
+def _sent_by_several_robots(seen: Index, tree: Tree) -> Iterator[Edge]:
+    """Return the transforms without a robot's name that nodes of several robots send, but for what is
+    known to be the same of all."""
+    for it in tree.edges:
+        if it.several and len(robots_of(seen, it.publishers)) > 1 and not it.transform:
+            yield from [it] if _without_robot(seen, (it.child,)) else ()
 
 
 def _named_frames(seen: Index, tree: Tree) -> Iterator[str]:
