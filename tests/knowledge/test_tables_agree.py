@@ -9,8 +9,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.knowledge.conditions import ALSO
+from multibot_rewrite.knowledge.declared import declared_by
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import Branch, NodeFacts, NodeParameters, Param
 from multibot_rewrite.knowledge.stacks import built_in
@@ -92,6 +93,20 @@ def test_what_a_frame_is_made_of_has_the_default_of_its_parameter(release: str) 
             assert known or not default, path
             made += 1
     assert made
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_a_parameter_that_a_package_declares_in_a_release_is_there_in_it(release: str) -> None:
+    newest, here = built_in_nodes(RELEASES[-1]).nodes, built_in_nodes(release).nodes
+    lacking = [
+        (name, it.path)
+        for name, node in newest.items()
+        if name in here
+        for owner in (node.package, *node.declared_in)
+        for it in declared_by(owner)
+        if it.path in node.params.keys() - here[name].params and has_release(it.releases, release)
+    ]
+    assert lacking == []
 
 
 @pytest.mark.parametrize("release", RELEASES)
