@@ -97,14 +97,14 @@ def test_what_a_frame_is_made_of_has_the_default_of_its_parameter(release: str) 
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_a_parameter_that_a_package_declares_in_a_release_is_there_in_it(release: str) -> None:
-    newest, here = built_in_nodes(RELEASES[-1]).nodes, built_in_nodes(release).nodes
     lacking = [
-        (name, it.path)
-        for name, node in newest.items()
-        if name in here
+        (node.name, it.path)
+        for node in built_in_nodes(release).nodes.values()
         for owner in (node.package, *node.declared_in)
         for it in declared_by(owner)
-        if it.path in node.params.keys() - here[name].params and has_release(it.releases, release)
+        if it.path in node.params
+        and has_release(it.releases, release)
+        and not has_release(node.params[it.path].releases, release)
     ]
     assert lacking == []
 
