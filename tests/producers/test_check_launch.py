@@ -692,10 +692,15 @@ def test_one_vehicle_has_one_mavros(run: Graph) -> None:
 CAMERA, LIDAR = "realsense2_camera/realsense2_camera_node", "ouster_ros/os_driver"
 
 
-def of_both(program: str, name: str, *values: dict[str, object], rules: object = ()) -> list[LaunchedNode]:
+def of_both(
+    program: str, name: str, *values: dict[str, object], rules: object = ()
+) -> list[LaunchedNode]:
     both = zip(("/robot1", "/robot2"), values, strict=True)
     own = [node(program, name, space, rules, **more) for space, more in both]
-    return [*own, *(publisher(it.namespace, rules, frame_prefix=f"{it.namespace[1:]}/") for it in own)]
+    return [
+        *own,
+        *(publisher(it.namespace, rules, frame_prefix=f"{it.namespace[1:]}/") for it in own),
+    ]
 
 
 @pytest.mark.parametrize(

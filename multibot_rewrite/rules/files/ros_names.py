@@ -23,6 +23,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import BETWEEN
 from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
 from multibot_rewrite.rules.declaration import OF_TWO, remark
+from multibot_rewrite.rules.subject import Robots
 
 _IN_VALUE = re.compile(rf"<[^<>]*>|\$\({IN_SUBSTITUTION}\)|\$?\{{[^{{}}]*\}}|%\w+")
 # Stand for whole names of nodes.
@@ -81,6 +82,17 @@ def placeholders(file: NamedFile) -> Iterator[Finding]:
             message = f"the placeholder {found[0]} stays; a launch file must replace it"
             hint = "if it stands for the robot's name, write the value without it"
             yield remark(site, message, hint, level)
+
+
+def unfilled(file: NamedFile) -> Iterator[Finding]:
+    """What stands for the robot, once each, where a description is held against the file as it is."""
+    told: set[str] = set()
+    for site in file.names if file.is_certain and file.memo.get(Robots) else ():
+        found = _IN_VALUE.search(site.slot.value)
+        if found and is_robot(found[0]) and found[0] not in {*told, site.text}:
+            told.add(found[0])
+            message = f"{site.slot.value!r} keeps {found[0]} where no launch file fills it in"
+            yield remark(site, message, "fill it in, or leave it out", NOTE)
 
 
 def slashes(file: NamedFile) -> Iterator[Finding]:

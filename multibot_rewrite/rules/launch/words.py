@@ -11,10 +11,13 @@ import os
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import isclose, pi
 
+import yaml
+
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.lazy import IN_SUBSTITUTION, lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.companions.params.sections import RawSection, meant_for, raw_sections
@@ -26,7 +29,14 @@ from multibot_rewrite.producers.launch.known_node import STATIC
 from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.rules.declaration import LAUNCH, OF_NO_NODE, at, launch_rule, said_of_section
+from multibot_rewrite.rules.declaration import (
+    LAUNCH,
+    OF_NO_NODE,
+    at,
+    launch_rule,
+    said_of_section,
+)
+from multibot_rewrite.rules.description.files import reading
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table_checks import RULE_WITHOUT_NAME
 from multibot_rewrite.system.records import Place
@@ -151,6 +161,44 @@ def _of_no_node(launched: Launched) -> Iterator[Finding]:
 
 
 of_no_node = OF_NO_NODE._replace(check=_of_no_node)
+
+
+_LEFT = lazy_compile(rf"<[A-Za-z_]\w*>|\$\({IN_SUBSTITUTION}\)|\$\{{\w+\}}")
+
+
+def _placeholders(launched: Launched) -> Iterator[Finding]:
+    """Those in parameter files as nodes get them, and in the words that start them; what has blanks
+    besides is a text."""
+    given: list[tuple[Place, str]] = []
+    for it in launched.graph.nodes:
+        given += [(it.place, one) for one in chain(it.arguments, *it.remappings)]
+        for text in it.parameters:
+            with suppress(InputError):
+                for node in _scalars(document_of(text.file, text.text).root):
+                    at_node = Place(text.file, line_of(node)) if text.file else it.place
+                    given.append((at_node, str(node.value)))
+    told = set()
+    for place, value in given:
+        left = _LEFT.search(value)
+        if left and " " not in _LEFT.sub("", value) and (place.file, left[0]) not in told:
+            told.add((place.file, left[0]))
+            message = f"the placeholder {left[0]} stays in {value!r}: the launch fills nothing in"
+            hint = "replace it (ParameterFile with allow_substs, ReplaceString), or leave it out"
+            yield at(placeholder_left, place, message, hint)
+
+
+def _scalars(node: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
+    if isinstance(node, yaml.ScalarNode):
+        yield node
+    elif node is not None:
+        inside = chain(*node.value) if isinstance(node, yaml.MappingNode) else node.value
+        for it in inside:
+            yield from _scalars(it)
+
+
+placeholder_left = reading.leftover._replace(
+    check=_placeholders, level=ERROR, formats=(LAUNCH,), examples="MB105-launch"
+)
 
 
 @launch_rule("MG715", "include-argument-not-read")
