@@ -692,6 +692,29 @@ def test_one_vehicle_has_one_mavros(run: Graph) -> None:
 CAMERA, LIDAR = "realsense2_camera/realsense2_camera_node", "ouster_ros/os_driver"
 
 
+@pytest.mark.parametrize(
+    ("supervisors", "other", "code", "text"),
+    [
+        ((), "", "MG501", "but no node publishes /clock"),
+        ((), "acme/own", "MG501", "but no known node publishes /clock"),
+        ((), "webots_ros2_driver/driver", "MG501", "but no known node publishes /clock"),
+        (("/Ros2Supervisor",), "webots_ros2_driver/driver", "", ""),
+        (("/Ros2Supervisor", "/second"), "", "MG502", "publish /clock"),
+    ],
+)  # fmt: skip
+def test_who_has_the_clock_of_webots(
+    run: Graph, supervisors: Sequence[str], other: str, code: str, text: str
+) -> None:
+    """ros2_supervisor.py sends it, and WebotsNode.cpp does not since 2022.1; what is not known may."""
+    own = [node("webots_ros2_driver/ros2_supervisor.py", "", it, (("clock", "/clock"),))
+           for it in supervisors]  # fmt: skip
+    own += [node(other, "x")] if other else []
+    amcl = [node("nav2_amcl/amcl", "amcl", f"/robot{it}", use_sim_time=True) for it in (1, 2)]
+    found = [it for it in diagnose(run(*own, *amcl)).findings if it.code in ("MG501", "MG502")]
+    assert {it.code for it in found} == ({code} if code else set())
+    assert all(text in it.message for it in found)
+
+
 def of_both(
     program: str, name: str, *values: dict[str, object], rules: object = ()
 ) -> list[LaunchedNode]:

@@ -665,7 +665,7 @@ def of_file(text: str) -> tuple[ParameterText, ...]:
     ("more", "left", "line"),
     [
         ({"parameters": of_file(f"amcl:\n  ros__parameters: {{scan_topic: {LEFT}/scan}}\n")}, LEFT, 2),
-        ({"parameters": of_file(f"{LEFT}/amcl:\n  ros__parameters: {{use_map_topic: true}}\n")}, LEFT, 1),
+        ({"parameters": of_file(f"{LEFT}/amcl:\n  ros__parameters: {{max_beams: 9}}\n")}, LEFT, 1),
         ({"parameters": of_file(f"amcl:\n  ros__parameters:\n    joints: [a, {LEFT}b]\n")}, LEFT, 3),
         ({"parameters": of_file("amcl:\n  ros__parameters: {odom_frame_id: $(var ns)/odom}\n")},
          "$(var ns)", 2),

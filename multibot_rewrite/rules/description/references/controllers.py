@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Interfaces that controllers claim, in the file of their parameters that belongs to a description."""
+"""Files that belong to a description: the interfaces that controllers claim in that of their
+parameters, and the joints of a model of MuJoCo.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +12,14 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import URDF
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, URDF, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback.reading import read_tree
-from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules import declaration
@@ -98,6 +101,49 @@ def _of_no_node(subject: Subject) -> Iterator[Problem]:
 section_of_no_node = declaration.OF_NO_NODE._replace(
     check=_of_no_node, formats=(URDF,), options={}, examples="MB244-urdf"
 )
+
+
+_MUJOCO = "mujoco_ros2_control/MujocoSystemInterface"
+
+
+@rule("MB245", "mujoco-joint-without-name", ERROR)
+def mujoco_joint_without_name(subject: Subject) -> Iterator[Problem]:
+    """Those of the model that the hardware names, and of what it includes; joints of a <default> and
+    the like are no joints."""
+    for system in subject.elements.tops("ros2_control"):
+        param = system.find("hardware/param[@name='mujoco_model']")
+        if param is None or text_at(system, "hardware/plugin") != _MUJOCO:
+            continue
+        path = _found(subject, text_of(param))
+        bare = [(it, file) for it, file in _joints_of(path, {path}) if not it.get("name")]
+        moved = [
+            it for it in bare if "free" not in (it[0].tag.removesuffix("joint"), it[0].get("type"))
+        ]
+        if bare:
+            joint, file = (moved or bare)[0]
+            where = f"{os.path.basename(file)}:{joint.sourceline}"
+            what, who = f"{len(moved)} of its joints have no name", "the system refuses"
+            if not moved:
+                what, who = "its free joint has no name", "versions before 0.0.3 refuse"
+            message = f"{where}: {what}, which {who} (mujoco_system_interface.cpp)"
+            yield Problem(param, message, None, "name each joint", level="" if moved else NOTE)
+
+
+def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
+    """The joints of the bodies of a model, each with its file."""
+    with suppress(InputError):
+        for it in read_xml(read_file(path), path).iter("joint", "freejoint", "include"):
+            file = os.path.join(os.path.dirname(path), it.get("file", ""))
+            if it.tag == "include" and file not in seen:
+                seen.add(file)
+                yield from _joints_of(file, seen)
+            above = it.getparent()
+            if (
+                it.tag != "include"
+                and above is not None
+                and above.tag in ("body", "frame", "replicate")
+            ):
+                yield it, path
 
 
 @memoized
