@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite import rewrite
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings
 
@@ -55,3 +56,11 @@ def test_other_hardware_and_models_that_are_not_here_say_nothing(
         )
     (tmp_path / "r.urdf").write_text(URDF.replace("CLASS", class_))
     assert lint_file(str(tmp_path / "r.urdf"), Settings(select=("MB245",))) == []
+
+
+def test_the_topic_of_all_actuators_is_one_for_all_robots() -> None:
+    """mujoco_system_interface.cpp:367: absolute, of the node of the controller manager."""
+    made = rewrite(URDF.replace("CLASS", INTERFACE), "robot1", layout="frames-per-robot")
+    assert made.not_proved == ("1 topic shared by all robots",)
+    other = URDF.replace("CLASS", "mock_components/GenericSystem")
+    assert rewrite(other, "robot1", layout="frames-per-robot").not_proved == ()
