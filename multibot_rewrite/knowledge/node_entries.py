@@ -120,18 +120,15 @@ def _sends(
         if parent not in known and "<" not in parent:
             wrong(item, unknown("frame", parent, known))
         if isinstance(item.value, str):
-            yield SentTransform(parent, _end(item, known))
+            child = item.value if "<" in item.value else known_word(item, "frame", known)
+            yield SentTransform(parent, child)
             continue
         sent = table(item, f"sends {parent}", SENT_KEYS)
         if "child" not in sent:
             wrong(item, f"sends {parent} has no child; write {{child: ..., if: ...}}")
-        child = _end(sent["child"], known)
+        child = word(sent["child"], "frame")
+        child = child if "<" in child else known_word(sent["child"], "frame", known)
         yield SentTransform(parent, child, condition_of(sent), flag_of(sent, "static"))
-
-
-def _end(item: YamlItem, known: Mapping[str, str]) -> str:
-    is_made = isinstance(item.value, str) and "<" in item.value
-    return word(item, "frame") if is_made else known_word(item, "frame", known)
 
 
 def read_claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:

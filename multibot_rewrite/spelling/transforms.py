@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.chains import chain_ends
 from multibot_rewrite.base.naming import Naming, spelled
 from multibot_rewrite.knowledge.conditions import holds
-from multibot_rewrite.knowledge.records import FrameParameter, NodeFacts
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.system.records import PUBLISHES, Edge, edge_of
 
 if TYPE_CHECKING:
@@ -46,24 +46,21 @@ def edges_of(
     by_naming = partial(spelled, naming, word or robot, "frame")
     result = {(robot, node.name): [*sent_by(node, "")] for node in plugins}
     nodes = tuple(facts)
+    # What code makes of a frame that robots share, as map_ned of map.
+    shared = tuple(f"<{it}_frame=" for it in naming.shared_frames)
     described = state_publisher_of(nodes)
     for node in nodes:
         named = _once(by_naming) if _is_static(node) else by_naming
         frames = [
             frame._replace(default=plain.get(("link", frame.default)) or named(frame.default))
-            if frame.default and not (frame.in_code or frame.is_kept or _of_shared(frame, naming))
+            if frame.default
+            and not (frame.in_code or frame.is_kept or frame.parameter.startswith(shared))
             else frame
             for frame in node.frames
         ]
         own = [*sent_by(node._replace(frames=tuple(frames)), root)]
         result[robot, node.name] = tree if node.name == described else own
     return result
-
-
-def _of_shared(frame: FrameParameter, naming: Naming) -> bool:
-    """Does code make it of a frame that robots share, as map_ned of map?"""
-    made = "<" in frame.parameter
-    return made and any(frame.default.startswith(f"{it}_") for it in naming.shared_frames)
 
 
 def state_publisher_of(nodes: Sequence[NodeFacts]) -> str:

@@ -654,7 +654,7 @@ def test_a_claim_that_nothing_meets_is_an_error_where_all_is_known(
     assert as_sure(Finding(code, level, "m"), nothing, nothing).level == becomes
 
 
-LEFT = "<robot_namespace>"
+STAYS = "<robot_namespace>"
 
 
 def of_file(text: str) -> tuple[ParameterText, ...]:
@@ -664,15 +664,15 @@ def of_file(text: str) -> tuple[ParameterText, ...]:
 @pytest.mark.parametrize(
     ("more", "left", "line"),
     [
-        ({"parameters": of_file(f"amcl:\n  ros__parameters: {{scan_topic: {LEFT}/scan}}\n")}, LEFT, 2),
-        ({"parameters": of_file(f"{LEFT}/amcl:\n  ros__parameters: {{max_beams: 9}}\n")}, LEFT, 1),
-        ({"parameters": of_file(f"amcl:\n  ros__parameters:\n    joints: [a, {LEFT}b]\n")}, LEFT, 3),
+        ({"parameters": of_file(f"amcl:\n  ros__parameters: {{scan_topic: {STAYS}/scan}}\n")}, STAYS, 2),
+        ({"parameters": of_file(f"{STAYS}/amcl:\n  ros__parameters: {{max_beams: 9}}\n")}, STAYS, 1),
+        ({"parameters": of_file(f"amcl:\n  ros__parameters:\n    joints: [a, {STAYS}b]\n")}, STAYS, 3),
         ({"parameters": of_file("amcl:\n  ros__parameters: {odom_frame_id: $(var ns)/odom}\n")},
          "$(var ns)", 2),
         ({"parameters": of_file("amcl:\n  ros__parameters: {odom_frame_id: '${robot}_odom'}\n")},
          "${robot}", 2),
-        ({"remappings": (("scan", f"/{LEFT}/scan"),)}, LEFT, AT.line),
-        ({"arguments": ("--ros-args", "-r", f"__ns:=/{LEFT}")}, LEFT, AT.line),
+        ({"remappings": (("scan", f"/{STAYS}/scan"),)}, STAYS, AT.line),
+        ({"arguments": ("--ros-args", "-r", f"__ns:=/{STAYS}")}, STAYS, AT.line),
         ({"parameters": with_values({"odom_frame_id": "<prefix>odom"})}, "<prefix>", AT.line),
         ({"parameters": with_values({"robot_description": "<robot name='r'><link name='a'/></robot>"})},
          "", 0),

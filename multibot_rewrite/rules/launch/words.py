@@ -22,6 +22,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.companions.params.sections import RawSection, meant_for, raw_sections
 from multibot_rewrite.companions.yaml_text import line_of
+from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.handed_on import document_of
@@ -68,26 +69,19 @@ def _faults(it: Run) -> Iterator[tuple[str, str]]:
     places = ("--x", "--y", "--z", *turn) if turn else ()
     named = flags or dict(zip(places, it.arguments, strict=False))
     for flag, word in named.items():
-        value = _number(word)
+        value = number(word)
         if flag in _ANGLES and value is not None and abs(value) > _TURN + 0.01:
             radians = f"{value * pi / 180:.4g}"
             yield f"{flag} {word} is more than a turn in radians", f"degrees? write {radians}"
         elif not flags and value is None:
             hint = "numbers come first, then the two frames; or use flags, as --frame-id"
             yield f"{word} is in the place of {flag}", hint
-    found = [_number(named[it]) for it in _QUATERNION if it in named]
+    found = [number(named[it]) for it in _QUATERNION if it in named]
     if len(found) == len(_QUATERNION) and None not in found:
         length = sum(it * it for it in found if it is not None) ** 0.5
         if not isclose(length, 1, abs_tol=0.1):
             words = " ".join(named[it] for it in _QUATERNION)
             yield f"the quaternion {words} is no rotation", "without a rotation write 0 0 0 1"
-
-
-def _number(word: str) -> float | None:
-    try:
-        return float(word)
-    except ValueError:
-        return None
 
 
 def _matches_nothing(launched: Launched) -> Iterator[Finding]:
@@ -173,10 +167,10 @@ def _placeholders(launched: Launched) -> Iterator[Finding]:
     for it in launched.graph.nodes:
         given += [(it.place, one) for one in chain(it.arguments, *it.remappings)]
         for text in it.parameters:
-            with suppress(InputError):
-                for node in _scalars(document_of(text.file, text.text).root):
-                    at_node = Place(text.file, line_of(node)) if text.file else it.place
-                    given.append((at_node, str(node.value)))
+            with suppress(yaml.YAMLError):
+                for one in yaml.scan(text.text):
+                    line = Place(text.file, one.start_mark.line + 1) if text.file else it.place
+                    given += [(line, one.value)] if isinstance(one, yaml.ScalarToken) else []
     told = set()
     for place, value in given:
         left = _LEFT.search(value)
@@ -185,15 +179,6 @@ def _placeholders(launched: Launched) -> Iterator[Finding]:
             message = f"the placeholder {left[0]} stays in {value!r}: the launch fills nothing in"
             hint = "replace it (ParameterFile with allow_substs, ReplaceString), or leave it out"
             yield at(placeholder_left, place, message, hint)
-
-
-def _scalars(node: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
-    if isinstance(node, yaml.ScalarNode):
-        yield node
-    elif node is not None:
-        inside = chain(*node.value) if isinstance(node, yaml.MappingNode) else node.value
-        for it in inside:
-            yield from _scalars(it)
 
 
 placeholder_left = reading.leftover._replace(

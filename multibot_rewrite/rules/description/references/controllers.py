@@ -104,6 +104,7 @@ section_of_no_node = declaration.OF_NO_NODE._replace(
 
 
 _MUJOCO = "mujoco_ros2_control/MujocoSystemInterface"
+_BODIES = ("body", "frame", "replicate")
 
 
 @rule("MB245", "mujoco-joint-without-name", ERROR)
@@ -115,35 +116,26 @@ def mujoco_joint_without_name(subject: Subject) -> Iterator[Problem]:
         if param is None or text_at(system, "hardware/plugin") != _MUJOCO:
             continue
         path = _found(subject, text_of(param))
-        bare = [(it, file) for it, file in _joints_of(path, {path}) if not it.get("name")]
-        moved = [
-            it for it in bare if "free" not in (it[0].tag.removesuffix("joint"), it[0].get("type"))
-        ]
-        if bare:
-            joint, file = (moved or bare)[0]
-            where = f"{os.path.basename(file)}:{joint.sourceline}"
-            what, who = f"{len(moved)} of its joints have no name", "the system refuses"
-            if not moved:
-                what, who = "its free joint has no name", "versions before 0.0.3 refuse"
-            message = f"{where}: {what}, which {who} (mujoco_system_interface.cpp)"
-            yield Problem(param, message, None, "name each joint", level="" if moved else NOTE)
+        bare = [it for it in _joints_of(path, {path}) if not it[0].get("name")]
+        moved = [it for it in bare if it[0].tag == "joint" and it[0].get("type") != "free"]
+        what = f"{len(moved)} joints have" if moved else "its free joint has"
+        for joint, file in (moved or bare)[:1]:
+            message = f"{os.path.basename(file)}:{joint.sourceline}: {what} no name"
+            hint = "name each joint" if moved else "name it, which versions before 0.0.3 ask for"
+            yield Problem(param, message, None, hint, level="" if moved else NOTE)
 
 
 def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
     """The joints of the bodies of a model, each with its file."""
     with suppress(InputError):
-        for it in read_xml(read_file(path), path).iter("joint", "freejoint", "include"):
+        root = read_xml(read_file(path), path)
+        yield from ((it, path) for above in _BODIES for it in root.iterfind(f".//{above}/joint"))
+        yield from ((it, path) for it in root.iter("freejoint"))
+        for it in root.iter("include"):
             file = os.path.join(os.path.dirname(path), it.get("file", ""))
-            if it.tag == "include" and file not in seen:
+            if file not in seen:
                 seen.add(file)
                 yield from _joints_of(file, seen)
-            above = it.getparent()
-            if (
-                it.tag != "include"
-                and above is not None
-                and above.tag in ("body", "frame", "replicate")
-            ):
-                yield it, path
 
 
 @memoized
