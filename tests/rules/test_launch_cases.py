@@ -664,7 +664,7 @@ def of_file(text: str) -> tuple[ParameterText, ...]:
 @pytest.mark.parametrize(
     ("more", "left", "line"),
     [
-        ({"parameters": of_file(f"amcl:\n  ros__parameters: {{scan_topic: {STAYS}/scan}}\n")}, STAYS, 2),
+        ({"parameters": of_file(f"amcl:\n  ros__parameters: {{map_topic: {STAYS}/m}}\n")}, STAYS, 2),
         ({"parameters": of_file(f"{STAYS}/amcl:\n  ros__parameters: {{max_beams: 9}}\n")}, STAYS, 1),
         ({"parameters": of_file(f"amcl:\n  ros__parameters:\n    joints: [a, {STAYS}b]\n")}, STAYS, 3),
         ({"parameters": of_file("amcl:\n  ros__parameters: {odom_frame_id: $(var ns)/odom}\n")},

@@ -35,18 +35,14 @@ _FIXED = "<Fixed Frame>"
 def invalid_names(file: NamedFile) -> Iterator[Finding]:
     """Names in the graph, and those of sections."""
     for site in file.names:
-        fault = _section_fault(site) if site.kind == SECTION else _fault(site)
+        fault = _section_fault(site) if site.kind == SECTION else ""
+        if site.kind in GRAPH and site.text and is_filled(site.text):
+            found = check_name_in_code(site.text)
+            fault = found.reason if found else ""
         if fault:
             what = "node" if site.kind == SECTION else site.kind
             message = f"{what} {site.text!r} is not a valid ROS name: {fault}"
             yield remark(site, message, "it stays as it is; correct it")
-
-
-def _fault(site: Site) -> str:
-    if site.kind not in GRAPH or not site.text or not is_filled(site.text):
-        return ""
-    found = check_name_in_code(site.text)
-    return found.reason if found else ""
 
 
 def _section_fault(site: Site) -> str:

@@ -226,7 +226,9 @@ def misspelt(launched: Launched) -> Iterator[Finding]:
             yield at(misspelt, it.place, message, f"did you mean {other}?", level=NOTE)
             continue
         near = nearest(it.executable, sorted(every), SLIP)
-        if near and _differ(it.executable, near):
+        # Programs are called with and without ``_node``, with and without a file ending.
+        bare = {path.removesuffix(".py").removesuffix("_node") for path in (it.executable, near)}
+        if near and len(bare) > 1:
             message = f"package {it.package} has no program {it.executable}"
             yield at(misspelt, it.place, message, f"did you mean {near}?")
 
@@ -238,10 +240,3 @@ def _package_meant(it: LaunchedNode, known: Mapping[str, Collection[str]]) -> st
         return ""
     around = sources_around(it.place.file)
     return "" if around and it.package in packages_below((around,)) else near
-
-
-def _differ(program: str, near: str) -> bool:
-    """Programs are called with and without ``_node``, with and without a file ending."""
-    return program.removesuffix(".py").removesuffix("_node") != near.removesuffix(
-        ".py"
-    ).removesuffix("_node")
