@@ -19,6 +19,8 @@ from multibot_rewrite.base.nearest import did_you_mean_one_of
 
 RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 NEWEST_LTS = "lyrical"
+# Which ROS loads a plugin that both have.
+ROS_1, ROS_2 = "1", "2"
 VARIABLE = "ROS_DISTRO"
 # Those that have ended -> the next one that is known.
 ENDED = {"foxy": "humble", "galactic": "humble", "iron": "jazzy"}

@@ -13,7 +13,13 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.formats.plain import counts, in_words
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError, VocabularyError
-from multibot_rewrite.base.releases import facts_of_release, release_doubt, release_told, why_here
+from multibot_rewrite.base.releases import (
+    ROS_2,
+    facts_of_release,
+    release_doubt,
+    release_told,
+    why_here,
+)
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import (
     detail,
@@ -63,8 +69,10 @@ def run(options: argparse.Namespace) -> int:
     alone = config
     config = with_options(config, **given(options))
     paths, unreadable = _files(options, config)
-    said = release_of_all(release_told(asked), (it for it in paths if it.endswith(_TELLING)))
-    config = config._replace(settings=config.settings._replace(distro=said.release))
+    told = release_told(asked)
+    said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
+    settings = config.settings._replace(distro=said.release, ros=ROS_2 if told else "")
+    config = config._replace(settings=settings)
     _check_selecting(options, paths)
     # Before the work: nothing that is linted is written over.
     for option in ("--output", "--write-baseline"):

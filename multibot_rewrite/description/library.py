@@ -211,7 +211,7 @@ def _with_own_ports(made: Iterator[Rewrite]) -> Iterator[Rewrite]:
 
 def _has_ports(template: Template) -> bool:
     sections = (section for _, section in template.inventory.served)
-    return any(split_opens(word)[1] for section in sections for word in section.opens)
+    return any(split_opens(word).step for section in sections for word in section.opens)
 
 
 def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterator[Rewrite]:

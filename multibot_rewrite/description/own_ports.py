@@ -48,6 +48,7 @@ from multibot_rewrite.description.steps.document import (
 )
 from multibot_rewrite.description.steps.inserted import end_of
 
+LAST_PORT = 65535
 # So many robots are named in the note.
 _NAMED = 4
 _MARK = "<!-- multibot {} numbered from {} -->"
@@ -55,13 +56,14 @@ _DEFAULT = "the default"
 
 
 class Port(NamedTuple):
-    """A number of a robot, the parameter that holds it, the step to that of the next robot, and what
-    is replaced to change it: ``text`` with the number in it. ``element`` holds it and begins ``at``,
-    or gets it there."""
+    """A number of a robot, the parameter that holds it, the step to that of the next robot, the last
+    one that there is, and what is replaced to change it: ``text`` with the number in it. ``element``
+    holds it and begins ``at``, or gets it there."""
 
     name: str
     number: int
     step: int
+    last: int
     element: _Element
     at: int
     start: int
@@ -112,10 +114,11 @@ def said_of_numbers(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, s
 
 
 def _free(port: Port, held: set[int], taken: set[int]) -> int:
+    """Return the next free number; its own where no other is left, which the second reading finds."""
     number = port.number
     while number in held or (number in taken and number != port.number):
         number += port.step
-    return number
+    return number if number <= port.last else port.number
 
 
 def ports_of(inventory: Inventory) -> Iterator[Port]:
@@ -124,28 +127,34 @@ def ports_of(inventory: Inventory) -> Iterator[Port]:
     starts = dict(zip(document.elements, document.starts, strict=True))
     for host, section in inventory.served:
         for word in section.opens:
-            _, step, when, path, usual = grammar.split_opens(word)
-            if step and (not when or holds(host, when)):
-                there = list(elements_at(host, grammar.split_path(path)[0]))
+            opened = grammar.split_opens(word)
+            if opened.step and (not opened.when or holds(host, opened.when)):
+                there = list(elements_at(host, grammar.split_path(opened.path)[0]))
                 for it in there:
-                    yield from _written(document.source, starts[it], it, path, int(step))
-                if usual and not there:
-                    yield from _default(document.source, starts, host, path, usual, int(step))
+                    yield from _written(document.source, starts[it], it, opened)
+                if opened.default and not there:
+                    yield from _default(document.source, starts, host, opened)
 
 
-def _written(source: bytes, start: int, element: _Element, path: str, step: int) -> Iterator[Port]:
+def _written(
+    source: bytes, start: int, element: _Element, opened: grammar.Opened
+) -> Iterator[Port]:
     text = text_of(element)
     slot = text_slot(source, start, text) if text.isdecimal() and int(text) else None
     if slot:
-        name = grammar.split_step(grammar.split_path(path)[0][-1])[2] or path
-        yield Port(name, int(text), step, element, start, *slot, "{}")
+        name = grammar.split_step(grammar.split_path(opened.path)[0][-1])[2] or opened.path
+        yield Port(name, int(text), *_range(opened), element, start, *slot, "{}")
+
+
+def _range(opened: grammar.Opened) -> tuple[int, int]:
+    return int(opened.step), int(opened.last or LAST_PORT)
 
 
 def _default(
-    source: bytes, starts: Mapping[_Element, int], host: _Element, path: str, usual: str, step: int
+    source: bytes, starts: Mapping[_Element, int], host: _Element, opened: grammar.Opened
 ) -> Iterator[Port]:
     """One that is not written is put first into its plugin, or into what is there of the path."""
-    *above, last = grammar.split_path(path)[0]
+    *above, last = grammar.split_path(opened.path)[0]
     inside = next(elements_at(host, tuple(above)), None)
     start = 0 if inside is None else starts[inside]
     at = tag_end(source, start) if start else 0
@@ -153,7 +162,8 @@ def _default(
         tag, attribute, value = grammar.split_step(last)
         named = f' {attribute}="{value}"' if attribute else ""
         text = f"<{tag}{named}>{{}}</{tag}>"
-        yield Port(value or path, int(usual), step, inside, at, at, at, text)
+        number = int(opened.default)
+        yield Port(value or opened.path, number, *_range(opened), inside, at, at, at, text)
 
 
 def _edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:

@@ -90,11 +90,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         configs = list(rviz_outputs(plan, each))
         made = [*companion_files(plan), *bridge_outputs(plan)]
         files, findings = sorted_out(
-            [
-                *_descriptions(plan, plan.file.installed or folder),
-                *made,
-                *rviz_files(configs),
-            ]
+            [*_descriptions(plan, plan.file.installed or folder), *made, *rviz_files(configs)]
         )
         findings += of_robots(plan)
         gaps = gaps_of(plan, fleet, made)

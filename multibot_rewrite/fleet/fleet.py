@@ -157,10 +157,7 @@ def _with_bridge_and_findings(
 
 
 def facts_of(
-    stacks: Sequence[str],
-    nodes: str | None,
-    release: str,
-    nodl: Sequence[str] = (),
+    stacks: Sequence[str], nodes: str | None, release: str, nodl: Sequence[str] = ()
 ) -> tuple[NodeFacts, ...]:
     """The nodes that a robot with these stacks runs in a release, each once.
 

@@ -17,6 +17,7 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     Param,
     SentTransform,
+    made_of,
 )
 from multibot_rewrite.knowledge.yaml_with_lines import (
     FACT_KEYS,
@@ -47,7 +48,7 @@ GRAPH_WORDS = (
     "shared", "note", "when", "fixed", "apart", "programs", "component", "prefix_switch",
     "unmanaged",
 )  # fmt: skip
-SENT_KEYS = ("child", "if")
+SENT_KEYS = ("child", "if", "static")
 _LIFE_CYCLE = "lifecycle"
 CLAIM_KINDS = ("command", "state")
 CLAIM_KEYS = (*CLAIM_KINDS, "if", "releases")
@@ -64,6 +65,8 @@ def read_node(
     """The facts of an entry; raises UsageError with file and line."""
     check_name(item, name)
     frames = tuple(_frames(keys, params))
+    sends = tuple(_sends(keys, frames))
+    made = dict.fromkeys(end for it in sends for end in it[:2] if "<" in end)
     return NodeFacts(
         name,
         word_of(keys, "package"),
@@ -72,9 +75,9 @@ def read_node(
         word_of(keys, "note"),
         host=word_of(keys, "host"),
         when=condition_of(keys, "when"),
-        frames=frames,
+        frames=(*frames, *(FrameParameter(it, made_of(it, {})) for it in made)),
         fixed=words_of(keys, "fixed"),
-        sends=tuple(_sends(keys, frames)),
+        sends=sends,
         claims=tuple(read_claims(keys)),
         programs=words_of(keys, "programs"),
         component=word_of(keys, "component"),
@@ -107,22 +110,25 @@ def _frames(keys: Mapping[str, YamlItem], params: Iterable[Param]) -> Iterator[F
 def _sends(
     keys: Mapping[str, YamlItem], frames: Iterable[FrameParameter]
 ) -> Iterator[SentTransform]:
-    """The transforms that a node publishes, as the parameters that hold their frames."""
+    """The transforms that a node publishes, as the parameters that hold their frames, or what its code
+    makes of parameters."""
     known = {frame.parameter: frame.parameter for frame in frames}
     each = (
         (parent, it) for parent, item in table_of(keys, "sends").items() for it in variants(item)
     )
     for parent, item in each:
-        if parent not in known:
+        if parent not in known and "<" not in parent:
             wrong(item, unknown("frame", parent, known))
         if isinstance(item.value, str):
-            yield SentTransform(parent, known_word(item, "frame", known))
+            child = item.value if "<" in item.value else known_word(item, "frame", known)
+            yield SentTransform(parent, child)
             continue
         sent = table(item, f"sends {parent}", SENT_KEYS)
         if "child" not in sent:
             wrong(item, f"sends {parent} has no child; write {{child: ..., if: ...}}")
-        child = known_word(sent["child"], "frame", known)
-        yield SentTransform(parent, child, condition_of(sent))
+        child = word(sent["child"], "frame")
+        child = child if "<" in child else known_word(sent["child"], "frame", known)
+        yield SentTransform(parent, child, condition_of(sent), flag_of(sent, "static"))
 
 
 def read_claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:

@@ -44,16 +44,7 @@ PARAMETER_KEYS = (
     *("aliases", "types", "deprecated_types", "known_by", "absolute", "strips", "params"),
     "declared_in",
 )
-PARAM_KEYS = (
-    "kind",
-    "default",
-    "absolute",
-    "deprecated",
-    "own",
-    "instead",
-    "note",
-    *FACT_KEYS,
-)
+PARAM_KEYS = ("kind", "default", "absolute", "deprecated", "own", "instead", "note", *FACT_KEYS)
 
 
 def read_parameters(

@@ -4,6 +4,7 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.system.records import NO_ORIGIN, Origin
 
 MANAGER, MOVE_GROUP, TWIST_MUX = "controller_manager", "move_group", "twist_mux"
@@ -127,11 +128,22 @@ class NodeParameters(NamedTuple):
 
 class SentTransform(NamedTuple):
     """A transform that a node publishes, as the parameters that hold its frames; ``condition`` as in
-    ``Endpoint``."""
+    ``Endpoint``, ``static`` is true for one that holds for ever. A frame that its code makes of
+    parameters stands for one itself (``made_of``)."""
 
     parent: str
     child: str
     condition: str = ""
+    static: bool = False
+
+
+_MADE_OF = lazy_compile(r"<([^<>=]+)(?:=([^<>]*))?>")
+
+
+def made_of(text: str, values: Mapping[str, str]) -> str:
+    """Return a frame that code makes, with each ``<parameter=default>`` in it as it is set; what has
+    no value stays."""
+    return _MADE_OF.sub(lambda it: values.get(it[1], it[0] if it[2] is None else it[2]), text)
 
 
 class Claim(NamedTuple):

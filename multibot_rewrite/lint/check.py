@@ -55,10 +55,7 @@ def lint_data(
 
 
 def _linted(
-    path: str,
-    read: Callable[[], bytes],
-    settings: Settings,
-    wanted: Callable[[Rule], bool] = bool,
+    path: str, read: Callable[[], bytes], settings: Settings, wanted: Callable[[Rule], bool] = bool
 ) -> list[Finding]:
     found: list[Finding] = []
     sources: dict[str, bytes] = {}

@@ -19,6 +19,7 @@ from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.named_file import BRIDGE, PARAMS, kind_of
@@ -61,7 +62,7 @@ def named_findings(launched: Launched) -> list[Finding]:
 def _descriptions(launched: Launched) -> Iterator[Finding]:
     for it in launched.models.found:
         file, data = file_of(launched.graph, it.text), it.text.encode()
-        settings = Settings(distro=launched.release, simulated=it.spawned)
+        settings = Settings(distro=launched.release, ros=ROS_2, simulated=it.spawned)
         found = lint_data(file or _beside(it.place, "robot.urdf"), data, settings, may_stop)
         if found:
             told = in_use(found, read_document(data, file), it.spawned)
@@ -70,7 +71,7 @@ def _descriptions(launched: Launched) -> Iterator[Finding]:
 
 def _loaded_again(launched: Launched) -> Iterator[Finding]:
     """Systems of the world in the descriptions of two models or more."""
-    settings = Settings(select=(_AGAIN,), distro=launched.release, simulated=True)
+    settings = Settings(select=(_AGAIN,), distro=launched.release, ros=ROS_2, simulated=True)
     found: list[list[Finding]] = []
     for it in (one for one in launched.models.found if one.spawned):
         file = file_of(launched.graph, it.text)
@@ -94,7 +95,7 @@ def _parameters(launched: Launched) -> Iterator[Finding]:
         for it in node.parameters
         if it.file and it.file == it.source
     }
-    settings = Settings(distro=launched.release)
+    settings = Settings(distro=launched.release, ros=ROS_2)
     for file, text in texts.items():
         if kind_of(text.encode()) == PARAMS:
             found = lint_data(file, text.encode(), settings)
@@ -103,7 +104,7 @@ def _parameters(launched: Launched) -> Iterator[Finding]:
 
 def _values(launched: Launched) -> Iterator[Finding]:
     """What is wrong with the parameters that a launch file gives a node itself, at the node."""
-    settings = Settings(select=_OF_VALUES, distro=launched.release)
+    settings = Settings(select=_OF_VALUES, distro=launched.release, ros=ROS_2)
     nodes = {(it.place, it.namespace, it.program): it for it in launched.nodes if it.has_fact}
     for it in launched.graph.nodes:
         running = nodes.get((it.place, it.namespace, f"{it.package}/{it.executable}"))

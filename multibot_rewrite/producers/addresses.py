@@ -11,36 +11,60 @@ from itertools import pairwise
 from lxml.etree import _Element
 
 from multibot_rewrite.base.bounded import load_own_yaml
-from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.description.readback.active import (
+    ADDRESS,
+    NOWHERE,
+    RELATIVE,
+    TRANSFORMS_ON,
+    hardware_section,
+    is_device,
+    opened,
+    says_what_it_opens,
+)
+from multibot_rewrite.description.rewriters.vocabulary import (
+    Vocabulary,
+    VocabularySection,
+    split_path,
+    split_step,
+)
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS
 from multibot_rewrite.knowledge.records import Param
 from multibot_rewrite.producers import evidence
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import CALIBRATION, COMPUTER, DEVICE, OWN, Address, Place
 
-_DEVICE = lazy_compile(r"/dev/\S+|v?can\d+")
 # Those below are of services of the system.
 _FREE_PORTS = 1024
 _OFF = ("", "false", "no", "off")
-# Of hardware that is not there.
-_MOCKS = ("mock_components/", "fake_components/")
 
 
-def of_hardware(root: _Element, node: str, place: Place) -> Iterator[Address]:
-    """The devices of a description; none of a component whose address is nowhere."""
-    known, nowhere = _known(), _data()["nowhere"]
-    for hardware in root.iterfind("ros2_control/hardware"):
-        if (hardware.findtext("plugin") or "").strip().startswith(_MOCKS):
+def of_hardware(
+    root: _Element, node: str, place: Place, vocabulary: Vocabulary, of_networks: bool = False
+) -> Iterator[Address]:
+    """The devices of a description: what its classes are known to open, of others what parameters of
+    that name hold, with ``of_networks`` any address; none of a component whose address is nowhere."""
+    for system in root.iterfind("ros2_control"):
+        section = hardware_section(system, vocabulary)
+        params = system.iterfind("hardware/param")
+        values = [(it.get("name", ""), (it.text or "").strip()) for it in params]
+        held = [(_known().get(it[0]) or _of_value(it[1]), *it) for it in values]
+        if of_networks:
+            held = [(it[0] or (DEVICE if is_of_network(it[2]) else ""), *it[1:]) for it in held]
+        if section is not None and says_what_it_opens(section):
+            held = [*_opened_by(system, section), *(it for it in held if it[0] == CALIBRATION)]
+        elif any(kind == DEVICE and text in NOWHERE for kind, _, text in held):
             continue
-        params = {it.get("name", ""): (it.text or "").strip() for it in hardware.iterfind("param")}
-        kinds = {name: known.get(name, _of_value(value)) for name, value in params.items()}
-        found = [
-            Address(kinds[name], name, value, node, place)
-            for name, value in params.items()
-            if kinds[name]
-        ]
-        if not any(it.kind == DEVICE and it.value in nowhere for it in found):
-            yield from (it for it in dict.fromkeys(found) if it.value not in nowhere)
+        else:
+            held = [it for it in held if it[0] and it[2] not in NOWHERE]
+        yield from dict.fromkeys(Address(*it, node, place) for it in held)
+
+
+def _opened_by(system: _Element, section: VocabularySection) -> Iterator[tuple[str, str, str]]:
+    """Return kind, parameter and value of what a known class of hardware opens."""
+    for kind, value, path in opened(system, section):
+        if kind not in (RELATIVE, TRANSFORMS_ON):
+            label = split_step(split_path(path)[0][-1])[2] or path
+            yield DEVICE if kind == ADDRESS else COMPUTER, label, value
 
 
 def of_parameters(
@@ -72,21 +96,22 @@ def held_by(name: str, text: str) -> str:
     network or by its number; of a computer a device, a port, a file that it writes. Else empty."""
     word = name.rpartition(".")[2]
     if word in _data()["address"]:
-        numbered = word.startswith("serial_n") and text not in _data()["nowhere"]
-        return DEVICE if numbered or _is_of_network(text) else _of_value(text)
+        numbered = word.startswith("serial_n") and text not in NOWHERE
+        return DEVICE if numbered or is_of_network(text) else _of_value(text)
     if word == "port" or word.endswith("_port"):
         return COMPUTER if text.isdecimal() and int(text) >= _FREE_PORTS else _of_value(text)
     return COMPUTER if text and word in _data()["written"] else _of_value(text)
 
 
 def _of_value(text: str) -> str:
-    return COMPUTER if _DEVICE.fullmatch(text) else ""
+    return COMPUTER if is_device(text) else ""
 
 
-def _is_of_network(text: str) -> bool:
-    """Is it the address of another computer?"""
+def is_of_network(text: str) -> bool:
+    """Is it the address of another computer, alone or with a port?"""
     try:
-        return not (it := IPv4Address(text)).is_loopback and not it.is_unspecified
+        it = IPv4Address(text.partition(":")[0])
+        return not (it.is_loopback or it.is_unspecified or text.startswith("255."))
     except ValueError:
         return False
 

@@ -2,8 +2,8 @@
 """The frames of what sensors of gz-sim send.
 
 Source: gz-sim8 src/systems/sensors/Sensors.cc and Imu.cc (a sensor is called as its scoped name),
-gz-sensors8 src/Sensor.cc (that name is the frame where the description gives none), ros_gz_bridge
-convert/utils.hpp (frame_id_gz_to_ros makes / of each ::).
+gz-sensors src/Sensor.cc (ign-sensors6, gz-sensors8, gz-sensors9: what names the frame, else its own
+name), ros_gz_bridge convert/utils.hpp (frame_id_gz_to_ros makes / of each ::).
 """
 
 from __future__ import annotations
@@ -13,10 +13,15 @@ from typing import NamedTuple, cast
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.description.checks.links_and_joints import read_robot
 from multibot_rewrite.description.rewriters.text import text_at
 
-_NAMED = ("camera/optical_frame_id", "gz_frame_id", "ignition_frame_id", "frame_id")
+# The first of them that is there counts in these releases.
+_NAMED = (
+    ("camera/optical_frame_id", ""),
+    *(("ignition_frame_id", "humble"), ("frame_id", "kilted+"), ("gz_frame_id", "")),
+)
 _MODEL, _LINK = "model", "link"
 
 
@@ -32,14 +37,15 @@ class SensorFrame(NamedTuple):
     line: int
 
 
-def sensor_frames(root: _Element, model: str) -> Iterator[SensorFrame]:
+def sensor_frames(root: _Element, model: str, release: str) -> Iterator[SensorFrame]:
     """Those of the sensors on links, in the order of the file; ``model`` is what it is spawned as. In a
     URDF the links at fixed joints are merged."""
     bodies = read_robot(root).body
+    names = [path for path, words in _NAMED if has_release(words, release)]
     for sensor in root.iter("sensor"):
         link, above = _place(sensor)
         line = cast("int", sensor.sourceline)
-        named = next(filter(None, (text_at(sensor, it) for it in _NAMED)), "")
+        named = next(filter(None, (text_at(sensor, it) for it in names)), "")
         made = "/".join((model, *above, bodies.get(link, link), sensor.get("name", "")))
         yield SensorFrame(_full(text_at(sensor, "topic")), named or made, link, bool(named), line)
 

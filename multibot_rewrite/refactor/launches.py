@@ -225,11 +225,7 @@ class Filled(NamedTuple):
 
 
 def fillable(
-    paths: Sequence[str],
-    urdfs: Sequence[bytes],
-    names: Collection[str],
-    argument: str,
-    tried: str,
+    paths: Sequence[str], urdfs: Sequence[bytes], names: Collection[str], argument: str, tried: str
 ) -> Mapping[str, Filled]:
     """The parameter files that have some of the names of the descriptions ``urdfs``, by their own
     names; those that two have are left out."""

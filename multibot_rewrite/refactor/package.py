@@ -87,9 +87,7 @@ def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
 
 
 def read_text(
-    path: str,
-    how: Expanding,
-    texts: Mapping[str, bytes] | None = None,
+    path: str, how: Expanding, texts: Mapping[str, bytes] | None = None
 ) -> tuple[bytes, Expansion | None]:
     """The text of a description; ``texts`` are the bytes of files that are not as on the disk, by their
     real paths. Raises InputError."""

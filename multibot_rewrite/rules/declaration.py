@@ -5,7 +5,7 @@ it says where: at the place of a record, and of what is beside it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
 from pkgutil import iter_modules
@@ -56,10 +56,7 @@ def system_rule(
 
 
 def system_options(
-    absence: bool = False,
-    drawn: Drawn = "",
-    all_ends: bool = False,
-    meant: tuple[str, ...] = (),
+    absence: bool = False, drawn: Drawn = "", all_ends: bool = False, meant: tuple[str, ...] = ()
 ) -> dict[str, object]:
     """Return the options of a rule about any system, as in ``system_rule``."""
     options: dict[str, object] = {"absence": absence, "drawn": drawn, "all_ends": all_ends}
@@ -93,9 +90,11 @@ def planned_rule(
     return declared
 
 
-def launch_rule(code: str, name: str, *, level: str = ERROR) -> Callable[[_Check], Rule]:
+def launch_rule(
+    code: str, name: str, *, level: str = ERROR, **options: object
+) -> Callable[[_Check], Rule]:
     """Make a function a rule about what a launch starts: it gets a ``Launched`` and yields findings."""
-    return rule(code, name, level, formats=(LAUNCH,))
+    return rule(code, name, level, formats=(LAUNCH,), options=options)
 
 
 def of_robots(find: _FileCheck) -> _FileCheck:
@@ -140,7 +139,16 @@ NOT_EXPORTED = declare(
 CLAIMED_TWICE = declare(
     "MB240", "interface-claimed-twice", WARNING, formats=(SYSTEM,), options=system_options()
 )
+OF_NO_NODE = declare("MB244", "section-of-no-node", ERROR, formats=(LAUNCH,))
 ONE_DEVICE = declare("MB412", "one-device", WARNING, formats=(SYSTEM,), options=system_options())
+
+
+def said_of_section(path: str, readers: Sequence[str]) -> tuple[str, str]:
+    """Return message and hint about a section that is for no node, though it has these nodes' name."""
+    names = sorted(set(readers))
+    base = names[0].rpartition("/")[2]
+    message = f"section {path} matches no node: {' and '.join(names)} get nothing of it"
+    return message, f"write {names[0] if len(names) == 1 else f'/**/{base}'}:"
 
 
 class Placed(Protocol):

@@ -52,7 +52,8 @@ class Settings(NamedTuple):
     files do anything; ``readable`` are those of the roots that they may read in and ``$(find NAME)``
     looks in: a configuration gives them no folder outside of its own. ``elsewhere`` are the xacro
     arguments that any of several files knows that are linted together, None for one file alone.
-    ``distro`` is the ROS 2 release that the robots run. ``simulated`` says that the robot runs
+    ``distro`` is the ROS 2 release that the robots run, ``ros`` the ROS that loads their
+    plugins, where somebody said it. ``simulated`` says that the robot runs
     in Gazebo.
     """
 
@@ -74,6 +75,7 @@ class Settings(NamedTuple):
     readable: tuple[str, ...] = ()
     elsewhere: KnownArguments | None = None
     distro: str = NEWEST_LTS
+    ros: str = ""
     simulated: bool = False
 
 

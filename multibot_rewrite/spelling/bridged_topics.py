@@ -248,7 +248,8 @@ def _sensor(sensor: etree._Element, robot: str, release: str) -> Iterator[Found]
             yield _bridged(row, robot, _ros_name(name), name)
     if any(row.gz_type == IMAGE for row in rows):
         beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
-        name = text_at(sensor, "camera/camera_info_topic") or beside
+        own = text_at(sensor, "camera/camera_info_topic") if sensor.get("type") == "camera" else ""
+        name = own or beside
         if kind in _INFO_BELOW:
             name = f"{base}/camera_info"
         types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")

@@ -46,12 +46,15 @@ def edges_of(
     by_naming = partial(spelled, naming, word or robot, "frame")
     result = {(robot, node.name): [*sent_by(node, "")] for node in plugins}
     nodes = tuple(facts)
+    # What code makes of a frame that robots share, as map_ned of map.
+    shared = tuple(f"<{it}_frame=" for it in naming.shared_frames)
     described = state_publisher_of(nodes)
     for node in nodes:
         named = _once(by_naming) if _is_static(node) else by_naming
         frames = [
             frame._replace(default=plain.get(("link", frame.default)) or named(frame.default))
-            if frame.default and not (frame.in_code or frame.is_kept)
+            if frame.default
+            and not (frame.in_code or frame.is_kept or frame.parameter.startswith(shared))
             else frame
             for frame in node.frames
         ]
@@ -124,9 +127,9 @@ def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
     values = {frame.parameter: frame.default for frame in node.frames}
     given = {frame.parameter for frame in node.frames if frame.given}
     static = _is_static(node)
-    for parent, child, _ in (it for it in node.sends if holds(it.condition, values.get)):
-        base = root and "odom" not in child and child not in given
-        edge = edge_of(values[parent], root if base else values[child], static)
+    for parent, child, _, fixed in (it for it in node.sends if holds(it.condition, values.get)):
+        base = root and not fixed and "odom" not in child and child not in given
+        edge = edge_of(values[parent], root if base else values[child], static or fixed)
         # A frame that only a file sets; a frame below itself, which tf2 refuses (buffer_core.cpp).
         if edge.parent not in ("", edge.child) and "<" not in edge.child:
             yield edge

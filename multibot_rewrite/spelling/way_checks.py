@@ -169,9 +169,7 @@ def _robots_worth_a_look(table: Table) -> set[str]:
 
 
 def _wrong(
-    names: Names,
-    running: Run,
-    owners: Callable[[], Mapping[str, set[str]]],
+    names: Names, running: Run, owners: Callable[[], Mapping[str, set[str]]]
 ) -> Iterator[str]:
     """Those called otherwise than the table says: as in the code, or like something of a robot."""
     own, theirs, bare = (bound_to(running, it) for it in (running.rules, running.handed_on, ()))

@@ -27,6 +27,7 @@ from multibot_rewrite.system.records import (
     Node,
     Robot,
     System,
+    incomplete,
     may_miss,
     nodes_by_robot,
     surely,
@@ -270,6 +271,11 @@ class Index(NamedTuple):
     def in_doubt(self) -> bool:
         """May nodes run that no source names, such as a driver?"""
         return any(it.code == UNKNOWN_NODES for it in self.system.environment.caveats)
+
+    @property
+    def nobody(self) -> str:
+        """Return what is said of all nodes: where there may be more, of those that are known."""
+        return "no known node" if incomplete(self.system) else "no node"
 
     def is_tool(self, node: str) -> bool:
         """Is the node none of the robots', but one that comes and goes beside any?"""

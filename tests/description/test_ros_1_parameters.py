@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plugin with parameters of ROS 1 in a robot of ROS 2 is the one of ROS 2: it gets a namespace."""
+"""One ROS loads all plugins of a description: the release that is named, what only one of them has and
+its package decide it; a plugin with parameters of ROS 1 in a robot of ROS 2 gets a namespace."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from multibot_rewrite import rewrite_all
+from multibot_rewrite import rewrite, rewrite_all, strip
 
 PLUGIN = """\
 <gazebo reference="base">
@@ -28,13 +31,82 @@ OTHER = """\
 """
 
 
+SENSOR = """\
+<gazebo reference="base">
+  <sensor name="scan" type="ray"><plugin filename="libgazebo_ros_ray_sensor.so" name="scan"/></sensor>
+</gazebo>
+"""
+OF_ROS_1 = """\
+<gazebo><plugin filename="libgazebo_ros_control.so" name="control"/></gazebo>
+"""
+
+
+def imu_plugins(more: str, file: str = "", **given: str) -> list[bool]:
+    """Rewrite a robot with the IMU of ROS 1's words; does each robot's have a namespace of ROS 2?"""
+    text = f'<robot name="rover"><link name="base"/>\n{more}{PLUGIN}</robot>'
+    if file:
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(text)
+    made = rewrite_all(file or text, ["robot1", "robot2"], layout="frames-per-robot", **given)
+    plugins = (
+        (it.robot, it.text.partition("imu_plugin")[2].partition("</plugin>")[0]) for it in made
+    )
+    return [f"<namespace>/{robot}</namespace>" in plugin for robot, plugin in plugins]
+
+
 @pytest.mark.parametrize(
     ("more", "is_ros_2"),
-    [("", False), (CONTROL, True), (OTHER, False)],
-    ids=["1", "control", "ros"],
+    [("", False), (CONTROL, True), (OTHER, True), (SENSOR, True), (OF_ROS_1 + SENSOR, True)],
+    ids=["nothing", "control", "ros", "plugin", "both"],
 )
-def test_its_node_is_one_of_the_robot(more: str, is_ros_2: bool) -> None:
-    text = f'<robot name="rover"><link name="base"/>\n{more}{PLUGIN}</robot>'
-    for it in rewrite_all(text, ["robot1", "robot2"], layout="frames-per-robot", distro="humble"):
-        plugin = it.data.decode().partition("imu_plugin")[2].partition("</plugin>")[0]
-        assert (f"<namespace>/{it.robot}</namespace>" in plugin) == is_ros_2
+def test_what_only_one_of_them_has_decides(more: str, is_ros_2: bool) -> None:
+    assert imu_plugins(more) == [is_ros_2, is_ros_2]
+
+
+@pytest.mark.parametrize("more", ["", OF_ROS_1])
+def test_a_named_release_is_one_of_ros_2(more: str) -> None:
+    assert imu_plugins(more, distro="humble") == [True, True]
+
+
+@pytest.mark.parametrize(
+    ("package", "is_ros_2"),
+    [
+        ("<export><build_type>ament_cmake</build_type></export>", True),
+        ("<buildtool_depend>ament_cmake</buildtool_depend>", True),
+        ("<buildtool_depend>catkin</buildtool_depend>", False),
+        ("<description>catkin and ament_cmake</description>", False),
+    ],
+)
+def test_the_package_decides_where_the_description_does_not(
+    tmp_path: Path, package: str, is_ros_2: bool
+) -> None:
+    (tmp_path / "package.xml").write_text(f"<package>{package}</package>")
+    folder = tmp_path / "urdf"
+    folder.mkdir()
+    assert imu_plugins("", str(folder / "a.urdf")) == [is_ros_2, is_ros_2]
+
+
+MOVE = """\
+<gazebo><plugin filename="libgazebo_ros_planar_move.so" name="move">
+  <commandTopic>cmd_vel</commandTopic>
+</plugin></gazebo>
+"""
+BARE = PLUGIN.replace("<topicName>imu</topicName><bodyName>base</bodyName>", "")
+
+
+@pytest.mark.parametrize(("more", "is_open"), [("", True), (OF_ROS_1, False), (SENSOR, False)])
+def test_plugins_of_both_that_disagree_are_not_verified(more: str, is_open: bool) -> None:
+    text = f'<robot name="rover"><link name="base"/>\n{more}{MOVE}{BARE}</robot>'
+    one = rewrite(text, "robot1", layout="both")
+    assert ("1 plugin not known" in one.not_proved) == is_open
+    told = [it.message for it in one.findings if it.code == "MB902"]
+    assert [("planar_move" in it, "imu_sensor" in it) for it in told] == [(True, True)] * is_open
+
+
+def test_an_inserted_block_is_no_evidence_of_ros_2() -> None:
+    """What a rewrite put in does not change how the text is read when it is undone."""
+    text = f'<robot name="rover"><link name="base"/>\n{MOVE}{BARE}</robot>'
+    one = rewrite(text, "robot1", layout="both")
+    assert "<ros>" in one.text
+    assert "<robotNamespace>/robot1" in one.text
+    assert strip(one.text, "robot1", layout="both").decode() == text

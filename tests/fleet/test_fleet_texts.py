@@ -240,8 +240,8 @@ OLD = '<gazebo><plugin name="p" filename="lib{}.so">{}</plugin></gazebo>'
     [
         ("gazebo_ros_control", "", True),
         ("gazebo_ros2_control", "", False),
-        # gazebo_ros_pkgs has it for both, with other parameters.
-        ("gazebo_ros_diff_drive", "<commandTopic>cmd_vel</commandTopic>", True),
+        # gazebo_ros_pkgs has it for both: a fleet's is that of ROS 2, whatever its parameters are.
+        ("gazebo_ros_diff_drive", "<commandTopic>cmd_vel</commandTopic>", False),
         ("gazebo_ros_diff_drive", "<ros><remapping>cmd_vel:=go</remapping></ros>", False),
     ],
 )

@@ -9,8 +9,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.knowledge.conditions import ALSO
+from multibot_rewrite.knowledge.declared import declared_by
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import Branch, NodeFacts, NodeParameters, Param
 from multibot_rewrite.knowledge.stacks import built_in
@@ -71,12 +72,41 @@ def test_a_parameter_that_names_something_is_known_as_a_name(release: str) -> No
             continue
         ends = [it.parameter for it in facts.endpoints if it.parameter]
         wanted = [(one, NAMES) for it in ends for one in it.split(ALSO)]
-        wanted += [(it.parameter, FRAMES) for it in facts.frames]
+        named = (it.parameter for it in facts.frames)
+        wanted += [(it, FRAMES) for it in named if "<" not in it]
         for path, kinds in wanted:
             there = {it.kind for it in params_of(node, path)} if node else set()
             if not there & kinds:
                 found.append((facts.name, path, there))
     assert found == []
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_what_a_frame_is_made_of_has_the_default_of_its_parameter(release: str) -> None:
+    made = 0
+    for facts, node in both(release):
+        for path, default in re.findall(
+            "<([^<>=]+)=([^<>]*)>", " ".join(it.parameter for it in facts.frames)
+        ):
+            known = params_of(node, path) if node else ()
+            assert all(it.kind == "keep" or it.default == default for it in known), path
+            assert known or not default, path
+            made += 1
+    assert made
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_a_parameter_that_a_package_declares_in_a_release_is_there_in_it(release: str) -> None:
+    lacking = [
+        (node.name, it.path)
+        for node in built_in_nodes(release).nodes.values()
+        for owner in (node.package, *node.declared_in)
+        for it in declared_by(owner)
+        if it.path in node.params
+        and has_release(it.releases, release)
+        and not has_release(node.params[it.path].releases, release)
+    ]
+    assert lacking == []
 
 
 @pytest.mark.parametrize("release", RELEASES)

@@ -710,3 +710,18 @@ def test_a_file_that_its_reader_refuses_is_told(tmp_path: Path) -> None:
     assert found(text, tmp_path, "old.rviz") == ["MB101:3"]
     (it,) = lint_file(str(tmp_path / "old.rviz"), Settings())
     assert it.file == str(tmp_path / "old.rviz")
+
+
+def test_what_stands_for_the_robot_is_left_where_a_description_is_named(tmp_path: Path) -> None:
+    """A launch file fills it in, or the controller asks for a joint of that name."""
+    (tmp_path / "arm.urdf").write_text(
+        "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='continuous'>"
+        "<parent link='a'/><child link='b'/></joint></robot>"
+    )
+    file = tmp_path / "c.yaml"
+    text = "diff:\n  ros__parameters:\n    left_wheel_names: [MARKj, MARKj]\n    odom_frame_id: o\n"
+    named = Settings(select=("MB105",), urdf=str(tmp_path / "arm.urdf"))
+    for mark, told in (("<robot_namespace>", 1), ("$(var ns)/", 1), ("", 0)):
+        file.write_text(text.replace("MARK", mark))
+        assert [it.level for it in lint_file(str(file), named)] == ["note"] * told
+        assert lint_file(str(file), Settings(select=("MB105",))) == []

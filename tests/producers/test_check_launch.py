@@ -689,6 +689,81 @@ def test_one_vehicle_has_one_mavros(run: Graph) -> None:
     )
 
 
+CAMERA, LIDAR = "realsense2_camera/realsense2_camera_node", "ouster_ros/os_driver"
+
+
+@pytest.mark.parametrize(
+    ("supervisors", "other", "code", "text"),
+    [
+        ((), "", "MG501", "but no node publishes /clock"),
+        ((), "acme/own", "MG501", "but no known node publishes /clock"),
+        ((), "webots_ros2_driver/driver", "MG501", "but no known node publishes /clock"),
+        (("/Ros2Supervisor",), "webots_ros2_driver/driver", "", ""),
+        (("/Ros2Supervisor", "/second"), "", "MG502", "publish /clock"),
+    ],
+)  # fmt: skip
+def test_who_has_the_clock_of_webots(
+    run: Graph, supervisors: Sequence[str], other: str, code: str, text: str
+) -> None:
+    """ros2_supervisor.py sends it, and WebotsNode.cpp does not since 2022.1; what is not known may."""
+    own = [node("webots_ros2_driver/ros2_supervisor.py", "", it, (("clock", "/clock"),))
+           for it in supervisors]  # fmt: skip
+    own += [node(other, "x")] if other else []
+    amcl = [node("nav2_amcl/amcl", "amcl", f"/robot{it}", use_sim_time=True) for it in (1, 2)]
+    found = [it for it in diagnose(run(*own, *amcl)).findings if it.code in ("MG501", "MG502")]
+    assert {it.code for it in found} == ({code} if code else set())
+    assert all(text in it.message for it in found)
+
+
+def of_both(
+    program: str, name: str, *values: dict[str, object], rules: object = ()
+) -> list[LaunchedNode]:
+    both = zip(("/robot1", "/robot2"), values, strict=True)
+    own = [node(program, name, space, rules, **more) for space, more in both]
+    return [
+        *own,
+        *(publisher(it.namespace, rules, frame_prefix=f"{it.namespace[1:]}/") for it in own),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("program", "name", "values", "frames"),
+    [
+        (CAMERA, "camera", ({}, {}), {"camera_link", "camera_depth_frame", "camera_color_frame"}),
+        (CAMERA, "camera", ({"camera_name": "d"}, {"camera_name": "d", "base_frame_id": "base"}),
+         {"d_depth_frame", "d_color_frame"}),
+        (CAMERA, "camera", ({"enable_color": False}, {}), {"camera_link", "camera_depth_frame"}),
+        (CAMERA, "camera", ({"camera_name": "one"}, {"camera_name": "two"}), set()),
+        (CAMERA, "camera", ({"tf_prefix": "robot1/"}, {"tf_prefix": "robot2/"}), set()),
+        (CAMERA, "camera", ({"publish_tf": False}, {"publish_tf": False}), set()),
+        (LIDAR, "os_driver", ({}, {}), {"os_sensor", "os_lidar", "os_imu"}),
+        (LIDAR, "os_driver", ({"pub_static_tf": False}, {}), set()),
+        (LIDAR, "os_driver", ({"sensor_frame": "robot1/os"}, {"sensor_frame": "robot2/os"}),
+         {"os_lidar", "os_imu"}),
+        ("mavros/mavros_node", "", ({}, {"tgt_system": 2}), {"map_ned", "odom_ned", "base_link_frd"}),
+    ],
+)  # fmt: skip
+def test_frames_that_code_makes_of_two_robots_meet(
+    run: Graph, program: str, name: str, values: tuple[dict[str, object], ...], frames: set[str]
+) -> None:
+    """base_realsense_node.h (FRAME_ID), os_static_transforms_broadcaster.h, mavros uas_tf.cpp."""
+    found = diagnose(run(*of_both(program, name, *values))).findings
+    met = {it for one in found if one.code in ("MG402", "MG401") for it in one.names}
+    assert frames <= met and bool(met) is bool(frames)
+    own = of_both(program, name, *values, rules=TF)
+    assert not {"MG402", "MG408", "MG407"} & codes(run(*own))
+
+
+def test_fixed_frames_below_odometry_are_no_odometry(run: Graph) -> None:
+    """mavros uas_tf.cpp: odom -> odom_ned is static; who sends odom -> base_link has odometry."""
+    frames = {"base_link_frame": "robot1/base_link", "odom_frame": "robot1/odom"}
+    own = (mavros("/robot1", **frames), publisher("/robot1", frame_prefix="robot1/"))
+    assert "MG406" not in codes(run(*own))
+    ekf = node("robot_localization/ekf_node", "ekf", base_link_frame="robot1/body",
+               odom_frame="robot1/odom", world_frame="robot1/odom")  # fmt: skip
+    assert "MG406" in codes(run(*own, ekf))
+
+
 GPIO = """\
 controller_manager: {ros__parameters: {update_rate: 10}}
 gpios:

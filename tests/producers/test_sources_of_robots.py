@@ -10,6 +10,7 @@ from given_parameters import run_given
 from lxml import etree
 
 from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import (
     UNKNOWN,
@@ -146,6 +147,13 @@ _NESTED = """<sdf><model name="r"><model name="arm"><link name="hand"><sensor na
         (_ON_PLATE.format("", ""), "robot1/base/s", "plate"),
         (_ON_PLATE.format("", _KEPT), "robot1/plate/s", "plate"),
         (_ON_PLATE.format("<gz_frame_id>laser</gz_frame_id>", ""), "laser", "plate"),
+        # Sensor.cc of gz-sensors8 reads no <frame_id>, and no <ignition_frame_id>.
+        (_ON_PLATE.format("<frame_id>laser</frame_id>", ""), "robot1/base/s", "plate"),
+        (
+            _ON_PLATE.format("<ignition_frame_id>l</ignition_frame_id>", ""),
+            "robot1/base/s",
+            "plate",
+        ),
         (_NESTED, "robot1/arm/hand/s", "hand"),
     ],
 )
@@ -153,11 +161,24 @@ def test_the_frame_of_a_sensor_is_its_place_or_what_it_says(
     text: str, frame: str, link: str
 ) -> None:
     """gz-sim Sensors.cc: model::link::sensor without the world; sdformat merges fixed links."""
-    sensors = [*sensor_frames(etree.fromstring(text), "robot1")]
+    sensors = [*sensor_frames(etree.fromstring(text), "robot1", "jazzy")]
     for topic in ("scan", "/scan/points"):
         found = sensor_on(topic, sensors)
         assert found and (found.frame, found.link) == (frame, link)
     assert sensor_on("/scanner", sensors) is None
+
+
+@pytest.mark.parametrize(
+    ("release", "frame"),
+    [("humble", "old"), ("jazzy", "gz"), ("kilted", "sdf"), ("lyrical", "sdf")],
+)
+def test_the_parameter_that_names_a_frame_is_that_of_the_release(release: str, frame: str) -> None:
+    """ign-sensors6 Sensor.cc:148 ignition_frame_id first, gz-sensors8 Sensor.cc:188 gz_frame_id alone,
+    gz-sensors9 Sensor.cc:181 sdf's FrameId first."""
+    texts = {"frame_id": "sdf", "gz_frame_id": "gz", "ignition_frame_id": "old"}
+    inside = "".join(f"<{name}>{text}</{name}>" for name, text in texts.items())
+    root = etree.fromstring(_ON_PLATE.format(inside, ""))
+    assert [it.frame for it in sensor_frames(root, "robot1", release)] == [frame]
 
 
 HARDWARE = (
@@ -173,6 +194,9 @@ HARDWARE = (
         ("fake_components/GenericSystem", {"robot_ip": "10.0.0.2"}, []),
         ("acme/Arm", {"robot_ip": ""}, []),
         ("acme/Arm", {}, []),
+        # What a class is known to open nothing of.
+        ("gz_ros2_control/GazeboSimSystem", {"robot_ip": "10.0.0.2"}, []),
+        ("gz_ros2_control/GazeboSimSystem", {"robot_ip": "/dev/ttyUSB0"}, []),
     ],
 )
 def test_the_devices_of_a_description(
@@ -180,9 +204,46 @@ def test_the_devices_of_a_description(
 ) -> None:
     inside = "".join(f'<param name="{name}">{it}</param>' for name, it in params.items())
     root = etree.fromstring(HARDWARE.format(plugin, inside))
-    made = [*of_hardware(root, "/m", AT)]
+    made = [*of_hardware(root, "/m", AT, load_vocabulary((), "jazzy"))]
     assert [(it.kind, it.value) for it in made] == found
     assert all(it == Address(it.kind, "robot_ip", it.value, "/m", AT) for it in made)
+
+
+@pytest.mark.parametrize(
+    ("plugin", "params", "found"),
+    [
+        (
+            "robotiq_driver/RobotiqGripperHardwareInterface",
+            {},
+            [("computer", "COM_port", "/dev/ttyUSB0")],
+        ),
+        ("ethercat_driver/EthercatDriver", {}, [("computer", "master_id", "0")]),
+        ("dynamixel_hardware/DynamixelHardware", {"use_dummy": "true", "usb_port": "/dev/a"}, []),
+        (
+            "ur_robot_driver/URPositionHardwareInterface",
+            {"robot_ip": "10.0.0.2", "reverse_port": "50001", "kinematics/hash": "calib_1"},
+            [
+                ("device", "robot_ip", "10.0.0.2"),
+                ("computer", "reverse_port", "50001"),
+                ("calibration", "kinematics/hash", "calib_1"),
+            ],
+        ),
+        (
+            "lbr_ros2_control::SystemInterface",
+            {"port_id": "30200", "remote_host": "INADDR_ANY"},
+            [("computer", "port_id", "30200")],
+        ),
+    ],
+)
+def test_what_a_known_class_opens_is_that_of_the_vocabulary(
+    plugin: str, params: dict[str, str], found: list[tuple[str, str, str]]
+) -> None:
+    """default_serial_factory.cpp of robotiq_driver, ec_master.hpp of ethercat_driver_ros2,
+    hardware_interface.cpp:700 of ur_robot_driver, system_interface.cpp:393 of lbr_fri_ros2_stack."""
+    inside = "".join(f'<param name="{name}">{it}</param>' for name, it in params.items())
+    root = etree.fromstring(HARDWARE.format(plugin, inside))
+    made = of_hardware(root, "/m", AT, load_vocabulary((), "jazzy"))
+    assert [(it.kind, it.name, it.value) for it in made] == found
 
 
 @pytest.mark.parametrize(

@@ -652,3 +652,37 @@ def test_a_claim_that_nothing_meets_is_an_error_where_all_is_known(
 ) -> None:
     nothing: Any = None
     assert as_sure(Finding(code, level, "m"), nothing, nothing).level == becomes
+
+
+STAYS = "<robot_namespace>"
+
+
+def of_file(text: str) -> tuple[ParameterText, ...]:
+    return (ParameterText("/ws/own.yaml", text, "/ws/own.yaml"),)
+
+
+@pytest.mark.parametrize(
+    ("more", "left", "line"),
+    [
+        ({"parameters": of_file(f"amcl:\n  ros__parameters: {{map_topic: {STAYS}/m}}\n")}, STAYS, 2),
+        ({"parameters": of_file(f"{STAYS}/amcl:\n  ros__parameters: {{max_beams: 9}}\n")}, STAYS, 1),
+        ({"parameters": of_file(f"amcl:\n  ros__parameters:\n    joints: [a, {STAYS}b]\n")}, STAYS, 3),
+        ({"parameters": of_file("amcl:\n  ros__parameters: {odom_frame_id: $(var ns)/odom}\n")},
+         "$(var ns)", 2),
+        ({"parameters": of_file("amcl:\n  ros__parameters: {odom_frame_id: '${robot}_odom'}\n")},
+         "${robot}", 2),
+        ({"remappings": (("scan", f"/{STAYS}/scan"),)}, STAYS, AT.line),
+        ({"arguments": ("--ros-args", "-r", f"__ns:=/{STAYS}")}, STAYS, AT.line),
+        ({"parameters": with_values({"odom_frame_id": "<prefix>odom"})}, "<prefix>", AT.line),
+        ({"parameters": with_values({"robot_description": "<robot name='r'><link name='a'/></robot>"})},
+         "", 0),
+        ({"parameters": with_values({"note": "give <name> to each", "map_topic": "a<b"})}, "", 0),
+    ],
+)  # fmt: skip
+def test_a_placeholder_that_a_node_gets_as_it_is(
+    more: dict[str, Any], left: str, line: int, known: Knowledge
+) -> None:
+    """launch_ros parameter_descriptions.py fills in nothing without allow_substs."""
+    found = judged(known, "MB105", started("nav2_amcl", "amcl", "amcl", **more))
+    assert [(it.level, it.line) for it in found] == ([("error", line)] if left else [])
+    assert all(left in it.message for it in found)

@@ -17,6 +17,7 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     SentTransform,
 )
+from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.of_runs import expanded, placed, target_of
 from multibot_rewrite.spelling.plan import expect, named_frames, tf_topic
@@ -382,6 +383,22 @@ def test_odometry_keeps_its_frame_and_no_parent_is_no_transform() -> None:
     assert list(sent_by(node, "root")) == [edge_of("map", "odom")]
     empty = node._replace(frames=(values[0]._replace(default=""), values[1]))
     assert list(sent_by(empty, "root")) == []
+
+
+def test_frames_that_code_makes_have_the_robots_name_where_what_they_are_made_of_has_it() -> None:
+    """mavros uas_tf.cpp and realsense tfs.cpp: static, and not below the root of the description."""
+    library = built_in(NEWEST_LTS).nodes
+    naming = make_naming("L2", affix="prefix", shared_frames=("map",))
+    facts = [STATE, library["mavros_node"], library["camera"]]
+    edges = edges_of("a", inventory_of(XML), facts, (), naming)
+    assert edges["a", "mavros_node"] == [
+        edge_of("map", "map_ned", True),
+        edge_of("a/odom", "a/odom_ned", True),
+        edge_of("a/base_link", "a/base_link_frd", True),
+    ]
+    assert edges["a", "camera"] == [
+        edge_of("a/camera_link", f"a/camera_{it}_frame", True) for it in ("depth", "color")
+    ]
 
 
 def test_odometry_that_no_node_is_known_to_send_is_added() -> None:

@@ -205,8 +205,9 @@ def launch_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     own = folder / "made"
     own.mkdir()
     graph = read_own(str(file), str(own))
-    library = known_nodes(None, NEWEST_LTS, ()).library
-    known = Knowledge(library.nodes, load_known_nodes("", NEWEST_LTS), NEWEST_LTS)
+    release = str(rule.options.get("distro", NEWEST_LTS))
+    library = known_nodes(None, release, ()).library
+    known = Knowledge(library.nodes, load_known_nodes("", release), release)
     return judge_launch(launched(graph, known))
 
 

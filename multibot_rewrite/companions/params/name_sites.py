@@ -126,11 +126,7 @@ def _below(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -
 
 
 def _claim(
-    job: _Job,
-    key: yaml.ScalarNode,
-    value: yaml.Node,
-    states: list[_State],
-    layer: yaml.MappingNode,
+    job: _Job, key: yaml.ScalarNode, value: yaml.Node, states: list[_State], layer: yaml.MappingNode
 ) -> None:
     """What one parameter holds: known, guessed from its name, or unclaimed."""
     names = job.names

@@ -141,10 +141,7 @@ def read_params(
         for found, in_key in ((page.unclaimed, False), (page.keys, True))
         for it in found
     )
-    names = (
-        *(site for it in sections for site in _keys(it, own)),
-        *sites,
-    )
+    names = (*(site for it in sections for site in _keys(it, own)), *sites)
     return NamedFile(
         PARAMS,
         document.file,

@@ -247,6 +247,17 @@ def is_for(section: str, full: str) -> bool:
     return len(parts) in filled
 
 
+def meant_for(
+    sections: Sequence[RawSection], reader: str, nodes: Collection[str]
+) -> RawSection | None:
+    """Return the section that has the name of a ``reader`` (a full name) and another namespace, so that
+    the reader gets nothing of it; None where one of its name is for it, or for another of the nodes."""
+    own = [it for it in sections if it.path.rpartition("/")[2] == reader.rpartition("/")[2]]
+    if any(is_for(it.path, reader) for it in own):
+        return None
+    return next((it for it in own if not any(is_for(it.path, node) for node in nodes)), None)
+
+
 def _skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
     """The same, and those behind each ``**``, which may stand for nothing."""
     for at, part in enumerate(parts):

@@ -61,9 +61,7 @@ class DefaultLine(NamedTuple):
 
 
 def default_lines(
-    job: ParamsJob,
-    pages: Sequence[tuple[ParamSection, SectionNames]],
-    beside: Sequence[RawSection],
+    job: ParamsJob, pages: Sequence[tuple[ParamSection, SectionNames]], beside: Sequence[RawSection]
 ) -> Iterator[Splice | Finding]:
     """Lines for the first section of each known node, without those that ``beside`` sets."""
     # What is set for which nodes, if patterns or other files set more than the section itself.

@@ -88,12 +88,7 @@ def _group(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
     model["Description Topic"] = model.pop("Topic")
     colour = "; ".join(map(str, palette(at)))
     displays = [model, *_displays(shown, colour)]
-    return {
-        "Class": "rviz_common/Group",
-        "Name": robot.name,
-        "Enabled": True,
-        "Displays": displays,
-    }
+    return {"Class": "rviz_common/Group", "Name": robot.name, "Enabled": True, "Displays": displays}
 
 
 def _displays(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:

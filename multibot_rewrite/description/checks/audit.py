@@ -10,7 +10,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, locate
-from multibot_rewrite.base.lazy import without_comments
+from multibot_rewrite.base.lazy import lazy_compile, without_comments
 from multibot_rewrite.base.loose_xml import DASHES, DEFAULT, LATE, slips
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.releases import releases_with
@@ -64,11 +64,15 @@ def leftover_xacro(inventory: Inventory) -> Iterator[Problem]:
         # Claimed or not; comments do not count.
         for it in document.elements:
             values = (*it.values(), it.text or "", *(child.tail or "" for child in it))
-            found = next((value for value in values if "${" in value or "$(arg" in value), None)
+            found = next((value for value in values if _SUBSTITUTION.search(str(value))), None)
             if found is not None:
                 message = f"xacro substitution {' '.join(str(found).split())!r}"
                 yield Problem(it, message, None, hint, (), "MB105")
                 return
+
+
+# An expression or an argument of xacro; ``${}`` has none.
+_SUBSTITUTION = lazy_compile(r"\$\{\s*[^\s{}]|\$\(arg\s+[^\s()]")
 
 
 def _may_substitute(source: bytes) -> bool:
@@ -133,7 +137,7 @@ def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         section = host.node.section
         if section is None or section.type != "plugin" or section.ros != "2":
             continue
-        flavours = tree.vocabulary.find("plugin", section.names[0])
+        flavours = tree.vocabulary.of_every_ros("plugin", section.names[0])
         theirs = {tag for other in flavours if other.ros == "1" for tag in other.tags}
         if not theirs:
             continue

@@ -66,16 +66,24 @@ def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
 
 
 def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Parameters that the consumer puts in front of names: they cannot hold a postfix."""
+    """Parameters that the consumer puts in front of names: they cannot hold a postfix. What an argument
+    made of the robot's name needs none."""
     if naming.affix == PREFIX or "sensor" not in naming.separators:
         return
-    for claim in inventory.claims:
-        if claim.site.form in IN_FRONT:
-            message = (
-                f"{claim.site.path} {claim.value!r} is put in front of names by the plugin, so a "
-                "postfix cannot be added"
-            )
-            yield about(claim, "MB422", message, "use --affix prefix")
+    hint = "use --affix prefix"
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        own = any((it.kind, it.text) in naming.own for it in names)
+        if claim.site.form in IN_FRONT and not own:
+            yield about(claim, "MB422", _in_front(claim.site.path, claim.value), hint)
+    for section, host in _known_hosts(inventory):
+        for site in (it for it in section.sites if it.form in IN_FRONT and it.default):
+            if host.element.find(site.path) is None:
+                message = _in_front(site.path, site.default)
+                yield _host(host, "MB422", message, hint)
+
+
+def _in_front(path: str, value: str) -> str:
+    return f"{path} {value!r} is put in front of names by the plugin, so a postfix cannot be added"
 
 
 def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
@@ -197,11 +205,16 @@ def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     for section, host in _known_hosts(inventory):
         for entry in section.hardwired:
             kind, _, name = entry.partition(":")
+            path, _, name = name.removeprefix("{").rpartition("}")
+            # A prefix that is given is renamed itself, or said by MB422.
+            if path and host.element.find(path) is not None:
+                continue
             if name in inventory.declared[kind] and renames.changes(kind, name):
                 message = f"{section.names[0]} looks for a {kind} called {name!r}, which is renamed"
                 bare = "the name is fixed in its code: use --layout tf-per-robot or frame-prefix"
                 alone = kind in (section.unique, "light")  # renamed in every layout
-                yield _host(host, "MB428", message, ALONE if alone else bare)
+                given = f"write an empty <{path}> for it and use --affix prefix"
+                yield _host(host, "MB428", message, given if path else ALONE if alone else bare)
 
 
 def of_px4(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:

@@ -85,7 +85,8 @@ def shared_with(
         raise ProofError(str(error)) from None
     for it in reading.missed:
         raise ProofError(
-            f"{document.file}: {it.name!r} ({it.path}) is a frame that tf does not have"
+            f"{document.file}: {it.name[1:]!r} below the model's name ({it.path}) is a frame that tf "
+            "does not have"
         )
     found = [*_changed(document, reading, robot, naming, vocabulary)]
     of_plugins: dict[int, list[RuntimeName]] = {}

@@ -17,6 +17,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import TF_TOPICS, Naming, spelled
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.description.readback.active import is_loaded
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, TreeNode, values_of_plugin
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
@@ -248,4 +249,7 @@ def as_problem(mention: Mention) -> Problem:
     text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
     message = f"{text}, but its use here is not known: it is not renamed"
     hint = "add a line to a vocabulary file: a uses/declares site, or keep"
+    if any(it.tag == PLUGIN and not is_loaded(it) for it in element.iterancestors()):
+        message = f"{text}, in a <plugin> that nothing loads here: it is not renamed"
+        hint = "move the <plugin> into a <gazebo>"
     return Problem(element, message, attribute, hint, (), "MB901")

@@ -6,15 +6,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.nearest import SLIP, Guesses
-from multibot_rewrite.base.releases import CLASSIC, lacks_classic
+from multibot_rewrite.base.releases import CLASSIC, ROS_1, ROS_2, lacks_classic
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback.active import (
     HARDWARE,
     INCLUDE,
     PLUGIN,
-    ROS_1,
     ActivePart,
     active_parts,
+    is_loaded,
+    plugin_name,
 )
 from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
@@ -24,6 +25,7 @@ ANOTHER_RELEASE = (
     "name the release that the description is for with --distro, or distro: in a fleet file"
 )
 SAY_IT = "say it in a vocabulary file: a line for each topic and service, or opens: nothing"
+NOT_LOADED = "MB112"
 CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 
 
@@ -38,6 +40,11 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     old = next((it for it in known if it.name.startswith(CLASSIC)), None)
     if old and not lacks_classic(release, inventory.document.source):
         old = None
+    for plugin in root.iter(PLUGIN):
+        if not is_loaded(plugin):
+            message = f"nothing loads the <plugin> {plugin_name(plugin)!r} here"
+            yield Problem(plugin, message, None, "move it into a <gazebo>", (), NOT_LOADED)
+    by_ros = _by_ros(parts, tree.vocabulary)
     for part in parts:
         if not part.is_known:
             message, hint = _said(part, tree.vocabulary, guesses)
@@ -45,20 +52,24 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         elif part is old:
             message = f"plugin {part.name!r} is of Gazebo Classic, which {release} has not"
             yield Problem(part.element, message, None, ANOTHER_RELEASE, (), CODES[PLUGIN])
-        elif _is_of_both(part, tree.vocabulary) and root.find(".//plugin/ros") is not None:
+        elif ROS_2 in by_ros and part in by_ros.get(ROS_1, ()):
             message = (
-                f"plugin {part.name!r} is written for ROS 1, others here for ROS 2: "
-                "what it opens there is not known"
+                f"plugin {part.name!r} is written for ROS 1, {by_ros[ROS_2][0].name!r} is not: "
+                "which ROS loads them is not known"
             )
-            hint = "write it for ROS 2, with <ros>, or take it out"
+            hint = "name the ROS 2 release with --distro, or write it for ROS 2, with <ros>"
             yield Problem(part.element, message, None, hint, (), CODES[PLUGIN])
 
 
-def _is_of_both(part: ActivePart, vocabulary: Vocabulary) -> bool:
-    """Is it read by the rules of ROS 1, though ROS 2 has a plugin of this name?"""
-    if part.section is None or part.section.ros != ROS_1:
-        return False
-    return len(vocabulary.find("plugin", library_key(part.name))) > 1
+def _by_ros(parts: Iterable[ActivePart], vocabulary: Vocabulary) -> dict[str, list[ActivePart]]:
+    """Return the plugins that ROS 1 and ROS 2 both have, by the ROS as whose they are read; none where
+    the document's is known."""
+    found: dict[str, list[ActivePart]] = {}
+    known = (it for it in parts if it.kind == PLUGIN and it.section and it.section.ros)
+    for part in known:
+        if part.section and len(vocabulary.find("plugin", library_key(part.name))) > 1:
+            found.setdefault(part.section.ros, []).append(part)
+    return found
 
 
 def is_unknown(section: VocabularySection) -> bool:

@@ -16,8 +16,9 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.releases import ROS_1, ROS_2
 from multibot_rewrite.description.readback.parameters import given_at, holds
-from multibot_rewrite.description.readback.xml import child_text
+from multibot_rewrite.description.readback.xml import child_text, text_of
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
 
@@ -25,7 +26,6 @@ from multibot_rewrite.description.rewriters.vocabulary.grammar import split_open
 # (gazebosim/gz-sim src/SystemLoader.cc).
 _ENDING = lazy_compile(r"\.(?:so|dylib|dll)\Z")
 _SYSTEM = lazy_compile(r"(?:ignition-gazebo|gz-sim)\d*-?(.*)")
-ROS_1, ROS_2 = "1", "2"
 # Every plugin that is not known and has a <ros> is a node.
 WITH_ROS = "any_with_ros"
 
@@ -64,12 +64,11 @@ def _keys(plugin: _Element) -> Iterator[str]:
 
 
 def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
-    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros> and has <ros2_control>; in
-    a robot without them the release that reads more of the parameters counts, ROS 2 if both do."""
+    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros>; without one the release that
+    reads more of the parameters counts, ROS 2 if both do."""
     by_release = {section.ros: section for section in found}
     new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
-    own = plugin.find("ros") is not None
-    if old is None or own or plugin.getroottree().find("ros2_control") is not None:
+    if old is None or plugin.find("ros") is not None:
         return new
     tags = {child.tag for child in plugin}
     return old if len(tags & old.tags) > len(tags & new.tags) else new
@@ -96,13 +95,26 @@ def sensor_sections(sensor: _Element, vocabulary: Vocabulary) -> list[Vocabulary
 PLUGIN, HARDWARE, SENSOR, INCLUDE = "plugin", "hardware class", "sensor type", "included model"
 # A number is an address of which it is known how that of the next robot is made.
 ADDRESS, NUMBER, FILE = "address", "number", "file"
-NOTHING, UNKNOWN, NAMESPACE = "nothing", "unknown", "namespace"
+_DEVICE = lazy_compile(r"/dev/\S+|v?can\d+|COM\d+")
+# What is of the computer that a driver runs on.
+DEVICE, PORT = "device", "port"
+NOTHING, UNKNOWN, NAMESPACE, TRANSFORMS = "nothing", "unknown", "namespace", "transforms"
+# What is sent or heard where no rule reaches, on the one topic that all have: frames keep robots apart.
+TRANSFORMS_ON = "transforms on"
 # The kind of what only a namespace keeps apart.
 RELATIVE = "relative names of"
-# A port that the system gives, every address of a machine, its loopback: no two robots meet there.
-ANY_ADDRESS = frozenset({"0", "0.0.0.0", "lo"})
+# No device at all; a port that the system gives, every address of a machine, its loopback: no two
+# robots meet there.
+NOWHERE = frozenset(
+    (
+        *("", '""', "R", "-1", "0", "none", "None", "INADDR_ANY", "0.0.0.0"),
+        *("127.0.0.1", "R127.0.0.1", "localhost", "lo"),
+    )
+)
 # Kinds of names that something runs by: a section with one of them says what it opens.
 _OPENED = frozenset({"topic", "subtopic", "service", "stem", "namespace"})
+# Of a URDF itself, in which nothing loads a <plugin>.
+_PARTS = frozenset({"robot", "link", "joint", "sensor", "ros2_control"})
 # A <plugin> in these is a class that is loaded by what is around it, or MJCF, which runs nothing.
 _NO_PLUGINS = frozenset({"hardware", "transmission", "raw_inputs", "mujoco_inputs", "extension"})
 
@@ -122,13 +134,21 @@ class ActivePart(NamedTuple):
 
     @property
     def opens_something(self) -> bool:
-        """False only where it is known to open nothing."""
-        return self.section is None or NOTHING not in self.section.opens
+        """False only where it is known to open nothing but what a value says, which is compared."""
+        if self.section is None or not self.section.opens:
+            return True
+        return self._other_words not in ((), (NOTHING,)) or _opens_by_rows(self.section)
 
     @property
     def is_apart(self) -> bool:
         """Does a namespace keep apart what it opens?"""
-        return self.section is not None and self.section.opens == (NAMESPACE,)
+        return self.section is not None and self._other_words == (NAMESPACE,)
+
+    @property
+    def _other_words(self) -> tuple[str, ...]:
+        """What it opens whatever its values are."""
+        words = self.section.opens if self.section else ()
+        return tuple(it for it in words if not split_opens(it).path)
 
 
 def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
@@ -137,7 +157,8 @@ def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]
     for element in root.iter(*every):
         every[str(element.tag)].append(element)
     for plugin in every["plugin"]:
-        if not _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors()):
+        inside = _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors())
+        if is_loaded(plugin) and not inside:
             section, known = plugin_section(plugin, vocabulary)
             yield ActivePart(PLUGIN, plugin, plugin_name(plugin), section if known else None)
     yield from hardware_parts(root, vocabulary)
@@ -159,6 +180,12 @@ def hardware_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePar
             yield ActivePart(HARDWARE, system, class_, hardware_section(system, vocabulary))
 
 
+def is_loaded(plugin: _Element) -> bool:
+    """Does a simulator look for a plugin at this place? In a URDF in its <gazebo> and in those of other
+    simulators (sdformat parser_urdf.cc, webots_ros2_driver WebotsNode.cpp)."""
+    return not _PARTS.issuperset(str(it.tag) for it in plugin.iterancestors())
+
+
 def plugin_name(plugin: _Element) -> str:
     """What is loaded, as the file says it."""
     return plugin.get("filename") or plugin.get("type") or plugin.get("name") or ""
@@ -177,6 +204,10 @@ def says_what_it_opens(section: VocabularySection) -> bool:
     """Does a section say it by fields?"""
     if section.opens:
         return UNKNOWN not in section.opens
+    return _opens_by_rows(section)
+
+
+def _opens_by_rows(section: VocabularySection) -> bool:
     own = (it for it in section.sites if it.role != "keep" and it.section[:9] != "block ros")
     return bool(section.wired) or any(not _OPENED.isdisjoint(it.kinds) for it in own)
 
@@ -186,11 +217,25 @@ def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, st
     relative names that no row has."""
     if NAMESPACE in section.opens:
         yield RELATIVE, section.names[0], "opens"
+    if TRANSFORMS in section.opens:
+        yield TRANSFORMS_ON, "/tf", "its own listener"
     for word in section.opens:
-        kind, step, when, path, usual = split_opens(word)
-        if not path or (when and not holds(host, when)):
+        it = split_opens(word)
+        if not it.path or (it.when and not holds(host, it.when)):
             continue
-        values = [it for it in given_at(host, path) if it]
-        for value in values or ([usual] if usual else []):
-            if value not in ANY_ADDRESS:
-                yield NUMBER if step else kind, value, path
+        values = [value for value in given_at(host, it.path) if value]
+        for value in values or ([it.default] if it.default else []):
+            # The first device of its kind has the number 0.
+            if value not in NOWHERE or (it.kind == DEVICE and value == "0"):
+                yield NUMBER if it.step else it.kind, value, it.path
+    if host.tag == "ros2_control" and NOTHING not in section.opens:
+        paths = {split_opens(word).path for word in section.opens}
+        for param in host.iterfind("hardware/param"):
+            path = f"hardware/param[@name={param.get('name', '')}]"
+            if path not in paths and is_device(text := text_of(param)):
+                yield DEVICE, text, path
+
+
+def is_device(text: str) -> bool:
+    """Is this the name of a device of a computer, whatever parameter has it?"""
+    return _DEVICE.fullmatch(text) is not None

@@ -15,13 +15,20 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.naming import NAMESPACE, Naming, is_keyword, is_of_world
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.description.readback.active import ADDRESS, FILE, NUMBER, RELATIVE
+from multibot_rewrite.description.readback.active import (
+    ADDRESS,
+    DEVICE,
+    FILE,
+    NUMBER,
+    PORT,
+    RELATIVE,
+    TRANSFORMS_ON,
+)
 from multibot_rewrite.description.readback.nodes import (
     ACTION,
     BELOW,
     SERVICE,
     TOPIC,
-    TRANSFORMS,
     ReadNode,
     RuntimeName,
     full_name,
@@ -32,6 +39,8 @@ from multibot_rewrite.description.readback.reading import FRAME, IN_CODE, NODE, 
 TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
 FRAMES, LOOKUP, NOT_TAKEN = "MG402", "MB425", "MR105"
 OPENED = "MB412"
+# What two robots may both have on computers of their own.
+OF_COMPUTER = frozenset({DEVICE, PORT})
 # What is said of a number that each further robot got in the place of such a one.
 NUMBERED = "MF845"
 SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN, OPENED})
@@ -49,18 +58,20 @@ _ADVICE = {
     OPENED: "write another for each robot, or give it by `arguments` of a fleet file",
     FRAMES: f"set the frame for each robot, or {_OF_FRAME}",
 }
+_OF_KIND = {
+    TRANSFORMS_ON: "no rule moves it: use --layout frames-per-robot",
+    RELATIVE: "give each robot a namespace: use --layout tf-per-robot or both",
+}
 CAMERA_INFO = "camera_info"
 # The element of a name, its parameter, and the how manieth it is there.
 Place = tuple[str, int, str, str, int]
 # The rule that is about a kind of shared name.
 _CODES = {
-    TRANSFORMS: DATA,
+    TRANSFORMS_ON: DATA,
     NODE: TWO_NODES,
     RELATIVE: TWO_NODES,
     FRAME: FRAMES,
-    ADDRESS: OPENED,
-    NUMBER: OPENED,
-    FILE: OPENED,
+    **dict.fromkeys((ADDRESS, DEVICE, FILE, NUMBER, PORT), OPENED),
 }
 
 
@@ -109,7 +120,7 @@ def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
         elif it.kind in (TOPIC, BELOW, SERVICE, ACTION):
             # __default_topic__ is no topic: the simulator makes one from the model's name.
             shared = bare in naming.shared_topics or is_keyword(bare) or is_of_world(it.name)
-        elif it.kind == TRANSFORMS:
+        elif it.kind == TRANSFORMS_ON:
             shared = naming.layout.frames
         else:
             shared = it.kind == RELATIVE and naming.topics == NAMESPACE
@@ -144,14 +155,16 @@ def said(who: str, *names: RuntimeName) -> str:
 def advice(name: RuntimeName, together: bool = False) -> str:
     """What to do about a shared name, but for those of controllers; ``together`` where its robots were
     rewritten in one call, so that each has a number of its own where it can have one."""
-    if name.kind == TRANSFORMS:
-        return "ROS 1 has one /tf: use --layout frames-per-robot"
+    if name.kind in _OF_KIND:
+        return _OF_KIND[name.kind]
     if name.kind == NUMBER and not together:
         return "name all robots in one call, or in a fleet file: each gets a number of its own"
-    if name.kind == RELATIVE:
-        return "give each robot a namespace: use --layout tf-per-robot or both"
+    if name.kind in OF_COMPUTER:
+        return f"{_ADVICE[OPENED]}; it is right where each robot has a computer of its own"
     if name.path == IN_CODE or (name.path.startswith("/") and code_of(name) in _ADVICE):
         return _for_code(name)
+    if "/../" in name.path:
+        return "use --topics namespace or prefix, which leave the last part of a topic alone"
     of_all = f"use --layout both, which renames {name.kind}s for each robot"
     return _ADVICE.get(code_of(name), of_all)
 

@@ -39,8 +39,6 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
 # A word that topics are made of, which is none itself.
 BELOW = "topics below"
-# What a plugin sends that no rule reaches, on the one topic that all have: frames keep robots apart.
-TRANSFORMS = "transforms on"
 TF_TOPICS = ("/tf", "/tf_static")
 REMAP_FLAGS = ("-r", "--remap")
 # The parameter that names the manager of a plugin of ros2_control.

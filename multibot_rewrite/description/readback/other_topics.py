@@ -9,6 +9,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
+from multibot_rewrite.description.readback.active import TRANSFORMS_ON
 from multibot_rewrite.description.readback.model_namespaces import reads_it, scoped_namespace
 from multibot_rewrite.description.readback.nodes import (
     BELOW,
@@ -16,7 +17,6 @@ from multibot_rewrite.description.readback.nodes import (
     SERVICE,
     TF_TOPICS,
     TOPIC,
-    TRANSFORMS,
     holds_topic,
     is_of_others,
 )
@@ -71,7 +71,7 @@ def resolved(
         if wired.name not in off and (above is not None or wired.name.startswith("/")):
             kind = SERVICE if wired.role == SERVES else TOPIC
             name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
-            yield TRANSFORMS if wired.name in TF_TOPICS else kind, name, path or wired.name
+            yield TRANSFORMS_ON if wired.name in TF_TOPICS else kind, name, path or wired.name
 
 
 def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:

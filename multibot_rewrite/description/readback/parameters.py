@@ -12,13 +12,19 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.readback.xml import child_text, is_on, values_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT
+from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+    MODEL as OF_FILE,
+    SENT,
+    SPAWNED,
+)
 from multibot_rewrite.description.rewriters.vocabulary.values import WiredTopic, is_type
 
-MODEL = "{model}/"
+MODEL = SPAWNED
+_SLOT = lazy_compile(r"\{([^{}]+)\}")
 
 
 def values_of(host: _Element, site: SiteRow) -> list[str]:
@@ -33,9 +39,12 @@ def values_of(host: _Element, site: SiteRow) -> list[str]:
 
 def _applies(host: _Element, site: SiteRow) -> bool:
     """Has the sibling that decides this text? It stands beside the last step of the path."""
-    sibling, _, text = site.when.partition("=")
+    sibling, _, wanted = site.when.partition("=")
     above = site.path.rpartition("/")[0]
-    return text in values_at(host, f"{above}/{sibling}" if above else sibling)
+    texts = set(wanted.split("|"))
+    if OF_FILE in texts:
+        texts |= {it.get("name") or "" for it in host.getroottree().iter("robot", "model")}
+    return not texts.isdisjoint(values_at(host, f"{above}/{sibling}" if above else sibling))
 
 
 def default_of(host: _Element, default: str) -> str:
@@ -96,19 +105,16 @@ def _switches(host: _Element, section: VocabularySection) -> Iterator[tuple[str,
 
 
 def completed(host: _Element, default: str) -> str:
-    """The default with the names of the description; the model's stays a slot, since the spawner gives
-    it. Empty where a name is not there."""
-    for word in ("link", "sensor"):
-        slot = f"{{{word}}}"
-        if slot in default:
-            name = _first_link(host) if word == "link" else _sensor(host)
-            default = default.replace(slot, name) if name else ""
-    head, slot, rest = default.removeprefix(MODEL).partition("{")
-    if not slot:
-        return default
-    text = child_text(host, rest.partition("}")[0]) or ""
-    lead = MODEL if default.startswith(MODEL) else ""
-    return f"{lead}{head}{text}{rest.partition('}')[2]}" if text else ""
+    """The default with the names of the description, ``MODEL`` for that of the model, which the spawner
+    gives; empty where a name is not there."""
+    words = {it: _named(host, it) for it in _SLOT.findall(default)}
+    return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
+
+
+def _named(host: _Element, word: str) -> str:
+    if word in ("link", "sensor"):
+        return _first_link(host) if word == "link" else _sensor(host)
+    return MODEL[:-1] if word == "model" else child_text(host, word) or ""
 
 
 def _sensor(host: _Element) -> str:
@@ -146,11 +152,11 @@ def wired_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[Wir
         if it.when and not holds(plugin, it.when):
             continue
         path = it.name.partition("{")[2].partition("}")[0]
-        for name in _filled(plugin, section, it.name):
+        for name in filled(plugin, section, it.name):
             yield it._replace(name=name, type=_type(plugin, it.type)), path
 
 
-def _filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator[str]:
+def filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator[str]:
     """The name for each value of the first path in it, and so on."""
     head, slot, rest = name.partition("{")
     if not slot:
@@ -158,8 +164,13 @@ def _filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator
         return
     path, _, tail = rest.partition("}")
     site = next((it for it in section.sites if it.path == path), None)
-    for value in given_at(plugin, path) if site is None else values_of(plugin, site):
-        yield from _filled(plugin, section, f"{head}{value}{tail}")
+    # A value may hold what looks like a path: it is none.
+    ends = list(filled(plugin, section, tail))
+    values = given_at(plugin, path) if site is None else values_of(plugin, site)
+    if "/../" in path:
+        values = [it for it in (default_of(plugin, path),) if it]
+    for value in values:
+        yield from (f"{head}{value}{end}" for end in ends)
 
 
 def _type(plugin: _Element, type_: str) -> str:

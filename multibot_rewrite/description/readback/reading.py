@@ -20,6 +20,7 @@ from multibot_rewrite.description.readback.nodes import (
 from multibot_rewrite.description.readback.other_topics import of_others, resolved
 from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
+from multibot_rewrite.description.rewriters.vocabulary.grammar import MODEL as OF_MODEL
 
 NODE, FRAME = "node", "frame"
 # Where a frame is written that no parameter holds.
@@ -100,7 +101,7 @@ def _hosts(root: _Element, vocabulary: Vocabulary) -> tuple[list[_Host], list[tu
     unknown: list[tuple[int, str]] = []
     for number, plugin in enumerate(root.iter("plugin")):
         # The class of a ros2_control system, or a plugin of Webots: none of Gazebo's.
-        if "filename" not in plugin.attrib and "name" not in plugin.attrib:
+        if not active.is_loaded(plugin) or not {"filename", "name"} & {*plugin.attrib}:
             continue
         section, known = active.plugin_section(plugin, vocabulary)
         if not known:
@@ -124,9 +125,7 @@ def _of_first_senders(
     sent: set[_Element] = set()
     partly: set[int] = set()
     for it in hosts:
-        sites = [
-            s for s in it.section.sites if parameters.MODEL in s.default and s.kinds[0] == FRAME
-        ]
+        sites = [s for s in it.section.sites if OF_MODEL in s.default and s.kinds[0] == FRAME]
         if it.number not in numbers:
             sent |= {
                 models[it.number] for s in sites if parameters.default_of(it.element, s.default)
@@ -228,8 +227,8 @@ def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
         yield RuntimeName(FRAME, value, tag, host.number, path)
     for entry in host.section.hardwired:
         kind, _, name = entry.partition(":")
-        if kind == FRAME:
-            yield RuntimeName(FRAME, name, tag, host.number, IN_CODE)
+        for value in parameters.filled(host.element, host.section, name) if kind == FRAME else ():
+            yield RuntimeName(FRAME, value, tag, host.number, IN_CODE)
 
 
 def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
@@ -237,17 +236,29 @@ def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
         yield RuntimeName(kind, value, tag, host.number, path)
 
 
+def _own_model(root: _Element) -> str:
+    """Return the name of the robot's model in the file; its spawner may give it another one."""
+    model = root if root.tag == "robot" else next(root.iter("model"), root)
+    return model.get("name", "")
+
+
 def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
-    """Names that a plugin or system looks up in the whole world, of things that this file has."""
+    """Names that a plugin or system looks up in the whole world, of things that this file has; the
+    robot's own model in front of them is another one, where it keeps its name."""
     kind, tag = host.section.unique, str(host.element.tag)
+    (every,) = vocabulary.find("element", tag)
+    sites = [it for it in (*every.sites, *host.section.sites) if it.role != "keep"]
+    for site in (it for it in sites if it.form == "scoped"):
+        for value in dict.fromkeys(parameters.values_of(host.element, site)):
+            if "::" in value and value.partition("::")[0] == _own_model(root):
+                yield RuntimeName("model", value, tag, host.number, site.path)
     if not kind:
         return
     # A URDF is one model, by the name of its root.
     own = root.iter("robot", "model") if kind == "model" else root.iter(kind)
     there = {element.get("name") for element in own}
-    (every,) = vocabulary.find("element", tag)
-    for site in (*every.sites, *host.section.sites):
-        if site.role != "keep" and kind in site.kinds:
+    for site in sites:
+        if kind in site.kinds:
             for value in dict.fromkeys(parameters.values_of(host.element, site)):
                 # What is looked up below a link has its name.
                 if (value.partition("::")[0] if site.form == "suffixed" else value) in there:

@@ -17,6 +17,7 @@ from multibot_rewrite.description.rewriters.model_namespaces import has_own_name
 from multibot_rewrite.description.rewriters.own_defaults import (
     MODEL,
     SENSOR,
+    SHOWN,
     Hosts,
     default_of,
     filled,
@@ -91,7 +92,7 @@ def _of_ros_1(
             made = _insertion(host, site.path, "namespace", "/", f"/{ROBOT_SLOT}")
             yield _filling(made, there, site.path)
         elif there is None and naming.topics == NAMESPACE:
-            made = _insertion(host, site.path, "model", MODEL, f"/{ROBOT_SLOT}")
+            made = _insertion(host, site.path, "model", SHOWN, f"/{ROBOT_SLOT}")
             yield made._replace(shared=False)
 
 
@@ -171,7 +172,8 @@ def _defaults(
             continue
         kind = spelling[0].kind if spelling else site.kinds[0]
         shared = not of_model and _without(site, default, naming) == default
-        made = _insertion(host, path, kind, default, new)._replace(shared=shared)
+        old = default.replace(MODEL, SHOWN) if of_model else default
+        made = _insertion(host, path, kind, old, new)._replace(shared=shared)
         yield made if there is None else _filling(made, there, path)
 
 

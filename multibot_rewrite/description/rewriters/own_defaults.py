@@ -19,9 +19,12 @@ from multibot_rewrite.base.naming import POSTFIX, Naming
 from multibot_rewrite.description.rewriters.switches import is_true
 from multibot_rewrite.description.rewriters.text import end_of, text_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.description.rewriters.vocabulary.grammar import MODEL as OF_MODEL, SPAWNED
 
 # What the spawner calls the model: no frame that robot_state_publisher sends has it in front.
-MODEL, SENSOR = "{model}/", "{sensor}"
+MODEL, SENSOR = SPAWNED, "{sensor}"
+# The same for a reader.
+SHOWN = f"{OF_MODEL}/"
 WORLD = "world"
 BOOLEANS = {"true": True, "false": False}
 _SLOT = lazy_compile(r"\{(\w+)\}")
@@ -50,12 +53,13 @@ def _holds(host: etree._Element, condition: str) -> bool:
 
 
 def filled(host: etree._Element, default: str) -> str:
-    """The default with its names in place, ``{model}`` aside; empty where one is not there."""
+    """The default with its names in place, ``MODEL`` for that of the model; empty where one is not
+    there."""
     missing = False
 
     def put(slot: re.Match[str]) -> str:
         nonlocal missing
-        text = slot[0] if slot[1] == "model" else _own(host, slot[1])
+        text = MODEL[:-1] if slot[1] == "model" else _own(host, slot[1])
         missing = missing or not text
         return text
 
@@ -113,4 +117,4 @@ def frame_sites(host: etree._Element, section: VocabularySection, naming: Naming
 
 def _of_model(section: VocabularySection) -> list[SiteRow]:
     """Where the frames are that are below the model's name by default."""
-    return [it for it in section.sites if MODEL in it.default and it.kinds[:1] == ("frame",)]
+    return [it for it in section.sites if OF_MODEL in it.default and it.kinds[:1] == ("frame",)]

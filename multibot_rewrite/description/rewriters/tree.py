@@ -303,12 +303,11 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection | None:
     """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
 
-    A ``ros`` child is ROS 2, whatever was left from before: nothing in ROS 1 reads one. So is every
-    plugin of a robot with a ``ros2_control``; a ``ros`` elsewhere may be one that a rewrite added.
+    A ``ros`` child is ROS 2, whatever was left from before: nothing in ROS 1 reads one. What decides
+    for the whole document is in the vocabulary already (``sources/dialect.py``).
     Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case).
     """
-    own = element.find("ros") is not None
-    if own or (len(found) > 1 and element.getroottree().getroot().find("ros2_control") is not None):
+    if element.find("ros") is not None:
         found = [section for section in found if section.ros != "1"]
     if len(found) < 2:
         return found[0] if found else None
@@ -317,10 +316,10 @@ def _flavour(found: Sequence[VocabularySection], element: _Element) -> Vocabular
 
 
 @lru_cache(maxsize=16)
-def builtin_tree(vocabulary: tuple[str, ...], release: str) -> Tree:
+def builtin_tree(vocabulary: tuple[str, ...], release: str, ros: str = "") -> Tree:
     """The tree of a release: of the vocabulary built in, installed, and named in ``vocabulary``; made
-    once."""
-    sections = load_vocabulary(vocabulary, release)
+    once. ``ros`` is "1" or "2" where it is known which of them loads the plugins."""
+    sections = load_vocabulary(vocabulary, release, ros=ros)
     try:
         tree = Tree(sections)
         if sections.extended:

@@ -10,8 +10,10 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import Naming, OwnNames
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
+from multibot_rewrite.description.sources.dialect import ros_shown
 from multibot_rewrite.description.sources.own_names import (
     OF_ALL,
     Arguments,
@@ -62,7 +64,8 @@ def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
     name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
-    whose facts count, ``why`` what says it; ``aside`` are the systems that the world has to load,
+    whose facts count, ``why`` what says it, ``ros`` the ROS that
+    loads its plugins where that is known; ``aside`` are the systems that the world has to load,
     names and texts. It holds no parsed document, so it can be pickled."""
 
     data: bytes
@@ -72,6 +75,7 @@ class Job(NamedTuple):
     urdf: tuple[bytes, str] | None
     release: str
     why: str = ""
+    ros: str = ""
     own: OwnSource = OF_ALL
     read: FilesRead = NO_FILES
     aside: tuple[tuple[str, str], ...] = ()
@@ -79,7 +83,7 @@ class Job(NamedTuple):
     @property
     def tree(self) -> Tree:
         """The rewriters; raises VocabularyError."""
-        return builtin_tree(self.vocabulary, self.release)
+        return builtin_tree(self.vocabulary, self.release, self.ros)
 
     @property
     def urdf_declarations(self) -> Declared:
@@ -179,7 +183,9 @@ def reader(
         pair = (beside.data, beside.file) if beside else None
         name = file or own.file
         said = release_said(release, own.data + (beside.data if beside else b""), own.file)
-        job = Job(own.data, name, naming, vocabulary, pair, *said, read=found)
+        tree = builtin_tree(vocabulary, said.release)
+        ros = ROS_2 if release else ros_shown(own.data, own.file, tree)
+        job = Job(own.data, name, naming, vocabulary, pair, *said, ros, read=found)
         if not aside:
             return job
         data, left = set_aside(job.data, job.file, job.tree)

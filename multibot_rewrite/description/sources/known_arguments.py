@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.description.readback.xml import read_xml
 
 _DECLARED = lazy_compile(rb"<xacro:arg\s[^<]*?\bname\s*=\s*[\"']\s*([^\"'<\s]+)")
 _READ = lazy_compile(rb"\$\(arg\s+([^\s)]+)|\bxacro\.arg\(\s*[\"']([^\"']+)")
@@ -47,6 +48,13 @@ def joined(known: Iterable[KnownArguments]) -> KnownArguments:
     its = list(known)
     names = dict.fromkeys(name for it in its for name in it.names)
     return KnownArguments(tuple(names), any(it.any for it in its))
+
+
+def defaults_in(text: bytes) -> dict[str, str]:
+    """Return the defaults of the arguments that a file declares, but in a condition or a macro."""
+    root = read_xml(text, "")
+    own = (it for it in root.iterchildren("*") if str(it.tag).rpartition("}")[2] == "arg")
+    return {it.get("name", ""): it.get("default", "") for it in own if "default" in it.attrib}
 
 
 def _read(text: bytes) -> Iterator[bytes]:

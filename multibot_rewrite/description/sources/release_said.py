@@ -41,7 +41,7 @@ def release_said(told: str, text: bytes, file: str, who: str = "it") -> SaidRele
     ``who`` is what has the text."""
     if told:
         return SaidRelease(told)
-    if built := _release_of_build(file):
+    if built := release_of_build(file):
         return SaidRelease(built, f"{MANIFEST} says so")
     if library := evidence(text):
         return SaidRelease(OF_OLD, f"{who} loads {library}")
@@ -73,7 +73,7 @@ def release_of_all(told: str, files: Iterable[str]) -> SaidRelease:
 
 
 @outside
-def _release_of_build(file: str) -> str:
+def release_of_build(file: str) -> str:
     """The release for which a build wrote a file; empty for a file of nobody's build."""
     here = os.path.dirname(os.path.abspath(file))
     for path in (os.path.join(it, MANIFEST) for it in (here, os.path.dirname(here))):

@@ -20,7 +20,7 @@ from multibot_rewrite.description.rewriters.remap_rules import names_in_rules
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT
+from multibot_rewrite.description.rewriters.vocabulary.grammar import MODEL, SENT
 from multibot_rewrite.description.steps.document import Document, read_document
 
 NOTHING: Declared = {}
@@ -158,9 +158,13 @@ def _of_the_robot(claims: list[Claim]) -> list[Claim]:
 def _applies(site: SiteRow, element: etree._Element) -> bool:
     if site.when in ("", SENT):
         return True
-    sibling, _, text = site.when.partition("=")
+    sibling, _, texts = site.when.partition("=")
     parent = element.getparent()
-    return parent is not None and text_at(parent, sibling) == text
+    given = "" if parent is None else text_at(parent, sibling)
+    if given and MODEL in texts.split("|"):
+        models = element.getroottree().getroot().iter("robot", "model")
+        return given in texts.split("|") or any(it.get("name") == given for it in models)
+    return given in texts.split("|")
 
 
 def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dict[str, Claim]]:

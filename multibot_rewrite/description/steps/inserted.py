@@ -23,7 +23,7 @@ from lxml import etree
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.rewriters.insert import Insertion, query, without
-from multibot_rewrite.description.rewriters.own_defaults import MODEL
+from multibot_rewrite.description.rewriters.own_defaults import SHOWN
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.vocabulary import is_step
@@ -96,7 +96,7 @@ def _why(items: list[Insertion], release: str) -> str:
 
 def _names(items: list[Insertion]) -> str:
     names = ("the root namespace" if item.kind == "namespace" else item.old for item in items)
-    return ", ".join(dict.fromkeys(name.replace(MODEL, "MODEL/") for name in names))
+    return ", ".join(dict.fromkeys(name.replace(SHOWN, "MODEL/") for name in names))
 
 
 def lead_of(source: bytes, start: int, end: int) -> str:

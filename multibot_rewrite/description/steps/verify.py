@@ -341,13 +341,6 @@ def _adds_affixes(it: Evidence) -> bool:
 
 # In this order: the first ones say best what is wrong.
 CHECKS = (
-    same_names,
-    same_targets,
-    robots_own,
-    nothing_to_add,
-    added_once,
-    a_slot_each,
-    strips_to_source,
-    as_decided,
-    as_planned,
+    *(same_names, same_targets, robots_own, nothing_to_add, added_once, a_slot_each),
+    *(strips_to_source, as_decided, as_planned),
 )

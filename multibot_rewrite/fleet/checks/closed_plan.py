@@ -102,9 +102,7 @@ def _shared(plan: FleetPlan) -> Iterator[Finding]:
     return shared_by_nothing(plan.fleet, texts, dict(plan.file.shared_places))
 
 
-def sorted_out(
-    made: Iterable[OutputFile | Finding],
-) -> tuple[list[OutputFile], list[Finding]]:
+def sorted_out(made: Iterable[OutputFile | Finding]) -> tuple[list[OutputFile], list[Finding]]:
     """The files, and the findings."""
     both = [*made]
     files = sorted(it for it in both if isinstance(it, OutputFile))

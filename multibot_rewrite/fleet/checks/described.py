@@ -34,7 +34,9 @@ def wrong_in_descriptions(
     }
     for file, (document, made, it) in documents.items():
         distro = it.vocabulary.release
-        settings = Settings(vocabulary=vocabulary, distro=distro, simulated=file in in_gazebo)
+        settings = Settings(
+            vocabulary=vocabulary, distro=distro, ros=ROS_2, simulated=file in in_gazebo
+        )
         told = {(one.code, one.message) for one in it.shared}
         for one in _linted(document, made, settings, file in in_gazebo - sure):
             if (one.code, one.message) not in told:

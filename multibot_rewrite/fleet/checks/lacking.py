@@ -53,9 +53,7 @@ def _has_hardware(robot: RewrittenRobot) -> bool:
 NEEDS: Mapping[str, Need] = {
     MOVE_GROUP: Need(lambda it: bool(it.spec.srdf), "no SRDF", "name it: `srdf: FILE`"),
     MANAGER: Need(
-        _has_hardware,
-        "a description without <ros2_control>",
-        "take a description that has one",
+        _has_hardware, "a description without <ros2_control>", "take a description that has one"
     ),
     CARTOGRAPHER: Need(
         lambda it: bool(it.spec.companions.get("lua")),

@@ -13,6 +13,7 @@ from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description.readback.meeting import (
     LOOKUP,
     NOT_TAKEN,
+    OF_COMPUTER,
     OPENED,
     Meeting,
     advice,
@@ -72,7 +73,10 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
     found: dict[str, list[RuntimeName]] = {}
     for member in members:
         # The table has rules for the names of the nodes that its hardware makes.
-        own = (it for it in member.reading.names if not it.of_controllers)
+        # What is of their computers is a note of its own (of_robots).
+        own = (
+            it for it in member.reading.names if not (it.of_controllers or it.kind in OF_COMPUTER)
+        )
         found[member.robot] = [
             *(it for it in own if it.tag != "ros2_control" or it.name not in ruled[member.robot]),
             *member.published,

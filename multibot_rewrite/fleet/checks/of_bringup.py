@@ -80,7 +80,7 @@ def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
     from multibot_rewrite.lint.check import lint_data
     from multibot_rewrite.rules.settings import Settings
 
-    found = lint_data(path, read_file(path), Settings(distro=release))
+    found = lint_data(path, read_file(path), Settings(distro=release, ros=ROS_2))
     return {(it.code, it.line) for it in found if it.level == ERROR}
 
 

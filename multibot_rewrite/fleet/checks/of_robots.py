@@ -15,6 +15,7 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.readback.meeting import OPENED
+from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, load_vocabulary
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.checks.lacking import lacking, without_camera
 from multibot_rewrite.fleet.checks.named_twice import named_twice
@@ -112,7 +113,8 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
     robots = plan.robots
     told = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
-    hardware = {it.spec.namespace: tuple(_of_hardware(it, told)) for it in robots}
+    vocabulary = load_vocabulary(plan.file.vocabulary, plan.file.distro)
+    hardware = {it.spec.namespace: tuple(_of_hardware(it, told, vocabulary)) for it in robots}
     by_name = {it.spec.namespace: it for it in robots}
     count = Counter((it.name, it.value) for its in hardware.values() for it in its)
     hints: dict[Sources, str] = {}
@@ -146,12 +148,15 @@ def _said(it: Finding, hint: str) -> Finding:
     return it._replace(message=f"{it.node} {it.message}", hint=hint, node="", robot="")
 
 
-def _of_hardware(robot: RewrittenRobot, told: Collection[str]) -> Iterator[Address]:
+def _of_hardware(
+    robot: RewrittenRobot, told: Collection[str], vocabulary: Vocabulary
+) -> Iterator[Address]:
     """At the robot's line of the fleet file; those of simulators have no devices."""
     spec = robot.spec
     if spec.simulator != "gazebo":
         node, place = f"/{spec.namespace}/{MANAGER}", Place(spec.file, spec.line, 1)
-        found = of_hardware(robot.member.inventory.document.root, node, place)
+        root = robot.member.inventory.document.root
+        found = of_hardware(root, node, place, vocabulary)
         yield from (it for it in found if it.value not in told)
 
 

@@ -282,7 +282,8 @@ def _heard(fleet: Fleet, robot: RewrittenRobot, bridges: Iterable[OutputFile]) -
     if robot.spec.simulator == REAL:
         return
     roots = (fleet.inventories[robot.spec.namespace].document.root, robot.member.source.root)
-    sensors, sources = ([*sensor_frames(it, robot.spec.model)] for it in roots)
+    release = robot.member.vocabulary.release
+    sensors, sources = ([*sensor_frames(it, robot.spec.model, release)] for it in roots)
     for end, inside, frame in (row for text in bridges for row in bridge_rows(text.yaml)):
         it = sensor_on(inside, sensors)
         if end.role == PUBLISHES and it and not frame and not it.is_named:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE, POSTFIX, ROS_KINDS, SEPARATORS, Naming
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.reports.xacro_arguments import (
     WHOLE,
     Argument,
@@ -57,7 +58,7 @@ def with_own_arguments(file: FleetFile, naming: Naming, trust: bool) -> WithArgu
 
     @cache
     def found(path: str, given: frozenset[tuple[str, str]]) -> tuple[Argument, ...]:
-        tree, reach = builtin_tree(file.vocabulary, file.distro), Reach(trust=trust)
+        tree, reach = builtin_tree(file.vocabulary, file.distro, ROS_2), Reach(trust=trust)
         with suppress(InputError):
             return find_arguments(
                 path, dict(given), tree, reach=reach, wanted=names_robots

@@ -35,6 +35,7 @@ from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.knowledge.conditions import UNSENT, said
+from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
@@ -221,6 +222,11 @@ def _started(given: _Given, name: str) -> Start:
     made = _with_own(given.plan, given.robot, start_of(it, program, _parameters(given, name)), name)
     own = given.values.get((given.robot.spec.name, name), {})
     words = made.arguments
+    if made.name and names_its_process(facts.kind, given.release):
+        # A rule for the one node that its code calls so.
+        rule = f"{facts.kind}:__node:={made.name}"
+        words = (*words, *(("--ros-args", "-r", rule) if made.name != facts.kind else ()))
+        made = made._replace(name="")
     if facts.kind == STATIC:
         words = with_frames([path_of(it) for it in words], own)
     placing = given.plan.evidence_of(given.robot).placing

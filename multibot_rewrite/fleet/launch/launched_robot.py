@@ -49,10 +49,7 @@ def launched_robot(
 
 
 def known_here(
-    known: Mapping[str, NodeFacts],
-    orders: Sequence[LaunchOrder],
-    robot: str,
-    release: str,
+    known: Mapping[str, NodeFacts], orders: Sequence[LaunchOrder], robot: str, release: str
 ) -> dict[str, NodeFacts]:
     """The known nodes, and what these launch files start, by its source; raises as
     ``launched_robot``."""

@@ -65,10 +65,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
         groups.append(GroupBridges(group, bridges))
     for group, files in groups:
         for file in files.values():
-            yield from (
-                *file.own.findings,
-                *wrong_in_file(plan, file.own.file, group.robots),
-            )
+            yield from (*file.own.findings, *wrong_in_file(plan, file.own.file, group.robots))
         for robot in group.robots:
             made = list(_for_robot(robot, files, topics))
             yield from made

@@ -15,6 +15,7 @@ import yaml
 from multibot_rewrite.base.findings.finding import WARNING, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.companions.engine import splices_of
 from multibot_rewrite.companions.joined import PartMoveit, joined_moveit
 from multibot_rewrite.companions.moveit.file_kind import NAMES, OF_SERVO, SIMPLE, entries, file_kind
@@ -52,7 +53,7 @@ def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindin
     if cell is None:
         return
     made = {it.path: it.data for it in files}
-    tree = builtin_tree(plan.file.vocabulary, plan.file.distro)
+    tree = builtin_tree(plan.file.vocabulary, plan.file.distro, ROS_2)
     world = world_of(plan.file, plan.fleet.naming)
     arms = [
         Arm(spec.name, spec.tag, it.description, it.srdf, spec.pose, f"{spec.file}:{spec.line}")

@@ -95,10 +95,7 @@ def parameter_file(values: Mapping[str, Any]) -> bytes:
 
 def parameters_from(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[str, Any]:
     """The parameters that an SRDF and MoveIt files, by path, are for the nodes of MoveIt."""
-    found: dict[str, Any] = {
-        SEMANTIC: srdf,
-        "publish_robot_description_semantic": True,
-    }
+    found: dict[str, Any] = {SEMANTIC: srdf, "publish_robot_description_semantic": True}
     pipelines: list[str] = []
     for path, text in texts.items():
         kind, data = file_kind(read_yaml(text.encode(), path)), _plain(load_yaml(text, path)) or {}

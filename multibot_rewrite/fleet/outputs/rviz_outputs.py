@@ -77,10 +77,7 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
         if relayed and not plan.fleet.naming.layout.frames:
             window, bare = bridged_window(document, shown, world)
             texts, found = (window, *texts), (*found, *bare)
-        found = (
-            *found,
-            *wrong_in_file(plan, read_for(document, shown, plan.file.distro), robots),
-        )
+        found = (*found, *wrong_in_file(plan, read_for(document, shown, plan.file.distro), robots))
         done = ONE_TF_TOPIC.code if relayed else ""
         left = tuple(it for it in found if it.code != done)
         yield RvizOutput(path, texts, left, name_among(path, robots_of).replace("/", "_"))

@@ -173,40 +173,25 @@ PARTLY_NAMESPACED = declare("MF706", "plugins-partly-namespaced", WARNING, forma
 MODEL_OF_OTHER_NAME = declare("MF707", "model-of-other-name", WARNING, formats=("fleet",))
 
 
-_NOT_LOADED = (
-    "is of ROS 1: it is not loaded",
-    "put the plugin of ROS 2 in its place, or delete it",
-)
-_READ_BY_ROS_1 = (
-    "has parameters of ROS 1, which ROS 2 does not read: its topics are the same for all robots",
-    "write those of ROS 2, with <ros><namespace>",
-)
 PLUGIN_OF_ROS_1 = declare("MF713", "plugin-of-ros-1", WARNING, formats=("fleet",))
 
 
 def _of_ros_1(robot: RewrittenRobot) -> Iterator[Finding]:
-    """The plugins that no section of ROS 2 has, and those whose parameters are of ROS 1."""
-    known = robot.member.vocabulary
-    told: dict[str, bool] = {}
-    for host in robot.member.inventory.hosts:
-        section = host.node.section
-        if section is not None and section.type == "plugin" and section.ros == "1":
-            both = any(it.ros != "1" for it in known.find("plugin", section.names[0]))
-            told[host.element.get("filename") or section.names[0]] = both
-    for name, both in told.items():
-        said, hint = _READ_BY_ROS_1 if both else _NOT_LOADED
-        message = f"robot {robot.spec.name!r}: plugin {name} {said}"
+    """The plugins that no section of ROS 2 has."""
+    of_ros_1 = (it for it in robot.member.inventory.served if it[1].type == "plugin")
+    names = (host.get("filename") or it.names[0] for host, it in of_ros_1 if it.ros == "1")
+    for name in dict.fromkeys(names):
+        message = f"robot {robot.spec.name!r}: plugin {name} is of ROS 1: it is not loaded"
+        hint = "put the plugin of ROS 2 in its place, or delete it"
         yield at_robot(PLUGIN_OF_ROS_1, robot, message, hint)
 
 
-def written_out(robot: RewrittenRobot) -> frozenset[str]:
-    """The gz topics of the robot's plugins that stand in its description."""
-    inventory = robot.member.inventory
-    bridged, _ = bridged_topics({robot.spec.namespace: inventory}, robot.topics.naming)
-    texts = {
-        text_of(it) for plugin in inventory.document.root.iter("plugin") for it in plugin.iter()
-    }
-    return frozenset(texts & {it.gz for it in bridged})
+def _made(robot: RewrittenRobot) -> set[str]:
+    """The gz topics that the robot's plugins make, as the model is spawned."""
+    spec, inventory = robot.spec, robot.member.inventory
+    names = {spec.namespace: spec.model}
+    bridged, _ = bridged_topics({spec.namespace: inventory}, robot.topics.naming, names)
+    return {it.gz for it in bridged}
 
 
 def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
@@ -215,9 +200,14 @@ def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
     own = model_name(inventory)
     if own == robot.spec.model:
         return
-    fixed = written_out(robot)
+    made, plugins = _made(robot), inventory.document.root.iter("plugin")
+    fixed = made.intersection(text_of(it) for plugin in plugins for it in plugin.iter())
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
-        if claim.site.role == "uses" and any(it.kind == "model" and it.text == own for it in names):
+        _, model, rest = claim.value.partition(f"/model/{own}/")
+        # Where models keep their names, no name is found in the topics of systems.
+        made_of_it = bool(model) and f"/model/{robot.spec.model}/{rest}" in made
+        is_used = any(it.kind == "model" and it.text == own for it in names)
+        if claim.site.role == "uses" and (is_used or made_of_it):
             if text_of(claim.element) in fixed:
                 continue
             who = f"robot {robot.spec.name!r} is spawned as {robot.spec.model!r}"

@@ -50,11 +50,7 @@ _STACKS = (
     ("teleop", ("teleop_twist_joy_node",), ()),
 )
 _MANAGER = "controller_manager"
-_CONTROL = {
-    NO_SIMULATOR: "ros2_control",
-    GZ: "gz_ros2_control",
-    CLASSIC: "gazebo_ros2_control",
-}
+_CONTROL = {NO_SIMULATOR: "ros2_control", GZ: "gz_ros2_control", CLASSIC: "gazebo_ros2_control"}
 _WORD = re.compile(r"[a-z0-9]+")
 
 

@@ -102,11 +102,7 @@ def that_builds(
 
 
 def _in_another_world(
-    made: Proposal,
-    own: Sequence[Looked],
-    found: Found,
-    wanted: Wanted,
-    refused: Mapping[str, str],
+    made: Proposal, own: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
 ) -> Iterator[tuple[Proposal, str]]:
     """Yield the proposal with the robots real that no simulator can run or that have nothing for one,
     and with the argument that loads a simulator's hardware, each with what it is. A simulator that was

@@ -16,6 +16,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.companions.join import Joined, join_plain
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, RVIZ
 from multibot_rewrite.description.joining.join import GivenPart, join_texts
@@ -52,7 +53,7 @@ def with_joined(file: FleetFile, trust: bool) -> tuple[FleetFile, Mapping[str, S
         )
         key = repr(given)
         if key not in found:
-            tree = builtin_tree(file.vocabulary, file.distro)
+            tree = builtin_tree(file.vocabulary, file.distro, ROS_2)
             found[key] = join_plain(given, f"{it.file}:{it.line}", tree, trust)
             hint = "see what it means for the robot; multibot join shows the files"
             said = (f"robot {it.name!r} is joined of parts: {text}" for text in found[key].notes)

@@ -58,11 +58,7 @@ class Member(NamedTuple):
 
 
 def member(
-    source: Rewrite,
-    data: bytes,
-    tag: str,
-    real: bool = False,
-    described: Member | None = None,
+    source: Rewrite, data: bytes, tag: str, real: bool = False, described: Member | None = None
 ) -> Member:
     """The robot of a rewrite; ``data`` is its final description, of which a ``real`` robot takes
     nothing that is for a simulator. ``described`` has what it publishes, if that is another one.

@@ -270,10 +270,7 @@ def _alone(known: NodeKnowledge, name: str) -> NodeFacts | None:
 
 
 def _merged(
-    node: NodeFacts,
-    usual: str,
-    document: Document,
-    parts: Mapping[str, tuple[Endpoint, ...]],
+    node: NodeFacts, usual: str, document: Document, parts: Mapping[str, tuple[Endpoint, ...]]
 ) -> NodeFacts:
     ours = {_slot(end, usual): end for end in reversed(node.endpoints)}
     # What ROS gives every node is not the node's own.

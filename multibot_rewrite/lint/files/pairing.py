@@ -111,9 +111,8 @@ def _stem(path: str) -> str:
 
 def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
     data, name = described(path, settings)
-    inventory = collect(
-        read_document(data, name), builtin_tree(settings.vocabulary, settings.distro)
-    )
+    tree = builtin_tree(settings.vocabulary, settings.distro, settings.ros)
+    inventory = collect(read_document(data, name), tree)
     declared = inventory.declared
     known = declared["link"].keys() | declared["joint"].keys()
     misses = sum(it not in known for it in _names(srdf))

@@ -16,6 +16,7 @@ from multibot_rewrite.base.findings.finding import SRDF, XACRO
 from multibot_rewrite.base.model import NO_ARGUMENT, InputError
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import builtin_tree
+from multibot_rewrite.description.sources.dialect import ros_shown
 from multibot_rewrite.description.sources.packages import package_folder
 from multibot_rewrite.description.sources.read import JOIN, XACRO as ENDING, has_xacro
 from multibot_rewrite.description.steps.collect import NOTHING, SRDF as SRDF_SECTION, collect
@@ -111,6 +112,8 @@ def _only_defines(root: _Element) -> bool:
 def make_subject(document: Document, settings: Settings) -> Subject:
     """The subject of a document."""
     tree = builtin_tree(settings.vocabulary, settings.distro)
+    ros = settings.ros or ros_shown(document.source, document.file, tree)
+    tree = builtin_tree(settings.vocabulary, settings.distro, ros)
     called = SRDF_MARK in os.path.basename(document.file)
     inventory = collect(document, tree, NO_URDF if called else NOTHING)
     written = subject_of(inventory, tree, settings)

@@ -101,11 +101,7 @@ def learn(
 
 
 def _learn_node(
-    name: str,
-    base: str,
-    ends: Mapping[str, Sequence[End]],
-    helpers: Helpers,
-    library: NodeLibrary,
+    name: str, base: str, ends: Mapping[str, Sequence[End]], helpers: Helpers, library: NodeLibrary
 ) -> LearnedNode:
     node = name.removeprefix(f"{base}/")
     known = library.nodes.get(node)

@@ -14,7 +14,7 @@ from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import check_name_in_code
 from multibot_rewrite.knowledge.conditions import ALSO, Values, chosen_type, holds, verdict
-from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, SentTransform
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, SentTransform, made_of
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import Origin
 
@@ -44,14 +44,16 @@ def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeF
     each = ((it, of_stack[it.role, it.name]) for it in whole.endpoints)
     made = [it for raw, own in each for it in _endpoint(node, raw, own, values, value_of)] + alone
     frames = []
+    texts = {name: str(it.value) for name, it in values.items()}
     for frame in node.frames:
         told = values.get(frame.parameter)
         # <pose_name> stands for the value of another parameter.
-        other = values.get(frame.default.strip("<>")) if "<" in frame.default else None
+        text = frame.parameter if "<" in frame.parameter else frame.default
+        other = made_of(text, texts) if "<" in text else frame.default
         if told is not None and told.value != "":
             frame_set = frame._replace(default=str(told.value), given=True, is_kept=False)
-        elif other is not None:
-            frame_set = frame._replace(default=str(other.value), given=True)
+        elif other != frame.default:
+            frame_set = frame._replace(default=other, given=True)
         else:
             frame_set = frame
         frames.append(frame_set)
@@ -147,10 +149,7 @@ def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
 
 
 def _is_decided(
-    raw: Endpoint,
-    lists: Iterable[str],
-    values: Mapping[str, Given],
-    of_stack: Iterable[Endpoint],
+    raw: Endpoint, lists: Iterable[str], values: Mapping[str, Given], of_stack: Iterable[Endpoint]
 ) -> bool:
     """Do the parameters say whether it exists, or how it is called?"""
     needed = list(lists)

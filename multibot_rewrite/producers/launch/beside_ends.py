@@ -58,7 +58,9 @@ def _below(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
 def prefix_of(it: Run) -> str:
     """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
     ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
-    prefix = it.value("tf_prefix")
+    # What its code makes has it already.
+    made = any("<tf_prefix=" in end for sent in it.fact.sends for end in sent[:2])
+    prefix = None if made else it.value("tf_prefix")
     if switch := it.fact.prefix_switch:
         own = it.value("tf_frame_prefix") or it.namespace
         prefix = "" if it.value(switch) is False else own

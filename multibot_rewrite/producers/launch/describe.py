@@ -55,12 +55,7 @@ SIMULATOR, CLASSIC = "gzserver", "gazebo_ros"
 # launch_ros says so of a text that is no YAML or value (jazzy, utilities/evaluate_parameters.py:82).
 _FAILS = "try wrapping it"
 # The commands of Gazebo, and the package that ROS starts it with.
-_GAZEBO = {
-    "gz": "ros_gz_sim",
-    "ign": "ros_gz_sim",
-    "gazebo": CLASSIC,
-    "gzserver": CLASSIC,
-}
+_GAZEBO = {"gz": "ros_gz_sim", "ign": "ros_gz_sim", "gazebo": CLASSIC, "gzserver": CLASSIC}
 SIMULATORS = ("ros_gz_sim", "ros_ign_gazebo", CLASSIC)
 
 _FLAG = re.compile(r"--?([a-zA-Z]\w*)=(.*)|--?([a-zA-Z]\w*)", re.DOTALL)

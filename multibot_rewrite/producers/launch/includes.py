@@ -79,11 +79,7 @@ _WORLDS = ("gz_args", "ign_args", "world")
 # (ros_gz jazzy and ros2 ros_gz_sim/launch/gz_spawn_model.launch.py); the second starts a bridge, too.
 _SPAWNS, _SPAWNS_BRIDGED = "gz_spawn_model.launch.py", "ros_gz_spawn_model.launch.py"
 _SAME = ("world", "file", "string", "topic", "allow_renaming", "x", "y", "z", "R", "P", "Y")
-_SPAWN_WORDS = {
-    **{it: f"-{it}" for it in _SAME},
-    "entity_name": "-name",
-    "model_string": "-string",
-}
+_SPAWN_WORDS = {**{it: f"-{it}" for it in _SAME}, "entity_name": "-name", "model_string": "-string"}
 _BRIDGE = "ros_gz_bridge", "bridge_node"
 _LAUNCH_FILE = re.compile(r"(?<!\w)\w+\.launch\.py")
 _SHARE = re.compile(r"/share/([\w-]+)/")

@@ -15,6 +15,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import builtin_tree
@@ -101,7 +102,7 @@ def _in_simulator(it: Model, release: str) -> InSimulator | None:
     with suppress(MultibotError):
         document = read_document(it.text.encode(), it.place.file)
         name = it.name or document.root.get("name", "")
-        inventory = collect(document, builtin_tree((), release))
+        inventory = collect(document, builtin_tree((), release, ROS_2))
         topics, _ = bridged_topics({name: inventory}, _NAMING)
         own = tuple(one for one in topics if one.robot)
         return InSimulator(name, it.text, document.root, own, dict(pairwise(it.words)), it.place)
@@ -125,9 +126,9 @@ def world_files(it: LaunchedNode) -> list[str]:
     return [word for word in words if word.endswith(_WORLDS)]
 
 
-def sensors_of(models: Iterable[InSimulator]) -> list[SensorFrame]:
+def sensors_of(models: Iterable[InSimulator], release: str) -> list[SensorFrame]:
     """The sensors of the models."""
-    return [sensor for it in models for sensor in sensor_frames(it.root, it.name)]
+    return [sensor for it in models for sensor in sensor_frames(it.root, it.name, release)]
 
 
 NOT_WHOLE, NOT_KNOWN = "launch-not-whole", "node-not-known"

@@ -17,6 +17,7 @@ from lxml.etree import SubElement, tostring
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback.nodes import ReadNode
 from multibot_rewrite.description.readback.parameters import MODEL
@@ -125,7 +126,7 @@ def _given(words: Mapping[str, str]) -> str:
 
 def _read(name: str, text: str, place: Place, release: str, spawned: bool) -> Model | None:
     try:
-        reading = read(text.encode(), place.file, load_vocabulary((), release))
+        reading = read(text.encode(), place.file, load_vocabulary((), release, ros=ROS_2))
     except InputError:
         return None
     return Model(name, text, reading, spawned, place)

@@ -230,7 +230,9 @@ def _has_clock(words: Sequence[str]) -> bool:
 
 def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
     """The full name of a launched node; by its code where the launch file has none."""
-    return expand(it.name or own_name(it, facts) or guessed_name(it), it.namespace, "")
+    own = own_name(it, facts) or guessed_name(it)
+    # A rule for the one node of the process that its code calls so.
+    return expand(it.name or dict(it.remappings).get(f"{own}:__node", own), it.namespace, "")
 
 
 def _started(

@@ -17,6 +17,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.description.readback.xml import root_of
+from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.knowledge.declared import is_known
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.producers.launch.beside_ends import (
@@ -120,7 +121,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     )
     simulated = models_in_simulator(models, known.release)
     found = Launched(graph, nodes, spawned, models, simulated, system, known.release, bridged)
-    heard = [*_heard(nodes, sensors_of(simulated))]
+    heard = [*_heard(nodes, sensors_of(simulated, known.release))]
     heard += _measured(parts, frames_of_plugins(models.found))
     return found._replace(system=system._replace(heard=tuple(heard)))
 
@@ -185,7 +186,7 @@ def _addresses(it: Run, known: Knowledge, models: Models) -> Iterator[Address]:
     text = it.value(DESCRIPTION)
     root = None if any(one.spawned and one.text == text for one in models.found) else root_of(text)
     if root is not None:
-        yield from of_hardware(root, it.full_name, it.place)
+        yield from of_hardware(root, it.full_name, it.place, load_vocabulary((), known.release))
 
 
 def _nodes(running: Iterable[Run], parts: Iterable[_Part]) -> Iterator[Node]:

@@ -106,7 +106,7 @@ def _to_itself(section: Section, node: NodeFacts) -> Iterator[Finding]:
     """A transform that a node sends from a frame to itself: buffer_core.cpp of tf2 refuses it."""
     defaults: dict[str, Value | None] = {it.parameter: it.default for it in node.frames}
     values = {**defaults, **{name: it.value for name, it in section.whole.items()}}
-    for parent, child, condition in node.sends:
+    for parent, child, condition, _ in node.sends:
         given = section.whole.get(child) or section.whole.get(parent)
         frame = values.get(parent)
         if given and frame and frame == values.get(child) and holds(condition, values.get):

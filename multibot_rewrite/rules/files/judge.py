@@ -40,7 +40,7 @@ def _each(
 
 # They are asked of a description as well; here a file is looked at.
 SHARED: tuple[Rule, ...] = (
-    reading.leftover._replace(check=ros_names.placeholders),
+    reading.leftover._replace(check=_each(ros_names.placeholders, ros_names.unfilled)),
     description_names.invalid_ros_name._replace(check=ros_names.invalid_names),
     description_names.leading_slash._replace(check=ros_names.slashes),
     rewriting.unclaimed_mention._replace(check=names.unknown_uses),

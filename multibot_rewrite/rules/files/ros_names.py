@@ -23,6 +23,7 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import BETWEEN
 from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
 from multibot_rewrite.rules.declaration import OF_TWO, remark
+from multibot_rewrite.rules.subject import Robots
 
 _IN_VALUE = re.compile(rf"<[^<>]*>|\$\({IN_SUBSTITUTION}\)|\$?\{{[^{{}}]*\}}|%\w+")
 # Stand for whole names of nodes.
@@ -34,18 +35,14 @@ _FIXED = "<Fixed Frame>"
 def invalid_names(file: NamedFile) -> Iterator[Finding]:
     """Names in the graph, and those of sections."""
     for site in file.names:
-        fault = _section_fault(site) if site.kind == SECTION else _fault(site)
+        fault = _section_fault(site) if site.kind == SECTION else ""
+        if site.kind in GRAPH and site.text and is_filled(site.text):
+            found = check_name_in_code(site.text)
+            fault = found.reason if found else ""
         if fault:
             what = "node" if site.kind == SECTION else site.kind
             message = f"{what} {site.text!r} is not a valid ROS name: {fault}"
             yield remark(site, message, "it stays as it is; correct it")
-
-
-def _fault(site: Site) -> str:
-    if site.kind not in GRAPH or not site.text or not is_filled(site.text):
-        return ""
-    found = check_name_in_code(site.text)
-    return found.reason if found else ""
 
 
 def _section_fault(site: Site) -> str:
@@ -81,6 +78,17 @@ def placeholders(file: NamedFile) -> Iterator[Finding]:
             message = f"the placeholder {found[0]} stays; a launch file must replace it"
             hint = "if it stands for the robot's name, write the value without it"
             yield remark(site, message, hint, level)
+
+
+def unfilled(file: NamedFile) -> Iterator[Finding]:
+    """What stands for the robot, once each, where a description is held against the file as it is."""
+    told: set[str] = set()
+    for site in file.names if file.is_certain and file.memo.get(Robots) else ():
+        found = _IN_VALUE.search(site.slot.value)
+        if found and is_robot(found[0]) and found[0] not in {*told, site.text}:
+            told.add(found[0])
+            message = f"{site.slot.value!r} keeps {found[0]} where no launch file fills it in"
+            yield remark(site, message, "fill it in, or leave it out", NOTE)
 
 
 def slashes(file: NamedFile) -> Iterator[Finding]:

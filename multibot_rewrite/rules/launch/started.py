@@ -20,7 +20,9 @@ from itertools import pairwise
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import check_node_name, expand, resolve_bound
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.numbers import number
+from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.hardware import COMMAND, claims_of
@@ -87,6 +89,19 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
 no_manager = spawner_managers.NO_MANAGER._replace(
     check=_no_manager, formats=(LAUNCH,), examples="MG723-launch"
 )
+
+
+@launch_rule("MG730", "name-of-a-whole-process", distro="humble")
+def names_all(launched: Launched) -> Iterator[Finding]:
+    """A manager that gets a name, where it loads controllers."""
+    given = {it.place for it in launched.graph.nodes if it.name}
+    for run in (it for it in launched.nodes if it.place in given):
+        others = {it.name for it in launched.spawned if it.manager == run.full_name}
+        if others and names_its_process(run.fact.known, launched.release):
+            who = shorten(sorted(others))
+            message = f"name= renames every node of the process: {who} become {run.node}"
+            hint = "leave name= out: its code calls it controller_manager"
+            yield at(names_all, run.place, message, hint)
 
 
 def _is(it: Run, known: str) -> bool:

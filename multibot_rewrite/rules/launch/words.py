@@ -10,20 +10,37 @@ from __future__ import annotations
 import os
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping
-from itertools import pairwise
+from contextlib import suppress
+from itertools import chain, pairwise
 from math import isclose, pi
 
+import yaml
+
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.lazy import IN_SUBSTITUTION, lazy_compile
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
+from multibot_rewrite.companions.params.sections import RawSection, meant_for, raw_sections
+from multibot_rewrite.companions.yaml_text import line_of
+from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.producers.launch.handed_on import document_of
 from multibot_rewrite.producers.launch.known_node import STATIC
 from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.rules.declaration import LAUNCH, at, launch_rule
+from multibot_rewrite.rules.declaration import (
+    LAUNCH,
+    OF_NO_NODE,
+    at,
+    launch_rule,
+    said_of_section,
+)
+from multibot_rewrite.rules.description.files import reading
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table_checks import RULE_WITHOUT_NAME
+from multibot_rewrite.system.records import Place
 
 _ANGLES = ("--roll", "--pitch", "--yaw")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")
@@ -52,26 +69,19 @@ def _faults(it: Run) -> Iterator[tuple[str, str]]:
     places = ("--x", "--y", "--z", *turn) if turn else ()
     named = flags or dict(zip(places, it.arguments, strict=False))
     for flag, word in named.items():
-        value = _number(word)
+        value = number(word)
         if flag in _ANGLES and value is not None and abs(value) > _TURN + 0.01:
             radians = f"{value * pi / 180:.4g}"
             yield f"{flag} {word} is more than a turn in radians", f"degrees? write {radians}"
         elif not flags and value is None:
             hint = "numbers come first, then the two frames; or use flags, as --frame-id"
             yield f"{word} is in the place of {flag}", hint
-    found = [_number(named[it]) for it in _QUATERNION if it in named]
+    found = [number(named[it]) for it in _QUATERNION if it in named]
     if len(found) == len(_QUATERNION) and None not in found:
         length = sum(it * it for it in found if it is not None) ** 0.5
         if not isclose(length, 1, abs_tol=0.1):
             words = " ".join(named[it] for it in _QUATERNION)
             yield f"the quaternion {words} is no rotation", "without a rotation write 0 0 0 1"
-
-
-def _number(word: str) -> float | None:
-    try:
-        return float(word)
-    except ValueError:
-        return None
 
 
 def _matches_nothing(launched: Launched) -> Iterator[Finding]:
@@ -124,6 +134,58 @@ def not_there(launched: Launched) -> Iterator[Finding]:
             yield at(not_there, place, message, _PATH, names=(path,))
 
 
+def _of_no_node(launched: Launched) -> Iterator[Finding]:
+    """By the nodes that run. What a launch makes of a file is no file of the user."""
+    nodes = {it.full_name for it in launched.nodes} | {it.name for it in launched.system.nodes}
+    readers: dict[tuple[Place, str], list[str]] = defaultdict(list)
+    for run in launched.nodes:
+        readers[run.place, run.program].append(run.full_name)
+    found: dict[tuple[str, str], tuple[RawSection, list[str]]] = {}
+    for node in (it for it in launched.graph.nodes if not it.container):
+        names = readers[node.place, f"{node.package}/{node.executable}"]
+        for text in (it for it in node.parameters if it.file):
+            with suppress(InputError):
+                sections = raw_sections(document_of(text.file, text.text))
+                for reader in names:
+                    if section := meant_for(sections, reader, nodes):
+                        key = text.file, section.path
+                        found.setdefault(key, (section, []))[1].append(reader)
+    for (file, path), (section, names) in found.items():
+        yield at(of_no_node, Place(file, line_of(section.keys[0])), *said_of_section(path, names))
+
+
+of_no_node = OF_NO_NODE._replace(check=_of_no_node)
+
+
+_LEFT = lazy_compile(rf"<[A-Za-z_]\w*>|\$\({IN_SUBSTITUTION}\)|\$\{{\w+\}}")
+
+
+def _placeholders(launched: Launched) -> Iterator[Finding]:
+    """Those in parameter files as nodes get them, and in the words that start them; what has blanks
+    besides is a text."""
+    given: list[tuple[Place, str]] = []
+    for it in launched.graph.nodes:
+        given += [(it.place, one) for one in chain(it.arguments, *it.remappings)]
+        for text in it.parameters:
+            with suppress(yaml.YAMLError):
+                for one in yaml.scan(text.text):
+                    line = Place(text.file, one.start_mark.line + 1) if text.file else it.place
+                    given += [(line, one.value)] if isinstance(one, yaml.ScalarToken) else []
+    told = set()
+    for place, value in given:
+        left = _LEFT.search(value)
+        if left and " " not in _LEFT.sub("", value) and (place.file, left[0]) not in told:
+            told.add((place.file, left[0]))
+            message = f"the placeholder {left[0]} stays in {value!r}: the launch fills nothing in"
+            hint = "replace it (ParameterFile with allow_substs, ReplaceString), or leave it out"
+            yield at(placeholder_left, place, message, hint)
+
+
+placeholder_left = reading.leftover._replace(
+    check=_placeholders, level=ERROR, formats=(LAUNCH,), examples="MB105-launch"
+)
+
+
 @launch_rule("MG715", "include-argument-not-read")
 def argument_not_read(launched: Launched) -> Iterator[Finding]:
     """By what the other file has as a text."""
@@ -164,7 +226,9 @@ def misspelt(launched: Launched) -> Iterator[Finding]:
             yield at(misspelt, it.place, message, f"did you mean {other}?", level=NOTE)
             continue
         near = nearest(it.executable, sorted(every), SLIP)
-        if near and _differ(it.executable, near):
+        # Programs are called with and without ``_node``, with and without a file ending.
+        bare = {path.removesuffix(".py").removesuffix("_node") for path in (it.executable, near)}
+        if near and len(bare) > 1:
             message = f"package {it.package} has no program {it.executable}"
             yield at(misspelt, it.place, message, f"did you mean {near}?")
 
@@ -176,10 +240,3 @@ def _package_meant(it: LaunchedNode, known: Mapping[str, Collection[str]]) -> st
         return ""
     around = sources_around(it.place.file)
     return "" if around and it.package in packages_below((around,)) else near
-
-
-def _differ(program: str, near: str) -> bool:
-    """Programs are called with and without ``_node``, with and without a file ending."""
-    return program.removesuffix(".py").removesuffix("_node") != near.removesuffix(
-        ".py"
-    ).removesuffix("_node")

@@ -209,11 +209,7 @@ def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Ite
 
 
 def _unknown_child(
-    element: etree._Element,
-    child: etree._Element,
-    section: UrdfPart,
-    schema: Schema,
-    meant: str,
+    element: etree._Element, child: etree._Element, section: UrdfPart, schema: Schema, meant: str
 ) -> Iterator[Problem]:
     """A child that the schema does not have in its parent."""
     message = f"no parser reads <{child.tag}> inside <{element.tag}>"
@@ -229,6 +225,8 @@ def _unknown_child(
         homes = [it.name for it in schema.sections.values() if child.tag in it.children]
         tags = sorted({home.rpartition("_")[2] for home in homes} - {str(element.tag)})
         hint = f"move it into {' or '.join(f'<{tag}>' for tag in tags)}" if tags else "delete it"
+        if child.tag == "plugin" and child.get("filename"):
+            hint = "move it into a <gazebo>"
         yield fault("misplaced", child, None, message, hint)
     elif section.name != ROBOT:
         yield fault("not-read", child, None, message)

@@ -36,9 +36,8 @@ def no_clock(seen: Index) -> Iterator[Finding]:
     if _clocks(seen):
         return
     for robot, nodes in by_robot.items():
-        message = (
-            f"on simulated time (use_sim_time), but no node publishes {CLOCK}: {shorten(nodes)}"
-        )
+        who = shorten(nodes)
+        message = f"on simulated time (use_sim_time), but {seen.nobody} publishes {CLOCK}: {who}"
         remaps: tuple[Remap, ...] = ()
         cause = "use_sim_time: false on a real robot, or start the simulator's bridge for /clock"
         if other := next((it for it in seen.topics if it.type == _TYPE and it.publishers), None):

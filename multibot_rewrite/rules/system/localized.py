@@ -97,7 +97,7 @@ def _why(seen: Index, node: str, body: _Body, start: str) -> str:
     read = [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
     read = [it for it in read if words.is_of_a_body(it.type) or it.type == words.MAP]
     if unsent := [it.name for it in read if it.name not in seen.published]:
-        return f"it waits for {shorten(unsent)}, which no node publishes"
+        return f"it waits for {shorten(unsent)}, which {seen.nobody} publishes"
     told = any(
         (it.node, it.name, it.value) == (node, _START, "true") for it in seen.system.parameters
     )

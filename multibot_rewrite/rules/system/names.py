@@ -65,7 +65,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 yield _reads_no_robots(seen, end, mine)
             elif absent := nobody_in(seen, ends.name, published):
                 yield topic_names_miss.finding(
-                    f"subscribes to {ends.name}, which no node publishes; {absent}",
+                    f"subscribes to {ends.name}, which {seen.nobody} publishes; {absent}",
                     ABSENT, level=WARNING, node=end.node, names=(ends.name,), **where([end]),
                 )  # fmt: skip
         for other_name, (first, *more) in by_kind.items():
@@ -92,8 +92,9 @@ def _of_robots(seen: Index, end: End) -> Sequence[str]:
 def _reads_no_robots(seen: Index, end: End, names: Sequence[str]) -> Finding:
     sender = nodes_of(seen.by_name[TOPIC, names[0]].publishers)[0]
     several = f" (or that of another of the {len(names)} robots)" if len(names) > 1 else ""
+    lost = f"subscribes to {end.name}, which {seen.nobody} publishes"
     return topic_names_miss.finding(
-        f"subscribes to {end.name}, which no node publishes; {sender} publishes {names[0]}{several}",
+        f"{lost}; {sender} publishes {names[0]}{several}",
         f"start it in its robot's namespace, or pass the rule {end.name}:={names[0]}{several}",
         node=end.node, names=(end.name, names[0]), **where([end]),
         remaps=() if several else (Remap(end.node, end.name, names[0]),),
@@ -227,9 +228,8 @@ def _missed_topic(
     robot = seen.robot(end.node) or seen.robot(end.name)
     sender = min(nodes_of(other.publishers), key=lambda it: seen.robot(it) != robot)
     also = f" (and so does {shorten(nodes_of(more))})" if more else ""
-    message = (
-        f"subscribes to {end.name}{also}, which no node publishes; {sender} publishes {other.name}"
-    )
+    message = f"subscribes to {end.name}{also}, which {seen.nobody} publishes"
+    message += f"; {sender} publishes {other.name}"
     remaps = tuple(Remap(it.node, end.name, other.name) for it in (end, *more))
     each = " to each" if more else ""
     # The side in the wrong place is the one whose name has no robot, is below the node, or has a
@@ -291,7 +291,8 @@ def _served(seen: Index) -> Mapping[tuple[str, str], _Served]:
 
 def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
     near = _served_instead(seen, end, served) or in_other_namespace(seen, end)
-    lost = f"{'sends goals to' if end.kind == ACTION else 'calls'} {end.name}, which no node serves"
+    asks = "sends goals to" if end.kind == ACTION else "calls"
+    lost = f"{asks} {end.name}, which {seen.nobody} serves"
     listed = "" if near else listed_in_vain(seen, end)
     by_type = None if near or listed else sent_instead(seen, end)
     if other := near or (by_type.name if by_type else ""):

@@ -77,7 +77,9 @@ def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
     bases: dict[str, list[str]] = defaultdict(list)
     for it in (it for it in frames if plain[it] in BODY_FRAMES):
         bases[seen.frame_robot(it)].append(it)
-    for odom in (it for it in frames if plain[it] == "odom"):
+    # What only has fixed frames below it, as those of an autopilot, is no odometry.
+    moved = {frame for it in tree.edges for frame in (it.child, "" if it.static else it.parent)}
+    for odom in (it for it in frames if plain[it] == "odom" and it in moved):
         robot = seen.frame_robot(odom)
         own = bases[robot]
         roots = {root_of(it, above) for it in own}

@@ -27,7 +27,7 @@ _STATE_PUBLISHER, _STATIC = "robot_state_publisher", "static_transform_publisher
 def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
     """The cause names the nodes that may have sent it."""
     for tree in seen.trees:
-        edges = _by_child(tree)
+        edges = lists_by_key((edge.child, edge) for edge in tree.edges)
         for child, parents in _parents(tree).items():
             if len(parents) < 2:
                 continue
@@ -41,10 +41,6 @@ def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
             yield frame_with_two_parents.finding(
                 message, cause, robot=robot, names=(child,), **where(own)
             )
-
-
-def _by_child(tree: Tree) -> dict[str, list[Edge]]:
-    return lists_by_key((edge.child, edge) for edge in tree.edges)
 
 
 def _parents(tree: Tree) -> dict[str, set[str]]:
@@ -108,7 +104,8 @@ def collide(seen: Index, tree: Tree) -> str:
         without = {robot for robot in robots if robot not in named}
         who = nameless or robots
         # In a recording nobody is known to have sent them.
-        if who and (len(without) > 1 or (not without and of_all & bare)):
+        alike = any(it.child in bare and _is_of_several(seen, it) for it in tree.edges)
+        if who and (len(without) > 1 or alike or (not without and of_all & bare)):
             send = "sends" if len(who) == 1 else "send"
             return f"{and_then(who)} {send} frames without a robot's name"
     # As where two robots have no namespace.
@@ -130,8 +127,14 @@ def _may_meet(seen: Index, tree: Tree) -> bool:
 
 
 def _bare_frames(seen: Index, tree: Tree) -> list[str]:
-    children = unique(edge.child for edge in tree.edges)
-    return [it for it in children if not seen.frame_robot(it) and it not in WORLD_FRAMES]
+    met = (it.parent for it in tree.edges if _is_of_several(seen, it))
+    frames = unique((*met, *(edge.child for edge in tree.edges)))
+    return [it for it in frames if not seen.frame_robot(it) and it not in WORLD_FRAMES]
+
+
+def _is_of_several(seen: Index, edge: Edge) -> bool:
+    """Do nodes of several robots send it, and is it not known to be the same of all?"""
+    return edge.several and not edge.transform and len(robots_of(seen, edge.publishers)) > 1
 
 
 def _named_frames(seen: Index, tree: Tree) -> Iterator[str]:
@@ -171,7 +174,7 @@ def tf_remaps(nodes: Iterable[str], topic: str, home: str) -> tuple[Remap, ...]:
 def tf_cycle(seen: Index) -> Iterator[Finding]:
     """Each circle once."""
     for tree in seen.trees:
-        edges = _by_child(tree)
+        edges = lists_by_key((edge.child, edge) for edge in tree.edges)
         for circle in _circles(_parents(tree)):
             around = [*pairwise((*circle, circle[0]))]
             way = " -> ".join((*circle, circle[0]))

@@ -51,11 +51,11 @@ ESTOP = (
     '<ros2_control name="s" type="system"><hardware><plugin>husarion_ugv_gazebo/EStopSystem</plugin>'
     "</hardware></ros2_control>"
 )
-OPENARM = (
-    '<link name="hand"/><joint name="openarm_joint1" type="revolute"><parent link="base"/>'
+ABB = (
+    '<link name="hand"/><joint name="joint_1" type="revolute"><parent link="base"/>'
     '<child link="hand"/></joint><ros2_control name="s" type="system"><hardware>'
-    "<plugin>openarm_hardware/OpenArm_v10HW</plugin></hardware>"
-    '<joint name="openarm_joint1"><command_interface name="position"/></joint></ros2_control>'
+    "<plugin>abb_hardware_interface/ABBSystemHardware</plugin></hardware>"
+    '<joint name="joint_1"><command_interface name="position"/></joint></ros2_control>'
 )
 # PX4-Autopilot src/modules/simulation/gz_bridge/GZBridge.cpp: .../link/base_link/sensor/imu_sensor/imu
 PX4 = (
@@ -107,12 +107,12 @@ ROWS = (
         {"layout": "both"},
     ),
     Followed(
-        OPENARM,
+        ABB,
         "postfix",
         "humble",
         "MB428",
         "--layout tf-per-robot",
-        OPENARM,
+        ABB,
         {"layout": "tf-per-robot"},
     ),
     *(

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import pytest
+from lxml import etree
 
-from multibot_rewrite import rewrite, strip
+from multibot_rewrite import rewrite, rewrite_all, strip
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.checks.verdict import GIVEN, given
 from multibot_rewrite.description.readback.active import active_parts, says_what_it_opens
@@ -72,12 +73,14 @@ def test_what_is_known_to_open_nothing_is_proved() -> None:
         assert why(text, layout, "humble") == ()
 
 
-def test_a_plugin_written_for_ros_1_beside_one_for_ros_2_is_not_proved() -> None:
+def test_a_plugin_written_for_ros_1_beside_one_for_ros_2_is_that_of_ros_2() -> None:
     """gazebo_ros_camera.cpp of ROS 2: its node is called as the plugin, whatever ROS 1's tags say."""
     old = plugin("gazebo_ros_camera", "<cameraName>c</cameraName><frameName>a</frameName>")
     new = plugin("gazebo_ros_imu_sensor", "<ros/>")
-    found = [why(robot(it), distro="humble") for it in (old, new, old + new)]
-    assert found == [(), (), ("1 plugin not known",)]
+    made = [rewrite(robot(it), "robot1", layout="postfix") for it in (old, new, old + new)]
+    assert [it.not_proved for it in made] == [(), (), ()]
+    cameras = [it.text.partition("camera.so")[2].partition("</plugin>")[0] for it in made]
+    assert ["<ros>" in it for it in cameras] == [False, False, True]
 
 
 @pytest.mark.parametrize(
@@ -127,8 +130,10 @@ def test_drives_of_ros_1_send_to_one_tf() -> None:
     """tf2_ros (noetic) transform_broadcaster.cpp:38: node_.advertise<tf2_msgs::TFMessage>("/tf")."""
     wheels = "<robotNamespace>/a</robotNamespace><robotBaseFrame>a</robotBaseFrame>"
     text = robot(plugin("gazebo_ros_planar_move", wheels + "<commandTopic>cmd_vel</commandTopic>"))
-    assert "1 topic shared by all robots" in why(text, "tf-per-robot")
-    assert "1 topic shared by all robots" not in why(text, "frames-per-robot")
+    reasons = [
+        rewrite(text, "r", layout=it).not_proved for it in ("tf-per-robot", "frames-per-robot")
+    ]
+    assert ["1 topic shared by all robots" in it for it in reasons] == [True, False]
 
 
 def test_a_foot_contact_of_unitree() -> None:
@@ -148,6 +153,59 @@ def test_a_port_is_one_robots() -> None:
     assert why(robot(plugin("ArduPilotPlugin"))) == ("1 resource shared by all robots",)
     given = plugin("ArduPilotPlugin", "<fdm_port_in>0</fdm_port_in>")
     assert why(robot(given)) == ()
+
+
+def own(class_: str, **params: str) -> str:
+    inside = "".join(f'<param name="{name}">{it}</param>' for name, it in params.items())
+    return hardware(class_).replace("</hardware>", f"{inside}</hardware>")
+
+
+@pytest.mark.parametrize(
+    ("inside", "shared"),
+    [
+        # default_serial_factory.cpp:41 of robotiq_driver: /dev/ttyUSB0 where nothing is given.
+        (own("robotiq_driver/RobotiqGripperHardwareInterface"), 1),
+        (own("robotiq_driver/RobotiqGripperHardwareInterface", COM_port="none"), 0),
+        (own("dynamixel_hardware/DynamixelHardware", usb_port="/dev/ttyUSB0"), 1),
+        (own("dynamixel_hardware/DynamixelHardware", usb_port="/dev/a", use_dummy="true"), 0),
+        # ec_master.hpp:34: the master 0.
+        (own("ethercat_driver/EthercatDriver"), 1),
+        (own("openarm_hardware/OpenArm_v10HW"), 1),
+        # hardware_interface.cpp:700 to 714 of ur_robot_driver.
+        (own("ur_robot_driver/URPositionHardwareInterface", reverse_port="50001"), 1),
+        (own("ur_robot_driver/URPositionHardwareInterface", reverse_port="0"), 0),
+        (own("mock_components/GenericSystem", serial_port="/dev/ttyUSB0"), 0),
+    ],
+)
+def test_what_a_driver_opens_on_its_computer_is_one_robots(inside: str, shared: int) -> None:
+    made = rewrite(robot(inside), "robot1", affix="prefix")
+    found = [it for it in made.findings if it.code == "MB412"]
+    assert len(found) == shared
+    assert all("a computer of its own" in it.hint for it in found)
+    assert any("resource" in it for it in made.not_proved) == bool(shared)
+
+
+@pytest.mark.parametrize(
+    ("inside", "numbers"),
+    [
+        # system_interface.cpp:394 of lbr_ros2_control: 30200 to 30209.
+        (own("lbr_ros2_control::SystemInterface", port_id="30208"), ["30208", "30209", "30208"]),
+        (
+            plugin("ArduPilotPlugin", "<fdm_port_in>65530</fdm_port_in>"),
+            ["65530", "65530", "65530"],
+        ),
+        (
+            plugin("ArduPilotPlugin", "<fdm_port_in>65510</fdm_port_in>"),
+            ["65510", "65520", "65530"],
+        ),
+    ],
+)
+def test_numbers_end_where_the_last_one_is(inside: str, numbers: list[str]) -> None:
+    made = [*rewrite_all(robot(inside), ["a", "b", "c"])]
+    found = [etree.fromstring(one.data).xpath("string(//fdm_port_in|//param)") for one in made]
+    assert found == numbers
+    is_shared = len(set(numbers)) < len(numbers)
+    assert all(any("resource" in it for it in one.not_proved) == is_shared for one in made)
 
 
 # ---------------------------------------------------------------- gz-transport
@@ -278,10 +336,29 @@ def test_services_of_the_world_keep_their_names() -> None:
         assert 'name="/world/w/set_pose"' in made.text
 
 
-def test_a_bounding_box_camera_has_an_own_camera_info() -> None:
-    """gz-sensors BoundingBoxCameraSensor.cc:237 calls CameraSensor.cc:597 AdvertiseInfo."""
-    sensor = '<sensor name="s" type="boundingbox_camera"><topic>/boxes/a</topic><camera/></sensor>'
-    made = rewrite(robot(f'<gazebo reference="a">{sensor}</gazebo>'), "robot1", distro="jazzy")
+SENSOR = (
+    '<gazebo reference="a"><sensor name="s" type="{}"><topic>/boxes/a</topic>{}</sensor></gazebo>'
+)
+INFO = "<camera><camera_info_topic>/own</camera_info_topic></camera>"
+
+
+@pytest.mark.parametrize("inside", ["<camera/>", INFO])
+@pytest.mark.parametrize(
+    "type_", ["boundingbox_camera", "depth_camera", "thermal_camera", "wideanglecamera"]
+)
+def test_the_camera_info_of_other_cameras_is_beside_their_image(type_: str, inside: str) -> None:
+    """gz-sensors8 CameraSensor.cc:391: Load alone reads <camera_info_topic>, and these call that of
+    Sensor; :664 AdvertiseInfo replaces the last part of the image's topic."""
+    text = robot(SENSOR.format(type_, inside))
+    made = rewrite(text, "robot1", distro="jazzy")
+    assert made.not_proved == ("1 topic shared by all robots",)
+    assert any("/boxes/a/camera_info" in it.message for it in made.findings)
+    assert "camera_info_topic>" not in made.text.replace(INFO, "")
+    assert rewrite(text, "robot1", topics="prefix", distro="jazzy").not_proved == ()
+
+
+def test_a_camera_has_an_own_camera_info() -> None:
+    made = rewrite(robot(SENSOR.format("camera", "<camera/>")), "robot1", distro="jazzy")
     assert "<camera_info_topic>/boxes/camera_info/robot1</camera_info_topic>" in made.text
     # Its image is a_image, and image_transport looks beside it.
     assert made.not_proved == () and [it.code for it in made.findings] == ["MB439"]

@@ -96,11 +96,11 @@ def test_nothing_of_ros_2_is_inserted_into_what_reads_none_of_it() -> None:
     """JointStatePublisher.cc of uuv_simulator: robotNamespace, and no <ros>."""
     old = UUV.format("<robotNamespace>r</robotNamespace><updateRate>5</updateRate>")
     for layout in ("postfix", "both", "tf-per-robot"):
-        assert "<ros>" not in rewrite(old, "robot1", layout=layout, distro="humble").text
-    made = rewrite(old, "robot1", distro="humble")
+        assert "<ros>" not in rewrite(old, "robot1", layout=layout).text
+    made = rewrite(old, "robot1")
     assert "<robotNamespace>r_robot1</robotNamespace>" in made.text
     assert made.not_proved == ()
-    made = rewrite(old, "robot1", layout="both", distro="humble")
+    made = rewrite(old, "robot1", layout="both")
     assert "<robotNamespace>robot1/r</robotNamespace>" in made.text
     assert made.not_proved == ()
 

@@ -17,6 +17,7 @@ from multibot_rewrite import rewrite
 from multibot_rewrite.base import naming
 from multibot_rewrite.description.rewriters import insert, remap_rules, tree
 from multibot_rewrite.description.rewriters.tree import TreeNode, builtin_tree
+from multibot_rewrite.description.sources import job
 from multibot_rewrite.description.steps import collect, plan, verify
 
 ROVER = """\
@@ -131,15 +132,6 @@ FAULTS = (
         DRIVE % "<ros><remapping><!-- -->cmd_vel:=/cmd</remapping></ros>",
         "both",
         "topic '/cmd'",
-    ),
-    Fault(
-        "the release is chosen by tags",
-        tree,
-        "_flavour",
-        majority,
-        IMU % "<ros/><topicName>imu</topicName><bodyName>base</bodyName>",
-        "both",
-        "node '/imu'",
     ),
     Fault(
         "topics stay",
@@ -259,6 +251,25 @@ def test_the_second_reading_names_what_is_shared(
         builtin_tree.cache_clear()
     assert fault.shared in shared
     assert any("shared by all robots" in it for it in why)
+
+
+BY_TAGS = Fault(
+    "the release is chosen by tags",
+    tree,
+    "_flavour",
+    majority,
+    IMU % "<ros/><topicName>imu</topicName><bodyName>base</bodyName>",
+    "both",
+    "node '/imu'",
+)
+
+
+def test_the_second_reading_sees_a_plugin_of_the_other_ros(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What decides for the whole document does not count either."""
+    monkeypatch.setattr(job, "ros_shown", lambda *_: "")
+    test_the_second_reading_names_what_is_shared(monkeypatch, BY_TAGS)
 
 
 def test_nothing_is_inserted_at_all(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,6 +8,7 @@ from description_calls import load_vocabulary, read
 
 from multibot_rewrite import ProofError, rewrite
 from multibot_rewrite.description.rewriters import insert
+from multibot_rewrite.description.rewriters.vocabulary.grammar import SPAWNED
 
 DRIVE = '<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">{}</plugin>'
 ODOMETRY = (
@@ -26,7 +27,8 @@ SDF = """<sdf version="1.9"><model name="m"{}><link name="a"/><link name="b"/>{}
 
 
 def missed(text: str, release: str = "jazzy") -> list[str]:
-    return [it.name for it in read(text.encode(), "f", load_vocabulary((), release)).missed]
+    missed = read(text.encode(), "f", load_vocabulary((), release)).missed
+    return [it.name.replace(SPAWNED, "{model}/") for it in missed]
 
 
 @pytest.mark.parametrize(

@@ -42,9 +42,12 @@ HERE = os.path.dirname(__file__)
 
 
 @lru_cache(maxsize=16)
-def load_vocabulary(extra: tuple[str, ...], release: str, *, packages: bool = True) -> Vocabulary:
+def load_vocabulary(
+    extra: tuple[str, ...], release: str, *, packages: bool = True, ros: str = ""
+) -> Vocabulary:
     """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``, as far
-    as they hold in a ``release``; with an empty one all of it, which no document can be read with.
+    as they hold in a ``release``; with an empty one all of it, which no document can be read with. Of
+    plugins that ROS 1 and ROS 2 both have it has those of ``ros``, of both where that is empty.
 
     Raises VocabularyError, naming file and line, for a mistake: at once in what is not built in,
     else in a section that is used.
@@ -61,7 +64,7 @@ def load_vocabulary(extra: tuple[str, ...], release: str, *, packages: bool = Tr
     texts = {name: _text(name, f"{HERE}/{name}") for name in builtin}
     try:
         texts |= {name: _text(name, path) for name, path in more.items()}
-        vocabulary = Vocabulary(texts, release, bool(more))
+        vocabulary = Vocabulary(texts, release, bool(more), ros)
         vocabulary.sections_in(more)
     except VocabularyError as error:
         raise VocabularyError(f"{error}{advice(str(error)) if packages else ''}") from None

@@ -61,6 +61,10 @@ OPTIONS = ("form", "default", "when", "empty", "fill", *WIRES)
 RELEASES = "releases="
 # A topic that comes from outside: the robot's own only where something in the file sends it.
 SENT = "sent"
+# Any model of the file, among the texts of a sibling on which a row depends.
+MODEL = "{model}"
+# What stands for it in a name that is made of one: no XML can hold that character.
+SPAWNED = "\x01/"
 EMPTY = ("default", "model", "itself")
 FORMS = (
     *("whole", "list", "scoped", "words", "suffixed", "member", "transport"),
@@ -72,9 +76,10 @@ _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
 _ONE_STEP = lazy_compile(_STEP)
 _SWITCH = lazy_compile(rf"{_NAME}=[^\s=]+(?:=on)?")
-_BARE_OPENS = ("nothing", "model", "namespace", "world", "unknown")
+_BARE_OPENS = ("nothing", "model", "namespace", "transforms", "world", "unknown")
 _OPENS = lazy_compile(
-    r"(address|file)(?:\+([1-9]\d*))?:(?:([^\s?]+)\?)?((?:[^\s=\[]|\[@[^\]]*\])+)(?:=(\S+))?"
+    r"(address|device|port|file)(?:\+([1-9]\d*)(?:\.\.([1-9]\d*))?)?:"
+    r"(?:([^\s?]+)\?)?((?:[^\s=\[]|\[@[^\]]*\])+)(?:=(\S+))?"
 )
 _PATH = lazy_compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 
@@ -249,8 +254,8 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     opened = [word for word in words[1:] if key == "opens" and word not in _BARE_OPENS]
     if wrong := [word for word in opened if not _OPENS.fullmatch(word)]:
         raise VocabularyError(
-            f"{place}: opens: {wrong[0]!r} is not nothing, model, namespace, world, unknown, "
-            "address:PATH=DEFAULT, address+STEP:PATH=DEFAULT or file:PATH"
+            f"{place}: opens: {wrong[0]!r} is not {', '.join(_BARE_OPENS)}, "
+            "address:PATH=DEFAULT, address+STEP..LAST:PATH=DEFAULT, device:PATH, port:PATH or file:PATH"
         )
     tuple(wired_topics(place, {key: value}))
     settings[key] = value
@@ -316,10 +321,22 @@ def is_step(text: str) -> bool:
     return _ONE_STEP.fullmatch(text) is not None
 
 
-def split_opens(word: str) -> tuple[str, ...]:
-    """Kind, step, conditions, path and default of a word of ``opens:``; empty without a path."""
+class Opened(NamedTuple):
+    """A word of ``opens:``, all empty for one without a path: the kind of what is opened, the step to
+    the number of the next robot and the ``last`` one, conditions, the path and the default."""
+
+    kind: str = ""
+    step: str = ""
+    last: str = ""
+    when: str = ""
+    path: str = ""
+    default: str = ""
+
+
+def split_opens(word: str) -> Opened:
+    """Return the parts of a word of ``opens:``."""
     found = None if word in _BARE_OPENS else _OPENS.fullmatch(word)
-    return found.groups(default="") if found else ("", "", "", "", "")
+    return Opened(*found.groups(default="")) if found else Opened()
 
 
 @lru_cache(maxsize=PATHS)

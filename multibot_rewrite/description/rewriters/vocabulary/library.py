@@ -30,12 +30,16 @@ class Vocabulary:
     """The sections of several files, parsed on demand; build with ``load_vocabulary``.
 
     ``extended`` tells that some of them are not built in. It is of one ``release``, or has what all of
-    them have, where that is empty.
+    them have, where that is empty. Of plugins that ROS 1 and ROS 2 both have it has those of ``ros``,
+    of both where that is empty.
     """
 
-    def __init__(self, texts: Mapping[str, str], release: str, extended: bool = False) -> None:
+    def __init__(
+        self, texts: Mapping[str, str], release: str, extended: bool = False, ros: str = ""
+    ) -> None:
         self.extended = extended
         self.release = release
+        self.ros = ros
         self._raw: dict[tuple[str, str], list[Raw]] = {}
         self._found: dict[tuple[str, str], tuple[VocabularySection, ...]] = {}
         self._values: dict[tuple[str, bool], Values | None] = {}
@@ -57,6 +61,12 @@ class Vocabulary:
 
         Sections of one flavour are one; a later one without ``ros:`` adds to every flavour.
         """
+        found = self.of_every_ros(type_, name)
+        own = () if len(found) < 2 else tuple(it for it in found if it.ros in ("", self.ros))
+        return own if own and self.ros else found
+
+    def of_every_ros(self, type_: str, name: str) -> tuple[VocabularySection, ...]:
+        """The same of ROS 1 and ROS 2, whichever of them is known to load the plugins."""
         return self._find((type_, name), ())
 
     def _find(self, key: tuple[str, str], within: tuple[str, ...]) -> tuple[VocabularySection, ...]:

@@ -145,10 +145,7 @@ def _switches(ends: Iterable[Endpoint]) -> set[str]:
 
 
 def _wanted(
-    choices: Sequence[_Choice],
-    free: Collection[str],
-    nodes: Iterable[NodeFacts],
-    spec: RobotSpec,
+    choices: Sequence[_Choice], free: Collection[str], nodes: Iterable[NodeFacts], spec: RobotSpec
 ) -> str:
     """Return the type of the robot's commands: what a file sets, what its bridge or driver takes, what
     the nodes of its files have, and what all nodes have; else the plain one."""

@@ -5,6 +5,7 @@ order mark and namespaces.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from itertools import islice
 
@@ -83,6 +84,30 @@ def argument_not_read(subject: Subject) -> Iterator[Problem]:
         lacking = others.lacks(it for it in lacking if did_you_mean_one_of(it, known.names))
     if known and lacking:
         yield from unread_arguments(subject.document.root, lacking, known.names)
+
+
+@rule("MB246", "default-of-another-file", WARNING)
+def default_of_another_file(subject: Subject) -> Iterator[Problem]:
+    """Of two files of which none includes the other: a file may set what those in it have."""
+    if len(subject.sources) < 3:
+        return
+    from multibot_rewrite.description.sources.included_by import includers
+    from multibot_rewrite.description.sources.known_arguments import defaults_in
+
+    by, first = includers(subject.sources.items()), dict[str, tuple[str, str]]()
+    for file, text in subject.sources.items():
+        above = [file]
+        for it in above:  # grows
+            above += sorted(by.get(it, set()) - {*above})
+        for name, own in defaults_in(text).items():
+            other, default = first.setdefault(name, (file, own))
+            if own == default or other in above or name in subject.given or "$" in own + default:
+                continue
+            who, whose = os.path.basename(other), os.path.basename(file)
+            message = f"argument {name} of {whose} is {default!r}, as {who} has it, and not {own!r}"
+            yield Problem(
+                subject.document.root, message, None, "give them arguments of other names"
+            )
 
 
 BOM = b"\xef\xbb\xbf"

@@ -58,10 +58,7 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     "MB421",
     "robots-share-a-name",
     ERROR,
-    options={
-        "robots": ("left_b", "b"),
-        "naming": make_naming("both", separators={"link": "_"}),
-    },
+    options={"robots": ("left_b", "b"), "naming": make_naming("both", separators={"link": "_"})},
 )
 def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots rejects as MB421."""

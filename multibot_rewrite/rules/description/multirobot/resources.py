@@ -6,19 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import NOTE, URDF, WARNING, rule
-from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.readback.active import RELATIVE, hardware_parts, opened
-from multibot_rewrite.description.readback.parameters import given_at
+from multibot_rewrite.producers.addresses import of_hardware
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.description.multirobot.topics import AS_WRITTEN, process_wide_plugins
 from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
-
-DEVICE = lazy_compile(
-    r"/dev/\S+|v?can\d+|COM\d+|(?!127\.|0\.0\.0\.0|255\.)\d{1,3}\.\d{1,3}\.\d{1,3}\.\d{1,3}(:\d+)?"
-)
+from multibot_rewrite.system.records import NOWHERE
 
 
 @rule("MB411", "one-controller-file", NOTE)
@@ -35,21 +30,21 @@ def one_controller_file(subject: Subject) -> Iterator[Problem]:
 
 
 def _one_device(subject: Subject) -> Iterator[Problem]:
-    """Literal parameters that name a device or an address of another machine."""
-    params = subject.document.root.iterfind("ros2_control/hardware/param")
-    found = [it for it in params if DEVICE.fullmatch((it.text or "").strip())]
-    starts = starts_of(subject, found)
-    for element in found:
-        if is_fixed(subject, starts[element], ""):
-            text = (element.text or "").strip()
-            message = f"parameter {element.get('name', '')!r} is {text!r} for every robot"
+    """What the hardware of the description opens, of classes that are not known what parameters of such
+    a name or value hold, where it is the same for every robot."""
+    root = subject.document.root
+    params = [*root.iterfind("ros2_control/hardware/param")]
+    starts = starts_of(subject, params)
+    held = {(it.get("name", ""), (it.text or "").strip()): it for it in params}
+    for it in of_hardware(root, "", NOWHERE, subject.tree.vocabulary, of_networks=True):
+        element = held.get((it.name, it.value))
+        if element is None:
+            message = f"{it.name} is not given: it is {it.value!r} for every robot"
+            system = next(root.iter("ros2_control"), root)
+            yield Problem(system, message, "", "make it a xacro argument")
+        elif is_fixed(subject, starts[element], ""):
+            message = f"parameter {it.name!r} is {it.value!r} for every robot"
             yield Problem(element, message, "", "make it a xacro argument")
-    # Addresses and files that hardware opens where the description names none.
-    for part in hardware_parts(subject.document.root, subject.tree.vocabulary):
-        for kind, value, path in opened(part.element, part.section) if part.section else ():
-            if kind != RELATIVE and not any(given_at(part.element, path)):
-                message = f"{value!r} is the {kind} of every robot: {path} is not given"
-                yield Problem(part.element, message, "", "make it a xacro argument")
 
 
 one_device = declaration.ONE_DEVICE._replace(

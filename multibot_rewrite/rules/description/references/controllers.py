@@ -1,20 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Interfaces that controllers claim, in the file of their parameters that belongs to a description."""
+"""Files that belong to a description: the interfaces that controllers claim in that of their
+parameters, and the joints of a model of MuJoCo.
+"""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.findings.finding import URDF
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, URDF, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.rewriters.text import text_of
+from multibot_rewrite.description.readback.reading import read_tree
+from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules import declaration
@@ -69,6 +74,68 @@ interface_not_exported = declaration.NOT_EXPORTED._replace(
 interface_claimed_twice = declaration.CLAIMED_TWICE._replace(
     check=_claimed_twice, formats=(URDF,), options={}, examples="MB240-urdf"
 )
+
+
+def _of_no_node(subject: Subject) -> Iterator[Problem]:
+    """The section of the manager that a plugin makes, in the file that it is given."""
+    systems = subject.elements.tops("ros2_control")
+    files = [it for it in (_files(subject, systems[0]) if systems else ()) if _place(it[0]) == ""]
+    if not files:
+        return
+    from multibot_rewrite.companions.params.sections import meant_for, raw_sections
+    from multibot_rewrite.companions.yaml_text import read_yaml
+
+    plugins = list(subject.document.root.iter("plugin"))
+    nodes = read_tree(subject.document.root, subject.tree.vocabulary).nodes
+    managers = {plugins[it.number]: it.manager for it in nodes if it.manager}
+    for element, path, _ in files:
+        plugin = element.getparent()
+        manager = "" if plugin is None else managers.get(plugin, "")
+        with suppress(InputError):
+            sections = raw_sections(read_yaml(read_file(path), path)) if manager else ()
+            if section := meant_for(sections, manager, ()):
+                message, hint = declaration.said_of_section(section.path, [manager])
+                yield Problem(element, f"{os.path.basename(path)}: {message}", "", hint)
+
+
+section_of_no_node = declaration.OF_NO_NODE._replace(
+    check=_of_no_node, formats=(URDF,), options={}, examples="MB244-urdf"
+)
+
+
+_MUJOCO = "mujoco_ros2_control/MujocoSystemInterface"
+_BODIES = ("body", "frame", "replicate")
+
+
+@rule("MB245", "mujoco-joint-without-name", ERROR)
+def mujoco_joint_without_name(subject: Subject) -> Iterator[Problem]:
+    """Those of the model that the hardware names, and of what it includes; joints of a <default> and
+    the like are no joints."""
+    for system in subject.elements.tops("ros2_control"):
+        param = system.find("hardware/param[@name='mujoco_model']")
+        if param is None or text_at(system, "hardware/plugin") != _MUJOCO:
+            continue
+        path = _found(subject, text_of(param))
+        bare = [it for it in _joints_of(path, {path}) if not it[0].get("name")]
+        moved = [it for it in bare if it[0].tag == "joint" and it[0].get("type") != "free"]
+        what = f"{len(moved)} joints have" if moved else "its free joint has"
+        for joint, file in (moved or bare)[:1]:
+            message = f"{os.path.basename(file)}:{joint.sourceline}: {what} no name"
+            hint = "name each joint" if moved else "name it, which versions before 0.0.3 ask for"
+            yield Problem(param, message, None, hint, level="" if moved else NOTE)
+
+
+def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
+    """The joints of the bodies of a model, each with its file."""
+    with suppress(InputError):
+        root = read_xml(read_file(path), path)
+        yield from ((it, path) for above in _BODIES for it in root.iterfind(f".//{above}/joint"))
+        yield from ((it, path) for it in root.iter("freejoint"))
+        for it in root.iter("include"):
+            file = os.path.join(os.path.dirname(path), it.get("file", ""))
+            if file not in seen:
+                seen.add(file)
+                yield from _joints_of(file, seen)
 
 
 @memoized
