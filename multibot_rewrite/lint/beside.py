@@ -34,11 +34,11 @@ _DECLARED = frozenset(KINDS)
 
 
 def robots_of(file: str, settings: Settings) -> Robots:
-    """The descriptions of the file's package, else of the description packages beside it, else those
-    that are linted with it."""
+    """The description that was named for it, else those of the file's package, else of the description
+    packages beside it, else those that are linted with it."""
     own = package_of(file)
     folder = own[1] if own else os.path.dirname(os.path.abspath(file))
-    paths = _descriptions(folder)
+    paths = [settings.urdf] if settings.urdf else _descriptions(folder)
     if not paths and own:
         above = os.path.dirname(folder)
         others = sorted(it for it in entries(above) if it.endswith("_description"))
@@ -77,6 +77,7 @@ def named_in_package(kind: str, data: bytes, path: str, settings: Settings) -> N
         memo={Robots: robots},
         is_certain=False,
         is_whole=robots is not None and robots.is_whole,
+        is_named=bool(settings.urdf),
         robots=frozenset(settings.robots),
         roots=settings.roots,
     )

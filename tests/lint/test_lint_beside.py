@@ -693,3 +693,23 @@ def test_a_file_that_its_reader_refuses_is_told(tmp_path: Path) -> None:
     assert found(text, tmp_path, "old.rviz") == ["MB101:3"]
     (it,) = lint_file(str(tmp_path / "old.rviz"), Settings())
     assert it.file == str(tmp_path / "old.rviz")
+
+
+@pytest.mark.parametrize(("named", "told"), [(True, ["MB854", "MB854"]), (False, [])])
+def test_a_file_is_for_the_robot_that_is_named(
+    named: bool, told: list[str], tmp_path: Path
+) -> None:
+    """Without a name a file with none of the joints is taken for that of another robot."""
+    robot = tmp_path / "arm.urdf"
+    joint = '<joint name="elbow" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    robot.write_text(f'<robot name="arm"><link name="a"/><link name="b"/>{joint}</robot>')
+    folder = tmp_path / "config"
+    folder.mkdir()
+    file = folder / "controllers.yaml"
+    file.write_text(
+        "controller_manager:\n  ros__parameters:\n"
+        "    jtc: {type: joint_trajectory_controller/JointTrajectoryController}\n"
+        "jtc:\n  ros__parameters: {joints: [shoulder_joint, wrist_joint]}\n"
+    )
+    settings = Settings(select=("MB854",), urdf=str(robot) if named else "")
+    assert [it.code for it in lint_file(str(file), settings)] == told
