@@ -41,66 +41,26 @@ if TYPE_CHECKING:
     from multibot_rewrite.system.records import System
 
 __all__ = [
-    "Adopted",
-    "Change",
-    "Finding",
-    "InputError",
-    "Joined",
-    "LoadedFleet",
-    "LoadedRobot",
-    "MultibotError",
-    "Part",
-    "ProofError",
-    "Renaming",
-    "Rewrite",
-    "RewriteRefused",
-    "RewrittenFile",
-    "System",
-    "Unusable",
-    "UsageError",
-    "VocabularyError",
-    "adopt",
-    "compare",
-    "explain",
-    "join",
-    "judge",
-    "load_fleet",
-    "rename_symbol",
-    "rewrite",
-    "rewrite_all",
-    "rewrite_file",
-    "rewrite_files",
-    "split",
-    "strip",
-    "system_of_bag",
-    "system_of_description",
-    "system_of_files",
-    "system_of_fleet",
-    "system_of_folder",
-    "system_of_graph",
-    "system_of_launch",
-]
+    "Adopted", "Change", "Finding", "InputError", "Joined", "LoadedFleet", "LoadedRobot",
+    "MultibotError", "Part", "ProofError", "Renaming", "Rewrite", "RewriteRefused", "RewrittenFile",
+    "System", "Unusable", "UsageError", "VocabularyError", "adopt", "compare", "explain", "join",
+    "judge", "load_fleet", "rename_symbol", "rewrite", "rewrite_all", "rewrite_file",
+    "rewrite_files", "split", "strip", "system_of_bag", "system_of_description", "system_of_files",
+    "system_of_fleet", "system_of_folder", "system_of_graph", "system_of_launch",
+]  # fmt: skip
+_SOURCES = ("bag", "description", "files", "fleet", "folder", "graph", "launch")
 _HOMES = {
-    **dict.fromkeys(
-        ("Rewrite", "explain", "rewrite", "rewrite_all", "strip"), "description.library"
-    ),
-    **dict.fromkeys(("Finding", "RewriteRefused"), "base.findings.finding"),
-    **dict.fromkeys(("LoadedFleet", "load_fleet"), "fleet.scripts"),
-    **dict.fromkeys(("RewrittenFile", "rewrite_file", "rewrite_files"), "fleet.one_file"),
-    **dict.fromkeys(("Adopted", "adopt"), "refactor.adopt"),
-    **dict.fromkeys(("Joined", "join", "split"), "companions.join"),
-    "Part": "description.joining.part",
-    **dict.fromkeys(("Renaming", "rename_symbol"), "refactor.rename"),
-    "LoadedRobot": "fleet.robots.loaded_robot",
-    "System": "system.records",
-    **dict.fromkeys(("compare", "judge"), "fleet.file.system_sources"),
-    **dict.fromkeys(
-        (
-            f"system_of_{it}"
-            for it in ("bag", "description", "files", "fleet", "folder", "graph", "launch")
-        ),
-        "fleet.file.system_sources",
-    ),
+    "base.findings.finding": ("Finding", "RewriteRefused"),
+    "companions.join": ("Joined", "join", "split"),
+    "description.joining.part": ("Part",),
+    "description.library": ("Rewrite", "explain", "rewrite", "rewrite_all", "strip"),
+    "fleet.file.system_sources": ("compare", "judge", *(f"system_of_{it}" for it in _SOURCES)),
+    "fleet.one_file": ("RewrittenFile", "rewrite_file", "rewrite_files"),
+    "fleet.robots.loaded_robot": ("LoadedRobot",),
+    "fleet.scripts": ("LoadedFleet", "load_fleet"),
+    "refactor.adopt": ("Adopted", "adopt"),
+    "refactor.rename": ("Renaming", "rename_symbol"),
+    "system.records": ("System",),
 }
 
 
@@ -110,5 +70,5 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module
 
-    module = import_module(f"{__name__}.{_HOMES.get(name, 'base.model')}")
-    return getattr(module, name)
+    home = next((it for it, names in _HOMES.items() if name in names), "base.model")
+    return getattr(import_module(f"{__name__}.{home}"), name)

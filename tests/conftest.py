@@ -52,7 +52,7 @@ settings.load_profile("repeatable")
 yaml.safe_load = partial(yaml.load, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 # Thousands of tests and the syntax trees of the package live to the end: without this every second
 # of four goes into looking through them for what could be thrown away.
-gc.set_threshold(100_000, 50, 100)
+gc.set_threshold(1_000_000, 50, 100)
 # Hundreds of processes import the package: each would compile it anew where no compiled files may be
 # beside the sources. They are kept with those of pytest's cache instead.
 COMPILED = Path(__file__).parents[1] / ".pytest_cache" / "compiled"

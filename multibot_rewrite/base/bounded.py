@@ -13,7 +13,7 @@ import errno
 import os
 import re
 import stat
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import cache, partial
 from itertools import accumulate
 from math import radians
@@ -262,17 +262,11 @@ def _check_bounds(text: str) -> None:
         return
     import yaml
 
-    _check_events(yaml.parse(text, Loader=_loader()))
-
-
-def _check_events(events: Iterable[yaml.Event]) -> None:
-    import yaml
-
     above: list[tuple[str | None, int]] = []
     # Nodes so far, and those that each anchor stands for.
     count, repeated = 0, 0
     anchored: dict[str | None, int] = {}
-    for event in events:
+    for event in yaml.parse(text, Loader=_loader()):
         if isinstance(event, yaml.CollectionStartEvent):
             above.append((event.anchor, count))
             if len(above) > MAX_DEPTH:

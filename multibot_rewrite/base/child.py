@@ -47,7 +47,10 @@ def isolated(module: str) -> list[str]:
     """The same for ``main`` of a module in a process that no variable of Python reaches."""
     paths = json.dumps(search_path())
     quiet = ["-B"] if sys.dont_write_bytecode else []
-    return [sys.executable, "-I", *quiet, "-X", "utf8", "-c", _ISOLATED.format(module), paths]
+    prefix = sys.pycache_prefix
+    compiled = ["-X", f"pycache_prefix={os.path.abspath(prefix)}"] if prefix else []
+    command = [sys.executable, "-I", *quiet, *compiled, "-X", "utf8"]
+    return [*command, "-c", _ISOLATED.format(module), paths]
 
 
 def search_path() -> list[str]:

@@ -145,6 +145,22 @@ def _any_of(patterns: tuple[str, ...]) -> re.Pattern[str]:
     return re.compile("|".join(map(translate, patterns)))
 
 
+def types_of(word: str) -> tuple[str, ...]:
+    """The types of messages, or how they begin, of which a convention says this."""
+    return tuple(type_ for (type_, *said), _ in _ROWS["types"] if word in said)
+
+
+# Data of one kind: a reader of one type may have meant the other.
+KINDS_OF_DATA = {
+    type_: it[1:] for (type_, *said), _ in _ROWS["types"] for it in said if it[0] == "="
+}
+FRAMES_OF_SENSORS = {type_: tuple(words) for (type_, *words), _ in _ROWS["frames of sensors"]}
+# Nodes that compare the time of messages with their own clock.
+TIMED = tuple(word for words, _ in _ROWS["timed"] for word in words)
+# Topics of a robot's body: two of them are enough, or one of tf.
+OF_A_ROBOT = tuple(word for words, _ in _ROWS["of a robot"] for word in words)
+
+
 # Topics and services that nodes read and no robot need send, by the last word, and who does.
 FROM_OUTSIDE = {who: tuple(words) for words, who in _ROWS["from outside"]}
 _OUTSIDE = frozenset(word for words in FROM_OUTSIDE.values() for word in words)
@@ -177,13 +193,7 @@ def chooses(node: str) -> bool:
 # ($(var namespace)), turtlebot3_description (${namespace}). The second ones are prefixes of frames.
 PREFIX_WORDS = ("tf_prefix", "frame_prefix", "prefix")
 ROBOT_WORDS = (
-    "robot_namespace",
-    "robot_name",
-    "robot_ns",
-    "namespace",
-    "ns",
-    "robot",
-    *PREFIX_WORDS,
-)
+    "robot_namespace", "robot_name", "robot_ns", "namespace", "ns", "robot", *PREFIX_WORDS,
+)  # fmt: skip
 # What a launch file or a script fills in, in a name.
 PLACEHOLDER = lazy_compile(r"[<{$%]")

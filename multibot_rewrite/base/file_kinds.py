@@ -126,7 +126,8 @@ _JSON = (
     (BUILT, lazy_compile(rb'"format": "multibot build')),
     (SESSION, lazy_compile(rb"\b(?:connect|listen)[\"']?\s*:\s*\{")),
     (PLAN, lazy_compile(rb'\A(?=.*?"layout").*?' + _ENDS, re.DOTALL)),
-    (SNAPSHOT, lazy_compile(_ENDS)),
+    # Of a graph without nodes it has the environment alone.
+    (SNAPSHOT, lazy_compile(_ENDS + rb'|"settled"\s*:')),
     (FLEET, lazy_compile(rb'"robots"')),
 )
 # Of Jinja and its kin; ${{ is xacro's, and in a comment it is nothing.

@@ -12,7 +12,7 @@ from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.file_kinds import SNAPSHOT, recognised
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.base.findings.selection import fails
-from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, print_lines, say
@@ -132,7 +132,11 @@ def plan_of(options: argparse.Namespace) -> System:
         from multibot_rewrite.live.seen_plan import seen_plan
         from multibot_rewrite.producers.snapshot_file import read_snapshot
 
-        return seen_plan(diagnose(read_snapshot(path)))
+        seen = read_snapshot(path)
+        if not seen.nodes:
+            hint = "take one while the robots run, and check the graph against that"
+            raise InputError(f"{path}: no node ran when this snapshot was taken; {hint}")
+        return seen_plan(diagnose(seen))
     if not is_fleet(data):
         return _of_release(options, read_plan(data, path))
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it

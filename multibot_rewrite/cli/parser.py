@@ -189,6 +189,8 @@ def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
         name = next((it for it in reversed(before) if it.startswith("-")), "")
         lists = (it for it in parser._actions if isinstance(it, argparse._ExtendAction))
         hint = "; a list is written A,B" if any(name in it.option_strings for it in lists) else ""
+        if word.isdigit() and "-n" in parser.known():
+            hint = f"; the number of robots is -n {word}"
         what = _kind_of(unknown[0], parser.prog) or f"{' '.join(unknown)}{hint}"
         parser.error(f"unexpected {what}")
     options.program = parser.prog.partition(" ")[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
@@ -13,6 +13,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, Rule
 from multibot_rewrite.base.findings.formats import NO_COVERAGE, Report, rendered
 from multibot_rewrite.base.findings.selection import Selection, fails, grouped, selected
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
@@ -105,9 +106,7 @@ def report_beside(options: argparse.Namespace, findings: Sequence[Finding], abou
 def _few_of_a_kind(findings: Sequence[Finding]) -> Iterator[Finding]:
     """Yield the findings; of many of one kind in one file the first warning or the first notes, with
     the lines of the rest."""
-    lines: dict[tuple[str, ...], list[int]] = defaultdict(list)
-    for it in findings:
-        lines[_kind_of(it)].append(it.line)
+    lines = lists_by_key((_kind_of(it), it.line) for it in findings)
     met: Counter[tuple[str, ...]] = Counter()
     for it in findings:
         kind = _kind_of(it)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from itertools import chain
 from typing import Any
 
@@ -73,24 +73,29 @@ def _is_beside(source: Source) -> bool:
 
 
 def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
+    from multibot_rewrite.cli.undo_options import (  # a rewrite needs none of it
+        more_to_undo,
+        with_missing_options,
+    )
+
     (robot,) = names
     # Read once: it may be a pipe, and --diff shows it again.
     given = filled(xacro_args(options), robot)
     read = read_whole(source, {} if options.xacro else given, options.trust)
     beside = read_whole(options.xacro, given, options.trust).read if options.xacro else ()
-    try:
-        stripped = _strip(options, read.data, robot)
-    except RewriteRefused as error:
-        from multibot_rewrite.cli.undo_options import (
-            with_missing_options,  # a mistake alone needs it
-        )
 
-        raise with_missing_options(
-            error, options, lambda other: _strip(other, read.data, robot)
-        ) from None
+    def undo(other: argparse.Namespace) -> bytes:
+        return _strip(other, read.data, robot)
+
+    try:
+        stripped = undo(options)
+    except RewriteRefused as error:
+        raise with_missing_options(error, options, undo, robot) from None
     check_unread(options, [robot], (*read.read, *beside))
     deliver(options, [(robot, read.data, stripped)], 1)
     tell(options, f"{robot} taken out, proved by rewriting again")
+    if words := more_to_undo(stripped, options, undo, robot):
+        tell(options, f"warning: {robot} is in all links still; was the file made with {words}?")
     return DONE
 
 
@@ -118,7 +123,15 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     if options.form == CHANGES:
         own = {it.robot: it for it in others}
         every = [own.get(robot, first._replace(robot=robot)) for robot in names]
-        output.deliver(options, changes_json(every))
+        # Every change for every robot, as ``--form changes`` writes it.
+        import json
+
+        table = {
+            "file": every[0].prepared.job.file,
+            "distro": every[0].distro,
+            "robots": {r.robot: [change._asdict() for change in r.changes] for r in every},
+        }
+        output.deliver(options, json.dumps(table, indent=1, ensure_ascii=False).encode() + b"\n")
         return DONE
     results = ((it.robot, it.prepared.job.data, it.data) for it in chain([first], others, rewrites))
     deliver(options, results, len(names))
@@ -154,18 +167,6 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
     if not options.xacro:
         given["xacro_args"] = None
     return strip(source, robot, xacro=options.xacro, file=input_name(options), **given)
-
-
-def changes_json(rewrites: Sequence[Rewrite]) -> bytes:
-    """Every change for every robot, as ``--form changes`` writes it."""
-    import json
-
-    table = {
-        "file": rewrites[0].prepared.job.file,
-        "distro": rewrites[0].distro,
-        "robots": {r.robot: [change._asdict() for change in r.changes] for r in rewrites},
-    }
-    return json.dumps(table, indent=1, ensure_ascii=False).encode() + b"\n"
 
 
 def summary(

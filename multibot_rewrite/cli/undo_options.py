@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Callable, Iterator
 from itertools import product
+from math import inf
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import RewriteRefused
@@ -21,21 +23,46 @@ _TRIED: dict[str, tuple[Any, ...]] = {
 }
 
 
+Undo = Callable[[argparse.Namespace], bytes]
+
+
 def with_missing_options(
-    error: RewriteRefused, options: argparse.Namespace, undo: Callable[[argparse.Namespace], object]
+    error: RewriteRefused, options: argparse.Namespace, undo: Undo, robot: str
 ) -> RewriteRefused:
     """Return the error with the options that are missing as its hint, if some make ``undo`` succeed.
 
     What ``undo`` gives is proved: rewritten with these options it is the file again.
     """
+    words = _fullest(options, undo, robot)[1]
+    hint = f"the file was made with {words}: give that, too"
+    return (
+        RewriteRefused(tuple(it._replace(hint=hint) for it in error.findings)) if words else error
+    )
+
+
+def more_to_undo(stripped: bytes, options: argparse.Namespace, undo: Undo, robot: str) -> str:
+    """Return the options with which more of the robot's name is taken out of its links; empty where
+    none of them has it, or no options do."""
+    tags = re.findall(rb"<link\b[^<>]*>", stripped)
+    if not tags or any(robot.encode() not in it for it in tags):
+        return ""
+    other = argparse.Namespace(**{**vars(options), "affix": None, "separator": [], "layout": None})
+    left, words = _fullest(other, undo, robot)
+    return words if left < stripped.count(robot.encode()) else ""
+
+
+def _fullest(options: argparse.Namespace, undo: Undo, robot: str) -> tuple[float, str]:
+    """Return how often the robot's name is left by the options that take out most of it, and these; of
+    such as do the same, the fewest."""
+    best: tuple[float, str] = inf, ""
     for more in _missing(options):
         try:
-            undo(argparse.Namespace(**{**vars(options), **more}))
+            made = undo(argparse.Namespace(**{**vars(options), **more}))
         except MultibotError:
             continue
-        hint = f"the file was made with {_written(more)}: give that, too"
-        return RewriteRefused(tuple(it._replace(hint=hint) for it in error.findings))
-    return error
+        left = made.count(robot.encode())
+        best = best if best[0] <= left else (left, _written(more))
+    return best
 
 
 def _missing(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -43,8 +70,8 @@ def _missing(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
     given = vars(options)
     open_ = {name: values for name, values in _TRIED.items() if not given[name]}
     every = (dict(zip(open_, values, strict=True)) for values in product(*open_.values()))
-    told = [{name: value for name, value in it.items() if value} for it in every]
-    yield from sorted(filter(None, told), key=len)
+    named = [{name: value for name, value in it.items() if value} for it in every]
+    yield from sorted(filter(None, named), key=len)
 
 
 def _written(more: dict[str, Any]) -> str:

@@ -56,7 +56,7 @@ def _report_on_domains(options: argparse.Namespace, views: Mapping[int, System])
     each = {it: diagnose(live.with_states(live.at(options, it), views[it])) for it in sorted(views)}
     for domain, one in each.items():
         note(options, f"domain {domain}: {next(survey(one))}")
-    empty = [f"domain {at}: {it}" for at, one in each.items() for it in _nothing_seen(one.graph)]
+    empty = [f"domain {at}: {it}" for at, one in each.items() for it in _nothing_seen(one)]
     return _report(options, diagnose_domains(each), empty, each)
 
 
@@ -92,7 +92,7 @@ def report_on(options: argparse.Namespace, seen: Diagnosis) -> int:
     """Say what is seen, report the findings, write what is asked for; the exit code."""
     for line in survey(seen):
         note(options, line)
-    return _report(options, seen, [*_nothing_seen(seen.graph)], {0: seen})
+    return _report(options, seen, [*_nothing_seen(seen)], {0: seen})
 
 
 def _report(
@@ -122,9 +122,10 @@ def _about(options: argparse.Namespace, seen: Diagnosis) -> About:
     return About(options.snapshot, by_themselves(seen.whose.robots), coverage=seen.coverage)
 
 
-def _nothing_seen(graph: System) -> Iterator[str]:
+def _nothing_seen(seen: Diagnosis) -> Iterator[str]:
     """A graph in which nothing runs is not a healthy one; a recording never has nodes."""
-    if not is_recorded(graph) and all(is_tool(node.name) for node in graph.nodes):
+    only_tools = all(is_tool(node.name) for node in seen.graph.nodes)
+    if only_tools and not seen.findings and not is_recorded(seen.graph):
         yield "no node of a robot is in this graph, so there is nothing to judge"
 
 

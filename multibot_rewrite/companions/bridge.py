@@ -113,7 +113,14 @@ def _entries(
     document: YamlText, context: Context, known: Mapping[str, str], above: str
 ) -> list[BridgeEntry]:
     """The entries that the bridge loads."""
-    _refuse(document)
+    root = document.root
+    if root is None:
+        raise InputError(f"{document.file}: the bridge file is empty; write a list of topics")
+    if not isinstance(root, yaml.SequenceNode):
+        raise refused(document, root, "not a list of topics; start each entry with a dash")
+    if root.value and not is_block(root):
+        raise refused(document, root, "the list is in brackets; start each entry with a dash")
+    refuse_anchors(document)
     model = model_of(document)
     assert document.root is not None
     found = zip(document.root.value, blocks(document, document.root), strict=True)
@@ -150,17 +157,6 @@ def _sites(entry: BridgeEntry) -> Iterator[Site]:
             yield site_at(row[gz][1], kind, name, gz)
     if text_in(row, FRAME):
         yield site_at(row[FRAME][1], "frame", text_in(row, FRAME), FRAME)
-
-
-def _refuse(document: YamlText) -> None:
-    root = document.root
-    if root is None:
-        raise InputError(f"{document.file}: the bridge file is empty; write a list of topics")
-    if not isinstance(root, yaml.SequenceNode):
-        raise refused(document, root, "not a list of topics; start each entry with a dash")
-    if root.value and not is_block(root):
-        raise refused(document, root, "the list is in brackets; start each entry with a dash")
-    refuse_anchors(document)
 
 
 def _entry(
@@ -201,7 +197,13 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
     if PLACEHOLDER.search(rest):
         return name
     if made := _made_parts(context, name):
-        return _of_words(context, name, made)
+        # The topic with its names as the rewritten description has them.
+        for it in reversed(made):
+            (kind,) = it.matched
+            names = context.topics if (kind,) == STEM else context.names
+            spelled_part = spelled(names.naming, names.robot, kind, it.text)
+            name = name[: it.at] + spelled_part + name[it.at + len(it.text) :]
+        return name
 
     def part(found: re.Match[str]) -> str:
         kind, name = found.groups()
@@ -227,16 +229,6 @@ def _made_parts(context: Context, name: str) -> list[NamePart]:
     naming, is_given = context.names.naming, name.lstrip("/") in context.names.given
     is_model = is_given and naming.layout.renames_models
     return parts if parts and (parts[0].kinds == STEM or is_model) else []
-
-
-def _of_words(context: Context, name: str, parts: Sequence[NamePart]) -> str:
-    """The topic with its names as the rewritten description has them."""
-    for it in reversed(parts):
-        (kind,) = it.matched
-        names = context.topics if (kind,) == STEM else context.names
-        spelled_part = spelled(names.naming, names.robot, kind, it.text)
-        name = name[: it.at] + spelled_part + name[it.at + len(it.text) :]
-    return name
 
 
 def _splices(document: YamlText, entry: BridgeEntry) -> Iterator[Splice]:

@@ -20,13 +20,10 @@ from multibot_rewrite.companions.sites import AS_IS, Site, Slot
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
 # Cartographer's own files, which set no frames (cartographer/configuration_files).
-OWN_FILES = frozenset(
-    f"{it}.lua"
-    for it in (
-        *("map_builder", "map_builder_server", "pose_graph", "trajectory_builder"),
-        *("trajectory_builder_2d", "trajectory_builder_3d"),
-    )
-)
+OWN_FILES = frozenset((
+    "map_builder.lua", "map_builder_server.lua", "pose_graph.lua", "trajectory_builder.lua",
+    "trajectory_builder_2d.lua", "trajectory_builder_3d.lua",
+))  # fmt: skip
 # An opening bracket or quote that the patterns before it did not close is an error.
 _TOKEN = lazy_compile(
     r"""(?P<space>\s+)

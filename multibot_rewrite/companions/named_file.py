@@ -69,8 +69,7 @@ class NamedFile(NamedTuple):
     ``names`` are those of known kinds, ``others`` the texts of unknown use, ``twice`` the keys that
     are repeated in one map, ``included`` the files that it includes and ``computed`` the names that are
     only made when it runs. ``context`` has what is declared: by the robot that the file is for where
-    that ``is_certain``, else by any of a package, ``is_whole`` if all of these could be read,
-    ``is_named`` if somebody named the description for it.
+    that ``is_certain``, else by any of a package, ``is_whole`` if all of these could be read.
     ``sent`` are frames that nodes send, ``robots`` the words that stand for robots. ``is_for_one`` is
     true for a file that only one of them gets. ``pages`` are the sections of a parameter file,
     ``known`` the nodes that it may be for, ``shown`` the displays of RViz. ``roots`` are folders with
@@ -91,7 +90,6 @@ class NamedFile(NamedTuple):
     shown: tuple[RvizItem, ...] = ()
     is_certain: bool = True
     is_whole: bool = True
-    is_named: bool = False
     is_for_one: bool = False
     sent: frozenset[str] = frozenset()
     robots: frozenset[str] = frozenset()

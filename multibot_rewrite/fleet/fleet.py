@@ -221,7 +221,7 @@ def assemble(
         edges,
         facts,
         {it.robot: it.tag for it in members if it.tag != it.robot},
-        _read(members),
+        tuple(dict.fromkeys(path for it in members for path in it.read)),
         described={it.robot: it.described for it in members if it.described is not it.inventory},
     )
 
@@ -232,10 +232,6 @@ def _plugins(member: Member) -> list[Run]:
     lines = (line_of(source, "plugin", it.number) for it in member.reading.nodes)
     each = zip(runs, lines, strict=True)
     return [run._replace(place=Place(source.file, line)) for run, line in each]
-
-
-def _read(members: Sequence[Member]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(path for it in members for path in it.read))
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:

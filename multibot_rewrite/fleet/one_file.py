@@ -147,7 +147,16 @@ def _rewritten(
         jobs = read_jobs(robots, urdf, naming, None, *given)
     contexts = {it: _context(jobs.get(it), naming, release) for it in robots}
     if urdf is None:
-        _check_free(kind, read.data, name, contexts[robots[0]])
+        # Without a description only files whose names do not rest on one can be rewritten.
+        context = contexts[robots[0]]
+        spelled = (_DECLARED - _IN_GRAPH).intersection(context.names.naming.separators)
+        named = read_named(kind, read.data, name, context)
+        shared = context.names.naming.shared_frames
+        rests = (it for it in named.names if not spelled.isdisjoint(KINDS.get(it.kind, ())))
+        found = next((it for it in rests if it.text.strip("/") not in shared), None)
+        if found:
+            what = f"{name}:{found.line} names the {found.kind} {found.text!r}"
+            raise UsageError(f"{what}; give the robot's description with --urdf")
     made = [
         _for_robot(kind, read.data, name, it, robots, contexts[it], jobs.get(it)) for it in robots
     ]
@@ -161,18 +170,6 @@ def _context(job: Job | None, naming: Naming, release: str) -> Context:
     declared, words = described.declared, words_of(described.claims)
     names = companion_names(declared, job.naming, "", own, words, described.topics_in_full)
     return make_context(names.declared, job.naming, (), release, names.own, words)
-
-
-def _check_free(kind: str, data: bytes, file: str, context: Context) -> None:
-    """Without a description only files whose names do not rest on one can be rewritten."""
-    spelled = (_DECLARED - _IN_GRAPH).intersection(context.names.naming.separators)
-    named = read_named(kind, data, file, context)
-    shared = context.names.naming.shared_frames
-    rests = (it for it in named.names if not spelled.isdisjoint(KINDS.get(it.kind, ())))
-    found = next((it for it in rests if it.text.strip("/") not in shared), None)
-    if found:
-        what = f"{file}:{found.line} names the {found.kind} {found.text!r}"
-        raise UsageError(f"{what}; give the robot's description with --urdf")
 
 
 def _for_robot(

@@ -7,10 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.rosnames import (
-    check_name_in_code,
-    check_node_name,
-)
+from multibot_rewrite.base.rosnames import check_name_in_code, check_node_name
 from multibot_rewrite.knowledge.conditions import CHOSEN, OPEN_KIND, words_in
 from multibot_rewrite.knowledge.parameter_entries import has_default
 from multibot_rewrite.knowledge.records import (
@@ -47,9 +44,9 @@ from multibot_rewrite.system.records import ACTION, PUBLISHES, ROLES, SERVICE, S
 # A node with parameters and none of these is known by them alone: nobody says what it publishes.
 GRAPH_KEYS = (*ROLES, "with", "host", "plugin", "claims", "frames", "sends", "ids")
 GRAPH_WORDS = (
-    *("shared", "note", "when", "fixed", "apart", "programs", "component", "prefix_switch"),
+    "shared", "note", "when", "fixed", "apart", "programs", "component", "prefix_switch",
     "unmanaged",
-)
+)  # fmt: skip
 SENT_KEYS = ("child", "if")
 _LIFE_CYCLE = "lifecycle"
 CLAIM_KINDS = ("command", "state")

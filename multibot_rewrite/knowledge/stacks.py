@@ -150,19 +150,15 @@ def _has_stack(library: NodeLibrary, name: str, release: str) -> bool:
 def _nodes(nodes: Iterable[NodeFacts], release: str) -> Iterator[NodeFacts]:
     for node in nodes:
         if has_release(node.releases, release):
-            yield _node(node, release)
-
-
-def _node(node: NodeFacts, release: str) -> NodeFacts:
-    frames = tuple(it for it in node.frames if has_release(it.releases, release))
-    known = {it.parameter for it in frames}
-    return node._replace(
-        endpoints=_endpoints(node.endpoints, node.package, release),
-        when=_condition(node.when, node.releases, node.package, release),
-        frames=frames,
-        sends=tuple(it for it in node.sends if known.issuperset(it[:2])),
-        claims=tuple(it for it in node.claims if has_release(it.releases, release)),
-    )
+            frames = tuple(it for it in node.frames if has_release(it.releases, release))
+            known = {it.parameter for it in frames}
+            yield node._replace(
+                endpoints=_endpoints(node.endpoints, node.package, release),
+                when=_condition(node.when, node.releases, node.package, release),
+                frames=frames,
+                sends=tuple(it for it in node.sends if known.issuperset(it[:2])),
+                claims=tuple(it for it in node.claims if has_release(it.releases, release)),
+            )
 
 
 def _endpoints(endpoints: Iterable[Endpoint], package: str, release: str) -> tuple[Endpoint, ...]:

@@ -212,9 +212,9 @@ def _with_program(
     if word in options:
         return dict(options)
     program = robot.program(name)
-    if program is None or not getattr(program, word):
+    if program is None or not (runs := getattr(program, word)):
         raise UsageError(f"no stack says what runs {name}; write package= and {word}=")
-    made = {"package": program.package, word: getattr(program, word), **options}
+    made = {"package": program.package, word: runs, **options}
     arguments = [] if component else [*program.words, *_option_list(options, "arguments")]
     return {**made, "arguments": arguments} if arguments else made
 
@@ -275,19 +275,13 @@ def own_file(
 def _group(context: Context, fleet: LoadedFleet, robot: LoadedRobot, make: Make) -> Action:
     """What a robot runs; launch_ros gives the clock to nodes that are not ours."""
     actions, before = of_launch("actions"), here(context)
+
+    def entering(group: Here) -> Action:
+        return actions.OpaqueFunction(function=lambda context: entered(context, group))
+
     clock = sim_time(context, robot, None)
     sets = [] if clock is None else [of_launch_ros("actions").SetParameter(SIM_TIME, clock)]
     made = make(robot)
-    several = made if isinstance(made, Iterable) else [made]
-    return actions.GroupAction(
-        [
-            _entering((fleet, robot.name)),
-            *sets,
-            *(it for it in several if it is not None),
-            _entering(before),
-        ]
-    )
-
-
-def _entering(group: Here) -> Action:
-    return of_launch("actions").OpaqueFunction(function=lambda context: entered(context, group))
+    several = [it for it in (made if isinstance(made, Iterable) else [made]) if it is not None]
+    first, last = entering((fleet, robot.name)), entering(before)
+    return actions.GroupAction([first, *sets, *several, last])

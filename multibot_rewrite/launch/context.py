@@ -92,10 +92,8 @@ def _handled(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
 
 def _is_of_timers(handler: Any) -> bool:
     """Is it the one handler that a launch has for all of its timers, which keep locals themselves?"""
-    event = of_launch("events").TimerEvent
-    return type(handler).__name__ == "EventHandler" and bool(
-        handler.matches(event(timer_action=None))
-    )
+    event = of_launch("events").TimerEvent(timer_action=None)
+    return type(handler).__name__ == "EventHandler" and bool(handler.matches(event))
 
 
 def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
@@ -144,7 +142,8 @@ def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
     It is the robot's own file, or the one for all robots if no robot is given.
     """
     fleet = fleet_of(context, of.fleet)
-    robot = None if _is_for_all(context, of) else robot_of(context, of)
+    asked = of.robot is not None or here(context)[1] or ROBOT in context.launch_configurations
+    robot = robot_of(context, of) if asked else None
     text = robot.text(file) if robot else fleet.text(file)
     _warn(context, fleet.made.findings)
     return written(context, robot, os.path.basename(file), text)
@@ -176,9 +175,7 @@ def sim_time(context: Context, robot: LoadedRobot, told: Text) -> bool | None:
     """
     if isinstance(told, bool):
         return told
-    text = (
-        perform(context, told) if told is not None else context.launch_configurations.get(SIM_TIME)
-    )
+    text = context.launch_configurations.get(SIM_TIME) if told is None else perform(context, told)
     if text is None or not str(text).strip():
         return robot.use_sim_time
     word = str(text).strip().lower()
@@ -194,10 +191,6 @@ def listed(context: Context, names: Text) -> list[str]:
     if several and all(isinstance(it, str | os.PathLike) for it in names):
         return [os.fspath(it) for it in names]
     return [it for it in map(str.strip, perform(context, names).split(",")) if it]
-
-
-def _is_for_all(context: Context, of: RobotRef) -> bool:
-    return of.robot is None and not here(context)[1] and ROBOT not in context.launch_configurations
 
 
 def _said(context: Context, key: str, what: str) -> str:

@@ -34,7 +34,7 @@ _DECLARED = frozenset(KINDS)
 
 
 def robots_of(file: str, settings: Settings) -> Robots:
-    """The description that was named for it, else those of the file's package, else of the description
+    """The description that was named, else those of the file's package, else of the description
     packages beside it, else those that are linted with it."""
     own = package_of(file)
     folder = own[1] if own else os.path.dirname(os.path.abspath(file))
@@ -75,9 +75,8 @@ def named_in_package(kind: str, data: bytes, path: str, settings: Settings) -> N
     return file._replace(
         context=context,
         memo={Robots: robots},
-        is_certain=False,
+        is_certain=bool(settings.urdf),
         is_whole=robots is not None and robots.is_whole,
-        is_named=bool(settings.urdf),
         robots=frozenset(settings.robots),
         roots=settings.roots,
     )

@@ -9,21 +9,22 @@ from importlib import import_module
 
 from multibot_rewrite.base.findings.finding import Rule
 
-# The modules (below the package) that declare rules beside those of ``rules``.
-HOMES = (
-    *("description.steps.plan", "description.checks.robots", "description.checks.arguments"),
-    *("companions.params.rewrite", "companions.params.values", "companions.params.shared_defaults"),
-    *("companions.params.bringup_style", "companions.rviz.window_checks"),
-    *("companions.rviz.of_plan", "fleet.outputs.bridge_outputs", "fleet.robots.start_poses"),
-    *("fleet.outputs.spawn", "fleet.checks.of_robots", "fleet.outputs.controller_files"),
-    *("producers.evidence.nodes", "producers.launch.findings", "fleet.launch.launched_files"),
-    *("fleet.launch.launched_prefix", "fleet.file.filled_arguments", "fleet.robots.simulators"),
-    *("fleet.checks.lacking", "fleet.checks.named_twice", "fleet.robots.joined_robots"),
-    *("fleet.checks.across_domains", "fleet.checks.shared_names", "fleet.robots.rewritten_robots"),
-    *("fleet.outputs.given_world", "fleet.robots.robot_nodes", "fleet.outputs.params_style"),
-    *("fleet.outputs.cell_outputs", "fleet.outputs.moveit_parameters", "spelling.table_checks"),
-    "spelling.way_checks",
-)
+# The modules, by folder, that declare rules beside those of ``rules``.
+HOMES = {
+    "companions.params": "bringup_style rewrite shared_defaults values",
+    "companions.rviz": "of_plan window_checks",
+    "description.checks": "arguments robots",
+    "description.steps": "plan",
+    "fleet.checks": "across_domains lacking named_twice of_robots shared_names",
+    "fleet.file": "filled_arguments",
+    "fleet.launch": "launched_files launched_prefix",
+    "fleet.outputs": "bridge_outputs cell_outputs controller_files given_world moveit_parameters"
+    " params_style spawn",
+    "fleet.robots": "joined_robots rewritten_robots robot_nodes simulators start_poses",
+    "producers.evidence": "nodes",
+    "producers.launch": "findings",
+    "spelling": "table_checks way_checks",
+}
 
 
 @cache
@@ -46,7 +47,11 @@ def declared() -> tuple[Rule, ...]:
     from multibot_rewrite.rules import check
     from multibot_rewrite.rules.launch import judge
 
-    modules = [import_module(f"multibot_rewrite.{name}") for name in HOMES]
+    modules = [
+        import_module(f"multibot_rewrite.{folder}.{name}")
+        for folder, names in HOMES.items()
+        for name in names.split()
+    ]
     found = [it for one in modules for it in vars(one).values() if isinstance(it, Rule)]
     every = (*judge.RULES, *check.RULES.values(), *found)
     own = (it for it in every if it.code not in RULES or not it.code.startswith("MB"))

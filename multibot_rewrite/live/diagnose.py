@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.naming import LAYOUTS, Layout
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
@@ -67,7 +68,10 @@ def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosi
     known = Known(messages=messages, seconds=graph.environment.seconds)
     seen = index(graph, whose_by_guess(robots), known)
     found = inconclusive_where_in_doubt(judge(seen), graph)
-    tf = tuple(_tf_senders(surely(graph)))
+    # The nodes that publish on each tf topic or its tf_static.
+    sent = (it for it in surely(graph).ends if (it.kind, it.role) == (TOPIC, PUBLISHES))
+    nodes = sets_by_key((tree_topic(it.name), it.node) for it in sent if it.type == TF)
+    tf = tuple((topic, tuple(sorted(nodes[topic]))) for topic in sorted(nodes))
     return Diagnosis(graph, robots, seen, _layout(robots, seen, tf), tf, tuple(found))
 
 
@@ -135,15 +139,6 @@ def _sent_elsewhere(
     return it
 
 
-def _tf_senders(graph: System) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """The nodes that publish on each tf topic or its tf_static."""
-    nodes: dict[str, set[str]] = {}
-    for end in graph.ends:
-        if (end.kind, end.role, end.type) == (TOPIC, PUBLISHES, TF):
-            nodes.setdefault(tree_topic(end.name), set()).add(end.node)
-    return ((topic, tuple(sorted(nodes[topic]))) for topic in sorted(nodes))
-
-
 def _layout(
     robots: Sequence[GuessedRobot], seen: Index, tf: Sequence[tuple[str, tuple[str, ...]]]
 ) -> Layout | None:
@@ -153,22 +148,29 @@ def _layout(
     own_frames = any(robot.before or robot.behind for robot in robots)
     namespaces = any(robot.namespace for robot in robots)
     wanted = (own_frames, own_tf, namespaces)
-    return next(
-        (it for it in LAYOUTS if wanted == (it.frames, it.tf_per_robot, it.namespaced)), None
-    )
+    fitting = (it for it in LAYOUTS if wanted == (it.frames, it.tf_per_robot, it.namespaced))
+    return next(fitting, None)
 
 
 def survey(seen: Diagnosis) -> Iterator[str]:
     """What there is, in a few lines: the robots, the layout, who is on which tf topic."""
     names = [robot.name for robot in seen.robots]
+    if not (names or seen.graph.nodes or is_recorded(seen.graph)):
+        return
     if not names:
         nodes = "a recording" if is_recorded(seen.graph) else plural(len(seen.graph.nodes), "node")
         yield f"{nodes}, no name of a robot in them: one robot, or several that share all names"
     else:
-        where = _where(seen.robots)
+        where = "by the ends of names"
+        if any(robot.namespace for robot in seen.robots):
+            where = "by their namespaces"
+        elif any(robot.before for robot in seen.robots):
+            where = "by what their frames have"
         yield f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
         yield f"layout: {_layout_line(seen)}"
-    own = [topic for topic, nodes_ in seen.tf if _is_its_own(seen, topic, nodes_)]
+    # Topics of a robot, on which only nodes of that robot send.
+    robot = seen.whose.robot
+    own = [topic for topic, nodes_ in seen.tf if {robot(topic)} == {*map(robot, nodes_)} != {""}]
     if len(own) > MOST_OWN:
         yield f"tf on {shorten(own, MOST_OWN)}: each of the nodes of its robot"
     for topic, nodes_ in seen.tf:
@@ -179,20 +181,6 @@ def survey(seen: Diagnosis) -> Iterator[str]:
             continue
         by_robot = Counter(seen.whose.robot(node) or "no robot" for node in nodes_)
         yield f"tf on {topic}: {plural(len(nodes_), 'node')} of {shorten(by_robot, SEVERAL)}"
-
-
-def _is_its_own(seen: Diagnosis, topic: str, nodes: Sequence[str]) -> bool:
-    """Is it a robot's topic, on which only nodes of that robot send?"""
-    robot = seen.whose.robot(topic)
-    return bool(robot) and all(seen.whose.robot(it) == robot for it in nodes)
-
-
-def _where(robots: Sequence[GuessedRobot]) -> str:
-    if any(robot.namespace for robot in robots):
-        return "by their namespaces"
-    return (
-        "by what their frames have" if any(it.before for it in robots) else "by the ends of names"
-    )
 
 
 def _layout_line(seen: Diagnosis) -> str:

@@ -12,10 +12,12 @@ from __future__ import annotations
 
 import json
 import os
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import Any, NamedTuple, TypeAlias
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.ros.assemble import BUSY_MACHINE
@@ -77,15 +79,20 @@ def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> It
     without any a node gets only its namespace and its name.
     """
     types = {name: end.type for _, end, name in table.ends if end.type}
-    names: dict[str, list[tuple[Endpoint, str]]] = {}
-    for run, end, name in table.ends:
-        # What a node does that nobody knows is not played.
-        if not end.when and (end.role or run.fact.is_known):
-            names.setdefault(run.full_name, []).append((end, name))
+    # What a node does that nobody knows is not played.
+    names = lists_by_key(
+        (run.full_name, (end, name))
+        for run, end, name in table.ends
+        if not end.when and (end.role or run.fact.is_known)
+    )
     spaces = {(it.robot, it.node): it.namespace for it in table.runs}
     for _, node in running_nodes(table, left_out):
         own = names.get(node.full_name, [])
-        space, other = _as_started(node, spaces.get((node.robot, node.fact.host)))
+        space, other = node.namespace, node.other_name
+        host = spaces.get((node.robot, node.fact.host)) if node.fact.apart else None
+        if host is not None:
+            # The code of a host that places the node itself (a costmap) asks nobody for either.
+            space, other = f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
         ends = dict.fromkeys(_stub_endpoint(*it, types) for it in own)
         arguments = tuple(ros_arguments(space, other, _rules(node, own)))
         stub = node._replace(arguments=arguments, names=tuple((it, "") for it in ends))
@@ -106,23 +113,10 @@ def bridge_stub(topics: Iterable[Topic]) -> Iterator[Stub]:
 
 def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
     """The nodes of domain_bridge in a plan of one domain."""
-    ends: dict[str, list[Endpoint]] = {}
-    for it in plan.ends:
-        stub = Endpoint(it.kind, it.role, it.name, it.type)
-        ends.setdefault(it.node, []).append(stub)
+    ends = lists_by_key((it.node, Endpoint(it.kind, it.role, it.name, it.type)) for it in plan.ends)
     for node in plan.nodes:
         if node.stack == DOMAIN_BRIDGE:
             yield played(node.name[1:], ends.get(node.name, ()), node.robot), ()
-
-
-def _as_started(node: Run, host: str | None) -> tuple[str, str]:
-    """The namespace and the other name that a node is given; ``host`` is the namespace of its host.
-
-    Where the code of a host places the node itself (a costmap), it asks nobody for either.
-    """
-    if host is None or not node.fact.apart:
-        return node.namespace, node.other_name
-    return f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
 
 
 def _rules(node: Run, names: Iterable[tuple[Endpoint, str]]) -> Rules:
@@ -148,7 +142,7 @@ def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
 
     A participant of DDS refuses a topic under a second type: who has it so is in another process.
     """
-    processes: dict[int, list[Stub]] = {}
+    processes: dict[int, list[Stub]] = defaultdict(list)
     process_of: dict[str, int] = {}
     types: dict[tuple[int, str, str], str] = {}
     for stub in nodes:
@@ -158,7 +152,7 @@ def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
         while any(types.get((process, robot, it), own[it]) != own[it] for it in own):
             process += PROCESSES
         types |= {(process, robot, name): type_ for name, type_ in own.items()}
-        processes.setdefault(process, []).append(stub)
+        processes[process].append(stub)
     return list(processes.values())
 
 
@@ -288,21 +282,13 @@ def staged(
     with _started(nodes, environ) as started:
         for _ in range(LOOKS):
             graph = observe(request, environ)
-            if _has_all(graph, started):
-                return _nothing_is_late(graph), started.replaced
+            ends = {(end.node, end.role, end.name) for end in graph.ends}
+            if started.ends <= ends and started.frames <= {edge.child for edge in graph.edges}:
+                # All nodes that run here were seen whole, so the machine is not too busy.
+                here = graph.environment
+                caveats = tuple(it for it in here.caveats if it.code != BUSY_MACHINE)
+                return graph._replace(environment=here._replace(caveats=caveats)), started.replaced
     return graph, started.replaced
-
-
-def _nothing_is_late(graph: System) -> System:
-    """The graph without what is said of a busy machine: all nodes that run here were seen whole."""
-    here = graph.environment
-    caveats = tuple(it for it in here.caveats if it.code != BUSY_MACHINE)
-    return graph._replace(environment=here._replace(caveats=caveats))
-
-
-def _has_all(graph: System, started: Started) -> bool:
-    ends = {(end.node, end.role, end.name) for end in graph.ends}
-    return started.ends <= ends and started.frames <= {edge.child for edge in graph.edges}
 
 
 @contextmanager

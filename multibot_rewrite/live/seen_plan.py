@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-
 from multibot_rewrite.base.conventions import EVERYBODYS, SENT_BY_EVERY_NODE, WORLD_FRAMES
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, TF_TOPICS
 from multibot_rewrite.base.wording import unique
@@ -13,25 +11,31 @@ from multibot_rewrite.system.guess import GuessedRobot
 from multibot_rewrite.system.records import End, Node, Robot, System
 from multibot_rewrite.system.tf_copies import tree_topic
 from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.words import OF_EVERY_NODE
 
 # The robot of a graph in which no name has a robot's.
 NAMELESS = GuessedRobot("robot1", "")
-_PARAMETERS = ("rcl_interfaces/", "type_description_interfaces/")
 
 
 def seen_plan(seen: Diagnosis) -> System:
     """The plan: all nodes but tools, all names but what every node has."""
     nodes = unique(node.name for node in seen.graph.nodes if not is_tool(node.name))
     robots = {_mine(it): it for it in robots_to_plan(seen)}
+    names = {mine: it.name for mine, it in robots.items()}
     whose = {node: seen.whose.robot(node) for node in nodes}
+    ends = (it for it in seen.graph.ends if it.node in whose and "/_" not in it.name)
+    own = (it for it in ends if not it.type.startswith(OF_EVERY_NODE))
+    made = (
+        End(it.kind, it.role, it.name, it.type, node=it.node, code_name=seen.whose.plain(it.name))
+        for it in own
+        if it.name not in SENT_BY_EVERY_NODE
+    )
     topics = unique(end.name for end in seen.graph.ends if end.kind == "topic")
     # All is of the robot that has no name.
     bare = (it for it in topics if "" not in robots and not seen.whose.robot(it) and "/_" not in it)
     return System(
-        tuple(
-            Node(it, robot=robots[whose[it]].name if whose[it] in robots else "") for it in nodes
-        ),
-        tuple(dict.fromkeys(_endpoints(seen, {*nodes}))),
+        tuple(Node(it, robot=names.get(whose[it], "")) for it in nodes),
+        tuple(dict.fromkeys(made)),
         robots=tuple(_robot(seen, it) for mine, it in robots.items() if mine in whose.values()),
         layout=seen.layout.name if seen.layout else DEFAULT_LAYOUT,
         shared_topics=tuple(sorted({*bare, *EVERYBODYS})),
@@ -67,13 +71,3 @@ def _robot(seen: Diagnosis, robot: GuessedRobot) -> Robot:
         or (not whose.frame_robot(it) and tree_topic(edge.topic) == tf != shared)
     }
     return Robot(robot.name, tuple(sorted(own - set(WORLD_FRAMES))), tf)
-
-
-def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[End]:
-    for end in seen.graph.ends:
-        common = (
-            end.name in SENT_BY_EVERY_NODE or end.type.startswith(_PARAMETERS) or "/_" in end.name
-        )
-        if end.node in nodes and not common:
-            code = seen.whose.plain(end.name)
-            yield End(end.kind, end.role, end.name, end.type, node=end.node, code_name=code)

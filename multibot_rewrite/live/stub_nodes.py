@@ -70,31 +70,21 @@ def _create_node(stubs: _Stubs, stub: Stub, number: int) -> Iterator[Publish]:
     node = ros.add_node(stubs.session, run.code_name, arguments=run.arguments)
     helpers: dict[str, Any] = {}
     for endpoint, _ in run.names:
-        called = _helper(endpoint) if endpoint.helper else ""
+        # As tf2's listener, or behind its node's name.
+        usual = f"{LISTENER}*" if endpoint.name.strip("/") in TF_TOPICS else CLIENT
+        called = (endpoint.by or usual) if endpoint.helper else ""
         if called and called not in helpers:
             made = called.replace("*", f"{os.getpid():x}{number:04x}")
             name = made if called.startswith(LISTENER) else node.get_name() + made
             arguments = ros_arguments(run.process_namespace or "/", "", run.process_rules)
             helpers[called] = ros.add_node(stubs.session, name, arguments=arguments)
-        owner = helpers.get(called, node)
-        yield from _create_endpoint(stubs, owner, _named(node, endpoint), edges)
-
-
-def _helper(endpoint: Endpoint) -> str:
-    """How the helper node of an endpoint is called: as tf2's listener, or behind its node's name."""
-    if endpoint.name.strip("/") in TF_TOPICS:
-        return endpoint.by or f"{LISTENER}*"
-    return endpoint.by or CLIENT
-
-
-def _named(node: Any, endpoint: Endpoint) -> Endpoint:
-    """An endpoint of a helper node below the name of the node that makes it.
-
-    As moveit_servo does (src/utils/common.cpp:510): with ~ it would be below the helper's own name.
-    """
-    if not endpoint.by or not endpoint.name.startswith("~/"):
-        return endpoint
-    return endpoint._replace(name=node.get_fully_qualified_name() + endpoint.name[1:])
+        name = endpoint.name
+        if endpoint.by and name.startswith("~/"):
+            # Below the name of the node that makes the helper, as moveit_servo does
+            # (src/utils/common.cpp:510): with ~ it would be below the helper's own.
+            name = node.get_fully_qualified_name() + name[1:]
+        own = endpoint._replace(name=name)
+        yield from _create_endpoint(stubs, helpers.get(called, node), own, edges)
 
 
 def _create_endpoint(
@@ -136,7 +126,14 @@ def _create_publisher(
     static = endpoint.name.rpartition("/")[2] == STATIC
     publisher = ros.publish(node, type_, endpoint.name, static)
     own = [edge for edge in edges if edge.static == static]
-    messages = _messages(type_, own)
+    # One message with all transforms, or one for each where tf's own type is not installed.
+    transform = _installed("geometry_msgs/msg/TransformStamped")
+    made = []
+    for edge in own:
+        one = transform(child_frame_id=edge.child)
+        one.header.frame_id = edge.parent
+        made.append(one)
+    messages = made if type_ is transform or not made else [type_(transforms=made)]
     if endpoint.type != TF or not messages:
         return
     stubs.frames.update(edge.child for edge in own)
@@ -153,19 +150,6 @@ def _publish(publisher: Any, messages: Iterable[Any]) -> None:
             stamp = it.header.stamp
             stamp.sec, stamp.nanosec = divmod(time.time_ns(), 10**9)
         publisher.publish(message)
-
-
-def _messages(type_: Any, edges: list[Edge]) -> list[Any]:
-    """One message with all transforms, or one for each where tf's own type is not installed."""
-    transform = _installed("geometry_msgs/msg/TransformStamped")
-    made = []
-    for edge in edges:
-        one = transform(child_frame_id=edge.child)
-        one.header.frame_id = edge.parent
-        made.append(one)
-    if type_ is transform or not made:
-        return made
-    return [type_(transforms=made)]
 
 
 if __name__ == "__main__":

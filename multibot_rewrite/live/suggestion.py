@@ -7,7 +7,7 @@ The description has the frames that were heard, and nothing else: it stands in f
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import quoteattr
 
 from multibot_rewrite.base import editors
@@ -22,17 +22,11 @@ from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.spelling.plan import to_yaml as plan_to_yaml
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.guess import GuessedRobot
-from multibot_rewrite.system.records import Edge
 from multibot_rewrite.system.tool_nodes import is_tool
 
 STACK = "seen"
-FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = (
-    "fleet.yaml",
-    "nodes.yaml",
-    "robot.urdf",
-    "plan.yaml",
-)
-FILES = (FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE)
+FILES = ("fleet.yaml", "nodes.yaml", "robot.urdf", "plan.yaml")
+FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = FILES
 # What an editor is told of them.
 SCHEMAS = {FLEET_FILE: editors.FLEET, NODES_FILE: editors.NODES, PLAN_FILE: editors.PLAN}
 HEAD = """\
@@ -96,46 +90,32 @@ def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str
 
 def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
     """The frames of a robot below its base, as links and joints."""
-    plain = seen.whose.plain_frame
-    edges = {
-        plain(it.child): it for it in _edges(seen, robot) if plain(it.parent) not in WORLD_FRAMES
-    }
+    whose, plain = seen.whose, seen.whose.plain_frame
+    # Those with the robot's name; where frames have none, those on its topic or on all.
+    named = [it for it in seen.graph.edges if whose.frame_robot(it.child) == robot.name]
+    bare = [it for it in seen.graph.edges if not whose.frame_robot(it.child)]
+    own = [it for it in bare if whose.robot(it.topic) == robot.name]
+    found = (it for it in named or own or bare if plain(it.parent) not in WORLD_FRAMES)
+    edges = {plain(it.child): it for it in found}
     edges = {child: it for child, it in edges.items() if plain(it.parent) != "odom"}
     parents = {child: plain(it.parent) for child, it in edges.items()}
-    root = _base(parents)
+    # The root of the tree that has a usual base, else any root.
+    known = {*parents, *parents.values()}
+    base = next((it for it in BODY_FRAMES if it in known), "")
+    root = root_of(base, parents) if base else ""
+    root = root or min((it for it in known if it not in parents), default=BODY_FRAMES[1])
     yield '<?xml version="1.0"?>'
     yield "<!-- The frames that were heard on tf: put your own description in its place. -->"
     yield '<robot name="seen">'
     yield f"  <link name={quoteattr(root)}/>"
-    for child in _below(root, parents):
+    # The frames below one, parents first, each once.
+    frames = [root]
+    for frame in frames:  # grows
+        frames += [it for it, above in parents.items() if above == frame and it not in frames]
+    for child in frames[1:]:
         yield f"  <link name={quoteattr(child)}/>"
         kind = "fixed" if edges[child].static else "continuous"
         yield f'  <joint name={quoteattr(child + "_joint")} type="{kind}">'
         yield f"    <parent link={quoteattr(parents[child])}/><child link={quoteattr(child)}/>"
         yield "  </joint>"
     yield "</robot>"
-
-
-def _edges(seen: Diagnosis, robot: GuessedRobot) -> list[Edge]:
-    """Those with the robot's name; where frames have none, those on its topic or on all."""
-    whose = seen.whose
-    named = [it for it in seen.graph.edges if whose.frame_robot(it.child) == robot.name]
-    bare = [it for it in seen.graph.edges if not whose.frame_robot(it.child)]
-    own = [it for it in bare if whose.robot(it.topic) == robot.name]
-    return named or own or bare
-
-
-def _base(parents: Mapping[str, str]) -> str:
-    """The frame to begin with: the root of the tree that has a usual base, else any root."""
-    known = {*parents, *parents.values()}
-    base = next((it for it in BODY_FRAMES if it in known), "")
-    root = root_of(base, parents) if base else ""
-    return root or min((it for it in known if it not in parents), default=BODY_FRAMES[1])
-
-
-def _below(root: str, parents: Mapping[str, str]) -> Iterable[str]:
-    """The frames below one, parents first, each once."""
-    found = [root]
-    for frame in found:
-        found += [it for it, above in parents.items() if above == frame and it not in found]
-    return found[1:]

@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeVar
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Rule
 from multibot_rewrite.base.findings.formats.plain import in_words
 from multibot_rewrite.base.findings.selection import said_of
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.live.watching import Verdict, verdict_words
 from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName, Scene
@@ -97,10 +98,9 @@ def make_sections(scene: Scene) -> list[PageSection]:
 
 def concerns_of(scene: Scene) -> dict[str, tuple[int, ...]]:
     """The numbers of the findings that concern each robot."""
-    found: dict[str, list[int]] = {}
-    for at, row in enumerate(scene.rows):
-        for robot in row.robots or ("",):
-            found.setdefault(robot, []).append(at)
+    found = lists_by_key(
+        (robot, at) for at, row in enumerate(scene.rows) for robot in row.robots or ("",)
+    )
     return {robot: tuple(rows) for robot, rows in found.items()}
 
 
@@ -183,9 +183,7 @@ def _with_edges(group: DrawnGroup, edges: Iterable[DrawnEdge]) -> DrawnGroup:
 
 def _merge_unused_services(group: DrawnGroup) -> DrawnGroup:
     """Draw a node's services without a client as one name, where there are several."""
-    ends: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
-    for edge in group.edges:
-        ends[edge.kind, edge.name].append(edge)
+    ends = lists_by_key(((edge.kind, edge.name), edge) for edge in group.edges)
     unused: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
     for edge, *others in ends.values():
         if not others and edge.role == SERVES and edge.state not in FAULTY:

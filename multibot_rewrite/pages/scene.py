@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.selection import with_members
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.live.watching import Outcome, judge, verdict_words
 from multibot_rewrite.pages.states import (
     FAULTY,
@@ -45,8 +46,8 @@ _ORDER = (ERROR, WARNING, NOTE, INCONCLUSIVE)
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.
 COMMON_PACKAGES = (
-    *("rcl_interfaces", "lifecycle_msgs", "type_description_interfaces", "bond", "tf2_msgs"),
-)
+    "rcl_interfaces", "lifecycle_msgs", "type_description_interfaces", "bond", "tf2_msgs",
+)  # fmt: skip
 # Stands for the bridge that should carry a topic; a space cannot be in the name of a real node.
 BRIDGE = "a ros_gz_bridge"
 # In the topics and services that an action is made of.
@@ -279,9 +280,7 @@ def _groups(
     for edge in edges:
         for robot in {robot_of.nodes[edge.node], robot_of.names[edge.name]}:
             parts[robot].append(edge)
-    by_name: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
-    for edge in edges:
-        by_name[edge.kind, edge.name].append(edge)
+    by_name = lists_by_key(((edge.kind, edge.name), edge) for edge in edges)
     names = {}
     for (kind, name), uses in by_name.items():
         types = tuple(sorted({end.type for end in uses if end.type}))

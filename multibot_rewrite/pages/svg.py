@@ -14,6 +14,7 @@ from html import escape
 from typing import NamedTuple
 from unicodedata import east_asian_width
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.pages.scene import DrawnEdge, DrawnGroup, DrawnName, DrawnNode
 from multibot_rewrite.pages.states import (
@@ -282,10 +283,7 @@ def lay_out(group: DrawnGroup) -> GroupLayout:
 
 
 def _names_by_node(edges: Iterable[DrawnEdge]) -> dict[str, list[_NameKey]]:
-    found: dict[str, list[_NameKey]] = defaultdict(list)
-    for edge in edges:
-        found[edge.node].append((edge.kind, edge.name))
-    return found
+    return lists_by_key((edge.node, (edge.kind, edge.name)) for edge in edges)
 
 
 def _ordered_names(

@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.index import Index
@@ -80,9 +81,7 @@ class _Forest(NamedTuple):
 
 def _forest(plan: Index, topic: str, edges: Sequence[Edge], home: Sequence[Robot]) -> _Forest:
     static = {(edge.parent, edge.child): edge.static for edge in edges}
-    children: dict[str, list[str]] = defaultdict(list)
-    for parent, child in sorted(static):
-        children[parent].append(child)
+    children = lists_by_key((parent, child) for parent, child in sorted(static))
     only = home[0].name if len(home) == 1 else ""
     frames = sorted({frame for edge in static for frame in edge})
     robots = {frame: plan.frame_robot(frame) or only for frame in frames}

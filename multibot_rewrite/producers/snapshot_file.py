@@ -35,11 +35,7 @@ def read_snapshot(path: str) -> System:
     system = from_value(value, path)
     if system.layout:
         raise InputError(f"{path}: {KINDS[PLAN].words}; {KINDS[PLAN].use}")
-    return _judged_anew(system)
-
-
-def _judged_anew(system: System) -> System:
-    """Return the system with what its ends show of the view; an older look may not have said it."""
+    # Return the system with what its ends show of the view; an older look may not have said it.
     around = system.environment
     known = {it.code for it in around.caveats}
     found = unfinished(system.nodes, system.ends, around.discovery_server) if around.rmw else ()

@@ -150,7 +150,9 @@ def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Fin
     sure = {it for it in found if it.code not in ABSENCE or (it.code == mixed and it.node in told)}
     hint = "the view of the graph may be incomplete: the line `incomplete:` says why"
     return [
-        it if it in sure else it._replace(level=INCONCLUSIVE, hint=hint, file="", line=0, remaps=())
+        it
+        if it in sure
+        else it._replace(level=INCONCLUSIVE, hint=hint, file="", line=0, remaps=(), settings=())
         for it in found
     ]
 

@@ -15,6 +15,7 @@ from multibot_rewrite.base.findings.finding import (
     Finding,
     Remap,
 )
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.system.index import TF, Index, ends_of
 from multibot_rewrite.system.records import PUBLISHES, SERVES
@@ -110,9 +111,7 @@ _ORDER = (
 
 def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
     """One finding for each cause."""
-    by_code: dict[str, list[int]] = defaultdict(list)
-    for at, it in enumerate(found):
-        by_code[it.code].append(at)
+    by_code = lists_by_key((it.code, at) for at, it in enumerate(found))
     below: dict[int, list[int]] = defaultdict(list)
     gone: set[int] = set()
     for code, codes, explains in _EXPLAINS if len(found) > 1 else ():

@@ -89,19 +89,13 @@ def default_topics(row: BridgeRow, plugin: _Element, model: str) -> Iterator[tup
     There are several where an element is repeated, and none where one is missing.
     """
     above, slash, below = (row.default + row.ending).partition("}/")
-    for name in _filled(f"{above}{slash}{_HERE}{below}", plugin, model):
+    # Once for each choice of values for its slots.
+    parts = _SLOT.split(f"{above}{slash}{_HERE}{below}")
+    values = [_values(slot, plugin, model) for slot in parts[1::2]]
+    for chosen in product(*values):
+        name = "".join((*(a + b for a, b in zip(parts[::2], chosen, strict=False)), parts[-1]))
         head, _, rest = name.partition(_HERE)
         yield as_valid_topic(f"{head}{rest}"), rest if slash else ""
-
-
-def _filled(template: str, plugin: _Element, model: str) -> list[str]:
-    """Return a template once for each choice of values for its slots."""
-    parts = _SLOT.split(template)
-    values = [_values(slot, plugin, model) for slot in parts[1::2]]
-    return [
-        "".join((*(a + b for a, b in zip(parts[::2], chosen, strict=False)), parts[-1]))
-        for chosen in product(*values)
-    ]
 
 
 def _values(slot: str, plugin: _Element, model: str) -> list[str]:

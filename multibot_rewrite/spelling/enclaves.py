@@ -8,15 +8,11 @@ its hidden topics and services) and ``test/policies/common/node.xml`` (what ever
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.base.conventions import (
-    READ_BY_EVERY_NODE,
-    SENT_BY_EVERY_NODE,
-    tool_patterns,
-)
+from multibot_rewrite.base.conventions import READ_BY_EVERY_NODE, SENT_BY_EVERY_NODE, tool_patterns
+from multibot_rewrite.base.grouping import dicts_by_key, sets_by_key
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -86,9 +82,7 @@ def to_policy(plan: System, more: Iterable[End] = ()) -> str:
 def profiles(plan: System, more: Iterable[End] = ()) -> Mapping[str, tuple[Profile, ...]]:
     """Each enclave with what its nodes may do."""
     ends = (*plan.ends, *more)
-    allowed: dict[str, dict[Allowed, None]] = defaultdict(dict)
-    for end in ends:
-        allowed[end.node][end.kind, end.role, end.name] = None
+    allowed = dicts_by_key((end.node, (end.kind, end.role, end.name), None) for end in ends)
     result, nodes = {}, nodes_by_robot(plan)
     for robot in plan.robots:
         tf = [(TOPIC, SUBSCRIBES, f"{robot.tf_topic}{end}") for end in ("", "_static")]
@@ -97,10 +91,7 @@ def profiles(plan: System, more: Iterable[End] = ()) -> Mapping[str, tuple[Profi
         result[enclave_of(robot.name)] = (*own, listener)
     shared = tuple(_profile(node, allowed[node]) for node in nodes[""])
     # Tools read and call everything; they send what robots read and no planned node sends.
-    sides = defaultdict(set)
-    for end in ends:
-        if end.kind == TOPIC:
-            sides[end.role].add(end.name)
+    sides = sets_by_key((end.role, end.name) for end in ends if end.kind == TOPIC)
     open_ = sorted(sides[SUBSCRIBES] - sides[PUBLISHES])
     every = ((TOPIC, SUBSCRIBES, "/*"), (SERVICE, CALLS, "/*"), (ACTION, CALLS, "/*"))
     tools = Profile("/tools", (*every, *((TOPIC, PUBLISHES, name) for name in open_)))

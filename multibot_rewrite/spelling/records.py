@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.system.parameters import ANY_NAME, Value
 from multibot_rewrite.system.records import NOWHERE, Place
@@ -122,7 +122,5 @@ class Table(NamedTuple):
 
     def by_robot(self, robots: Iterable[str]) -> dict[str, Table]:
         """Return the nodes of each of the robots as a table without problems."""
-        runs: dict[str, list[Run]] = defaultdict(list)
-        for run in self.runs:
-            runs[run.robot].append(run)
+        runs = lists_by_key((run.robot, run) for run in self.runs)
         return {it: self._replace(runs=tuple(runs[it]), problems=()) for it in robots}

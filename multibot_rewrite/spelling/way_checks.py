@@ -7,12 +7,13 @@ The first match counts: a node's own arguments come before those of its process.
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import ControllerWay, controller_way
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint
@@ -137,10 +138,7 @@ def not_taken(table: Table) -> Iterator[Finding]:
     @cache
     def owners() -> Mapping[str, set[str]]:
         """The robots that have each name."""
-        found: dict[str, set[str]] = defaultdict(set)
-        for run, _, name in table.ends:
-            found[name].add(run.robot)
-        return found
+        return sets_by_key((name, run.robot) for run, _, name in table.ends)
 
     seen: Counter[str] = Counter()
     for it, running in running_nodes(some):

@@ -88,7 +88,8 @@ def coverage(system: System, graph: System | None = None) -> Coverage:
             nodes.setdefault(it.robot, []).append(it)
     rows = []
     for robot, own in nodes.items():
-        known = sum(not told or _is_known(it) or it.name in ends for it in own)
+        named = (it.known or it.stack or it.plugin != NOWHERE or it.name in ends for it in own)
+        known = sum(not told or bool(it) for it in named)
         seen = there.intersection(it.name for it in own)
         silent = len(seen.difference(answers)) if answers else 0
         partly = sum(bool(it.untold) for it in own)
@@ -97,10 +98,6 @@ def coverage(system: System, graph: System | None = None) -> Coverage:
     processes = sum(it.code == NOT_KNOWN_PROCESS for it in system.gaps)
     more = len(doubts(graph or system)), unread, processes
     return Coverage(tuple(rows), told, compared, *more)
-
-
-def _is_known(node: Node) -> bool:
-    return bool(node.known or node.stack or node.plugin != NOWHERE)
 
 
 def _is_launched(system: System) -> bool:

@@ -5,14 +5,14 @@ so what has one name in two of them is no clash. What was seen of them -> one vi
 from __future__ import annotations
 
 import re
-from collections import defaultdict
-from collections.abc import Mapping, Set
+from collections.abc import Mapping
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, unique
 from multibot_rewrite.system.merging import WORST_LAST
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.records import Environment, System
+from multibot_rewrite.system.records import System
 
 # That of nodes of all robots, where a plan does not say another.
 USUAL_DOMAIN = 0
@@ -45,9 +45,7 @@ def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
     numbers, robot = domain_of(plan), whose_by_plan(plan).robot
     planned = {it.name: it.robot for it in plan.nodes}
     in_use = {numbers[it] for it in planned.values()}
-    theirs: dict[str, list[str]] = defaultdict(list)
-    for it in seen.ends:
-        theirs[it.node].append(robot(it.name))
+    theirs = lists_by_key((it.node, robot(it.name)) for it in seen.ends)
 
     def domain(node: str) -> int:
         if node in planned:
@@ -83,21 +81,15 @@ def _of_nodes(system: System, own: Mapping[str, int], at: int) -> System:
 
 
 def _part(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: int) -> System:
-    part = _of_nodes(plan, own, at)
+    part, robot = _of_nodes(plan, own, at), whose_by_plan(plan).robot
     nodes = {it.name for it in part.nodes}
     return part._replace(
         edges=tuple(it for it in plan.edges if nodes.issuperset(it.publishers)),
         robots=tuple(it for it in plan.robots if numbers[it.name] == at),
-        topics=tuple(it for it in plan.topics if it.name in _named(plan, numbers, at)),
+        topics=tuple(it for it in plan.topics if numbers[robot(it.name)] == at),
         gaps=(),
         domains=(),
     )
-
-
-def _named(plan: System, numbers: Mapping[str, int], at: int) -> Set[str]:
-    """The topics of which the plan says more that are those of a robot of this domain, or of all."""
-    robot = whose_by_plan(plan).robot
-    return {it.name for it in plan.topics if numbers[robot(it.name)] == at}
 
 
 def side_by_side(seen: Mapping[int, System]) -> System:
@@ -107,6 +99,7 @@ def side_by_side(seen: Mapping[int, System]) -> System:
     first = views[0]
     if len(views) == 1:
         return first
+    looks = [it.environment for it in seen.values()]
     return first._replace(
         nodes=tuple(it for one in views for it in one.nodes),
         ends=tuple(it for one in views for it in one.ends),
@@ -115,7 +108,16 @@ def side_by_side(seen: Mapping[int, System]) -> System:
         descriptions=tuple(it for one in views for it in one.descriptions),
         parameters=tuple(it for one in views for it in one.parameters),
         controllers=tuple(it for one in views for it in one.controllers),
-        environment=_around(seen),
+        environment=looks[0]._replace(
+            participants=sum(it.participants for it in looks),
+            settled=max((it.settled for it in looks), key=WORST_LAST.index),
+            seconds=max(it.seconds for it in looks),
+            caveats=tuple(
+                it._replace(message=f"domain {number}: {it.message}")
+                for number, one in seen.items()
+                for it in one.environment.caveats
+            ),
+        ),
     )
 
 
@@ -156,17 +158,3 @@ def unnamed(it: Finding) -> Finding:
 
 def _said(text: str) -> str:
     return _SHORT.sub(r"domain \1", _FULL.sub(r"\2 of domain \1", text))
-
-
-def _around(seen: Mapping[int, System]) -> Environment:
-    looks = [it.environment for it in seen.values()]
-    return looks[0]._replace(
-        participants=sum(it.participants for it in looks),
-        settled=max((it.settled for it in looks), key=WORST_LAST.index),
-        seconds=max(it.seconds for it in looks),
-        caveats=tuple(
-            it._replace(message=f"domain {number}: {it.message}")
-            for number, one in seen.items()
-            for it in one.environment.caveats
-        ),
-    )

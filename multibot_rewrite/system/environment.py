@@ -10,11 +10,12 @@ on a machine under LOCALHOST, else Fast DDS's own 4); the ROS 2 domain id page (
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from math import inf
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
@@ -34,12 +35,13 @@ from multibot_rewrite.system.records import (
 from multibot_rewrite.system.tool_nodes import is_hidden
 
 MAX_DOMAIN = 232
-RANGES = ("OFF", "LOCALHOST", "SUBNET", "SYSTEM_DEFAULT")
+LOCALHOST = "LOCALHOST"
+RANGES = ("OFF", LOCALHOST, "SUBNET", "SYSTEM_DEFAULT")
 DEFAULT_RANGE = "SUBNET"
 KNOWN_RMW = (
-    *("rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp", "rmw_cyclonedds_cpp", "rmw_connextdds"),
-    *("rmw_zenoh_cpp", "rmw_gurumdds_cpp"),
-)
+    "rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp", "rmw_cyclonedds_cpp", "rmw_connextdds",
+    "rmw_zenoh_cpp", "rmw_gurumdds_cpp",
+)  # fmt: skip
 # So many participants of a machine are found by unicast: under LOCALHOST, of a peer under SUBNET.
 LOCAL_LIMIT, PEER_LIMIT = 32, 4
 # The caveats of ``unfinished``.
@@ -67,10 +69,18 @@ class DiscoverySettings(NamedTuple):
 
 def settings(environ: Mapping[str, str]) -> DiscoverySettings:
     """Read the variables as rcl does; raises UsageError for values at which rcl exits."""
+    domain = _domain(environ.get("ROS_DOMAIN_ID", ""))
+    text = environ.get("ROS_STATIC_PEERS", "")
+    peers = tuple(filter(None, text.split(";")))
+    for peer in peers:
+        if _NOT_IN_PEER.search(peer):
+            hint = "give host names or IPv4 addresses with only ; between them"
+            raise UsageError(f"ROS_STATIC_PEERS={text!r}: {peer!r} is not a host, {hint}")
+    range_ = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "") or DEFAULT_RANGE
     return DiscoverySettings(
-        _domain(environ.get("ROS_DOMAIN_ID", "")),
-        _range(environ),
-        _peers(environ.get("ROS_STATIC_PEERS", "")),
+        domain,
+        range_ if range_ in RANGES and not _localhost_only(environ) else LOCALHOST,
+        peers,
         environ.get("RMW_IMPLEMENTATION", ""),
         environ.get("ROS_DISCOVERY_SERVER", ""),
         environ.get("ROS_SUPER_CLIENT", "").lower() in ("true", "1"),
@@ -93,22 +103,6 @@ def _domain(text: str) -> int:
             " ports that Linux uses itself)"
         )
     return domain
-
-
-def _peers(text: str) -> tuple[str, ...]:
-    peers = tuple(filter(None, text.split(";")))
-    for peer in peers:
-        if _NOT_IN_PEER.search(peer):
-            hint = "give host names or IPv4 addresses with only ; between them"
-            raise UsageError(f"ROS_STATIC_PEERS={text!r}: {peer!r} is not a host, {hint}")
-    return peers
-
-
-def _range(environ: Mapping[str, str]) -> str:
-    if _localhost_only(environ):
-        return "LOCALHOST"
-    word = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "") or DEFAULT_RANGE
-    return word if word in RANGES else "LOCALHOST"
 
 
 def _localhost_only(environ: Mapping[str, str]) -> bool:
@@ -160,9 +154,9 @@ def view_caveats(
     that came or went last."""
     names = Counter(node.name for node in nodes)
     if settled == TIMEOUT:
-        text = "the graph was still changing when the timeout was over"
         which = f" (last came or went {shorten(sorted(last), SEVERAL)})" if last else ""
-        yield Caveat("not-settled", True, f"{text}{which}; give a longer --timeout")
+        text = f"the graph was still changing when the timeout was over{which}"
+        yield Caveat("not-settled", True, f"{text}; give a longer --timeout")
     if settled == CHANGING:
         yield Caveat("not-settled", True, "the graph is still changing")
     if not nodes:
@@ -249,15 +243,12 @@ def unfinished(
         yield Caveat("node-name-unknown", True, text)
 
 
-def _without_readers(endpoints: Iterable[End]) -> list[str]:
+def _without_readers(endpoints: Collection[End]) -> list[str]:
     """Return the nodes of which only publishers are seen, where nearly all others serve parameters: the
     writers of a node are announced apart from its readers, which are services, too."""
-    roles: dict[str, set[str]] = defaultdict(set)
-    serving = set()
-    for end in endpoints:
-        roles[end.node].add(end.role)
-        if end.name.endswith("/get_parameters") and end.role == SERVES:
-            serving.add(end.node)
+    roles = sets_by_key((it.node, it.role) for it in endpoints)
+    served = (it for it in endpoints if it.role == SERVES)
+    serving = {it.node for it in served if it.name.endswith("/get_parameters")}
     if len(serving) < max(SERVING, SERVING_PART * len(roles)):
         return []
     return sorted(it for it, own in roles.items() if own == {PUBLISHES} and not is_hidden(it))
@@ -272,7 +263,6 @@ def _processes(endpoints: Iterable[End]) -> set[str]:
     return {endpoint.process for endpoint in endpoints} - {""}
 
 
-LOCALHOST = "LOCALHOST"
 MERGED = "looks-merged"
 # The nodes of each machine.
 Machines = Mapping[str, Sequence[str]]
@@ -280,11 +270,8 @@ Machines = Mapping[str, Sequence[str]]
 
 def machines(graph: System) -> Machines:
     """The nodes of each machine, by what Fast DDS calls it; a Zenoh router does not say which."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for node in graph.nodes if graph.environment.rmw != ZENOH else ():
-        if host := machine(node.process):
-            found[host].append(node.name)
-    return dict(found)
+    nodes = graph.nodes if graph.environment.rmw != ZENOH else ()
+    return lists_by_key((host, it.name) for it in nodes if (host := machine(it.process)))
 
 
 def hidden_from_here(graph: System, seen: Machines) -> bool:

@@ -16,22 +16,18 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Set
 from functools import cache
 from typing import NamedTuple
 
-from multibot_rewrite.base.conventions import BODY_FRAMES, USUAL_FRAMES
+from multibot_rewrite.base.conventions import BODY_FRAMES, OF_A_ROBOT, USUAL_FRAMES
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.system.ownership import SEPARATORS, Whose
 from multibot_rewrite.system.records import TOPIC, Edge, System
 from multibot_rewrite.system.tool_nodes import is_tool
 
-# Topics of a robot's body: two of them are enough, or one of tf.
-BODY = (
-    *("cmd_vel", "odom", "joint_states", "robot_description", "tf", "tf_static", "initialpose"),
-    "scan",
-)
 _TF = frozenset(("tf", "tf_static"))
 # Topics that a whole robot has; a lidar alone has a scan, and a camera sends tf.
 _WHOLE = frozenset(("cmd_vel", "odom", "joint_states", "robot_description"))
-# Namespaces with topics like a robot's that are only a part of one.
+# Namespaces with topics like a robot's that are only a part of one; two_finger_arm is an arm.
 _PART = re.compile(
-    r".*(cam|costmap|lidar|laser|scan|sensor|imu|gps|realsense|zed|oakd?$|velodyne|ouster|sick|wheel|motor"
+    r"(?!.*(?:arm|bot)_?[0-9]*$).*(cam|costmap|lidar|laser|scan|sensor|imu|gps|realsense|zed|oakd?$|velodyne|ouster|sick|wheel|motor"
     r"|gripper|controller|manager|server|caster|steering|finger|torso).*"
 )
 _NUMBER = re.compile(r"\d+")
@@ -53,9 +49,9 @@ class GuessedRobot(NamedTuple):
 
 def _of_parts(edges: Iterable[Edge]) -> set[str]:
     """The frames that hang on a robot's base: an arm, a wheel, whatever its own base is called."""
-    children: dict[str, list[str]] = defaultdict(list)
-    for edge in edges:
-        children[edge.parent.removeprefix("/")].append(edge.child.removeprefix("/"))
+    children = lists_by_key(
+        (it.parent.removeprefix("/"), it.child.removeprefix("/")) for it in edges
+    )
     todo, found = [*BODY_FRAMES], {*BODY_FRAMES}
     for frame in todo:  # grows
         new = [it for it in children[frame] if it not in found]
@@ -75,7 +71,8 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     words = _last_words(graph)
     if words:
         return tuple(with_frames((GuessedRobot(it, "") for it in words), frames))
-    return tuple(_by_frames(frames - parts, _parents(graph.edges)))
+    parents = sets_by_key((it.child, it.parent) for it in graph.edges)
+    return tuple(_by_frames(frames - parts, parents))
 
 
 def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
@@ -98,7 +95,7 @@ def _namespaces(graph: System) -> list[str]:
     for end in graph.ends:
         space, _, word = end.name.rpartition("/")
         # Below a node's own name are its private names.
-        if end.kind == TOPIC and word in BODY and space and space not in nodes:
+        if end.kind == TOPIC and word in OF_A_ROBOT and space and space not in nodes:
             found[space].add(word)
     lived_in = [node.name for node in graph.nodes if not is_tool(node.name)]
     bodies = [
@@ -129,9 +126,8 @@ def _alike(graph: System, nodes: Iterable[str]) -> Iterator[str]:
     for spaces in below.values():
         times = Counter(name for names in spaces.values() for name in names)
         for space, names in spaces.items():
-            if any(times[name] > 1 for name in names) and _may_be_a_robot(
-                space, [f"{space}{it}" for it in names]
-            ):
+            full = [f"{space}{it}" for it in names]
+            if any(times[name] > 1 for name in names) and _may_be_a_robot(space, full):
                 yield space
 
 
@@ -157,7 +153,7 @@ def _last_words(graph: System) -> list[str]:
     found: dict[str, set[str]] = defaultdict(set)
     for end in graph.ends:
         *_, before, last = ("", *end.name.split("/"))
-        if end.kind == TOPIC and before in BODY and last not in BODY:
+        if end.kind == TOPIC and before in OF_A_ROBOT and last not in OF_A_ROBOT:
             found[last].add(before)
     nodes = [node.name for node in graph.nodes]
     return sorted(
@@ -165,14 +161,6 @@ def _last_words(graph: System) -> list[str]:
         for word, topics in found.items()
         if len(topics) > 1 and any(node.endswith(f"_{word}") for node in nodes)
     )
-
-
-def _parents(edges: Iterable[Edge]) -> Mapping[str, Set[str]]:
-    """The frames on which each hangs."""
-    direct: dict[str, set[str]] = defaultdict(set)
-    for edge in edges:
-        direct[edge.child].add(edge.parent)
-    return direct
 
 
 def _above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:
@@ -251,6 +239,10 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
         first = min((by_way[way] for way in _ways(frame) if way in by_way), default=None)
         return None if first is None else known[first]
 
+    def plain_frame(frame: str) -> str:
+        robot = of_frame(frame)
+        return frame.removeprefix(robot.before).removesuffix(robot.behind) if robot else frame
+
     def name_of(robot: GuessedRobot | None) -> str:
         return robot.name if robot else ""
 
@@ -259,7 +251,7 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
         cache(lambda name: name_of(of_name(name))),
         cache(lambda name: _plain(name, of_name(name))),
         cache(lambda frame: name_of(of_frame(frame))),
-        cache(lambda frame: _plain_frame(frame, of_frame(frame))),
+        cache(plain_frame),
     )
 
 
@@ -293,9 +285,3 @@ def _plain(name: str, robot: GuessedRobot | None) -> str:
         return name.removeprefix(robot.namespace)
     bare = name.removesuffix(f"/{robot.name}").removesuffix(f"_{robot.name}")
     return bare.replace(f"/{robot.name}_", "/", 1) or name
-
-
-def _plain_frame(frame: str, robot: GuessedRobot | None) -> str:
-    if robot is None:
-        return frame
-    return frame.removeprefix(robot.before).removesuffix(robot.behind)

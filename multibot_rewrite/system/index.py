@@ -9,6 +9,7 @@ from functools import wraps
 from typing import Any, NamedTuple, TypeVar, cast
 
 from multibot_rewrite.base.conventions import EVERYBODYS
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.system import words
 from multibot_rewrite.system.ownership import NameOwnership, Whose
@@ -20,6 +21,7 @@ from multibot_rewrite.system.records import (
     SERVES,
     SUBSCRIBES,
     TOPIC,
+    UNKNOWN_NODES,
     Edge,
     End,
     Node,
@@ -194,16 +196,28 @@ class Index(NamedTuple):
     @once
     def by_node(self) -> Mapping[str, Sequence[End]]:
         """The ends of each node, hidden ones as well."""
-        found: dict[str, list[End]] = defaultdict(list)
-        for end in self.system.ends:
-            found[end.node].append(end)
-        return found
+        return lists_by_key((end.node, end) for end in self.system.ends)
 
     @property
     @once
     def by_name(self) -> Mapping[tuple[str, str], Ends]:
         """The ends of each kind and name, without hidden ones."""
-        return {(it.kind, it.name): it for it in _ends(self.system.ends)}
+        found: dict[tuple[str, str], tuple[list[End], ...]] = {}
+        for end in self.system.ends:
+            if "/_" in end.name:
+                continue
+            key = end.kind, end.name
+            if key not in found:
+                found[key] = ([], [], [], [])
+            found[key][_PLACE[end.role]].append(end)
+        return {
+            key: Ends(*key, next(filter(None, sides))[0].type, *map(tuple, sides))
+            for key, sides in found.items()
+        }
+
+    def ends_at(self, kind: str, name: str) -> Ends:
+        """The ends of a kind and name; of an unknown name there are none."""
+        return self.by_name.get((kind, name)) or Ends(kind, name, "", (), (), (), ())
 
     @property
     @once
@@ -223,7 +237,18 @@ class Index(NamedTuple):
     @once
     def trees(self) -> Sequence[Tree]:
         """The transforms by their tf topic."""
-        return [*_trees(self.system, self.by_name.values())]
+        topics = lists_by_key(
+            (tree_topic(it.name), it) for it in self.by_name.values() if it.type == TF
+        )
+        known = (it for it in self.system.edges if "/_" not in it.topic and it.sure != OFF)
+        edges = lists_by_key((tree_topic(it.topic), _without_slash(it)) for it in known)
+        found = []
+        for topic in dict.fromkeys((*edges, *topics)):
+            own, heard = topics[topic], (node for it in edges[topic] for node in it.publishers)
+            senders = (*(end.node for it in own for end in it.publishers), *heard)
+            listeners = (end.node for it in own if it.name == topic for end in it.subscribers)
+            found.append(Tree(topic, tuple(edges[topic]), unique(senders), unique(listeners)))
+        return found
 
     @property
     @once
@@ -240,6 +265,11 @@ class Index(NamedTuple):
     def is_live(self) -> bool:
         """Was it seen running? Next to what launch files start there may be more."""
         return not any(it.place.file for it in self.system.nodes)
+
+    @property
+    def in_doubt(self) -> bool:
+        """May nodes run that no source names, such as a driver?"""
+        return any(it.code == UNKNOWN_NODES for it in self.system.environment.caveats)
 
     def is_tool(self, node: str) -> bool:
         """Is the node none of the robots', but one that comes and goes beside any?"""
@@ -307,42 +337,7 @@ def spaces(it: Index) -> Set[str]:
 
 def ends_of(it: Index, name: str) -> Iterator[End]:
     """All ends of a name, whatever their kind."""
-    for kind in KINDS:
-        found = it.by_name.get((kind, name))
-        if found:
-            yield from (end for side in found[3:] for end in side)
-
-
-def _ends(endpoints: Iterable[End]) -> Iterator[Ends]:
-    found: dict[tuple[str, str], tuple[list[End], ...]] = {}
-    for end in endpoints:
-        key = (end.kind, end.name)
-        if "/_" in end.name:
-            continue
-        sides = found.get(key)
-        if sides is None:
-            sides = found[key] = ([], [], [], [])
-        sides[_PLACE[end.role]].append(end)
-    for (kind, name), sides in found.items():
-        first = next(filter(None, sides))[0]
-        yield Ends(kind, name, first.type, *map(tuple, sides))
-
-
-def _trees(system: System, names: Iterable[Ends]) -> Iterator[Tree]:
-    topics: dict[str, list[Ends]] = defaultdict(list)
-    edges: dict[str, list[Edge]] = defaultdict(list)
-    for ends in names:
-        if ends.type == TF:
-            topics[tree_topic(ends.name)].append(ends)
-    for frame in system.edges:
-        if "/_" not in frame.topic and frame.sure != OFF:
-            edges[tree_topic(frame.topic)].append(_without_slash(frame))
-    for topic in dict.fromkeys((*edges, *topics)):
-        own = topics.get(topic, ())
-        heard = (node for frame in edges.get(topic, ()) for node in frame.publishers)
-        senders = (*(end.node for it in own for end in it.publishers), *heard)
-        listeners = (end.node for it in own if it.name == topic for end in it.subscribers)
-        yield Tree(topic, tuple(edges.get(topic, ())), unique(senders), unique(listeners))
+    return (end for kind in KINDS for side in it.ends_at(kind, name)[3:] for end in side)
 
 
 def _without_slash(frame: Edge) -> Edge:
@@ -365,8 +360,8 @@ def at_work(ends: Iterable[End]) -> list[End]:
 
 def sent_on(it: Index, topic: str) -> tuple[str, tuple[str, ...]]:
     """The type of a topic, and the nodes that publish it and do more than look; empty without."""
-    ends = it.by_name.get((TOPIC, topic))
-    return (ends.type, nodes_of(at_work(ends.publishers))) if ends else ("", ())
+    ends = it.ends_at(TOPIC, topic)
+    return ends.type, nodes_of(at_work(ends.publishers))
 
 
 def robots_of(it: Index, nodes: Iterable[str]) -> tuple[str, ...]:

@@ -40,15 +40,11 @@ def to_json(system: System) -> bytes:
 
 def _json(value: Any) -> str:
     if has_rows(value):
-        return "[\n  " + ",\n  ".join(map(_line, value)) + "\n ]"
+        lines = (json.dumps(plain_value(it), ensure_ascii=False) for it in value)
+        return "[\n  " + ",\n  ".join(lines) + "\n ]"
     plain = plain_value(value)
-    if isinstance(plain, dict):
-        return json.dumps(plain, indent=1, ensure_ascii=False).replace("\n", "\n ")
-    return _line(plain)
-
-
-def _line(record: object) -> str:
-    return json.dumps(plain_value(record), ensure_ascii=False)
+    indent = 1 if isinstance(plain, dict) else None
+    return json.dumps(plain, indent=indent, ensure_ascii=False).replace("\n", "\n ")
 
 
 def to_yaml(system: System) -> str:

@@ -7,10 +7,11 @@ any look has seen it.
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.system.environment import UNFINISHED, participants, unfinished
 from multibot_rewrite.system.records import (
@@ -95,7 +96,9 @@ def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
         totals |= Counter(node.name for node in nodes)
         for node in nodes:
             key = node.name, node.process
-            best[key] = _fuller(best.get(key, node), node)
+            best[key] = Node._make(
+                mine or theirs for mine, theirs in zip(best.get(key, node), node, strict=True)
+            )
     known = Counter(name for name, process in most.elements() if process)
     for (name, process), times in sorted(most.items()):
         # The process was not known to one look, and is to another.
@@ -103,28 +106,19 @@ def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
         yield from [best[name, process]] * new
 
 
-def _fuller(one: Node, other: Node) -> Node:
-    """With what the other look knows and this one leaves empty."""
-    return Node._make(mine or theirs for mine, theirs in zip(one, other, strict=True))
-
-
 def _endpoints(looks: Sequence[Sequence[End]]) -> list[End]:
     """Each endpoint once, from the look that knows most of it."""
     best: dict[tuple[str, ...], list[End]] = {}
     for endpoints in looks:
-        for key, ends in _by_owner(endpoints).items():
+        found = lists_by_key(
+            ((it.kind, it.name, it.role, it.node, it.process), it) for it in endpoints
+        )
+        for key, ends in found.items():
             if key not in best or _detail(ends) > _detail(best[key]):
                 best[key] = ends
     placed = {key[:-1] for key in best if key[-1]}
     kept = [ends for key, ends in best.items() if key[-1] or key[:-1] not in placed]
     return sorted((end for ends in kept for end in ends), key=repr)
-
-
-def _by_owner(endpoints: Iterable[End]) -> dict[tuple[str, ...], list[End]]:
-    found: dict[tuple[str, ...], list[End]] = defaultdict(list)
-    for end in endpoints:
-        found[end.kind, end.name, end.role, end.node, end.process].append(end)
-    return found
 
 
 def _detail(ends: Sequence[End]) -> tuple[int, int, int]:
@@ -134,9 +128,7 @@ def _detail(ends: Sequence[End]) -> tuple[int, int, int]:
 
 def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
     """Each transform once a topic, with the publishers that any look has seen."""
-    found: dict[tuple[str, str, str], list[Edge]] = defaultdict(list)
-    for frame in frames:
-        found[frame.topic, frame.parent, frame.child].append(frame)
+    found = lists_by_key(((frame.topic, frame.parent, frame.child), frame) for frame in frames)
     for (topic, parent, child), same in sorted(found.items()):
         publishers = {node for frame in same for node in frame.publishers}
         static = any(frame.static for frame in same)

@@ -13,6 +13,7 @@ from itertools import chain
 from sys import intern
 from typing import Any
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.system.parameters import parameter_text, parameter_value
 from multibot_rewrite.system.record_values import (
     Reader,
@@ -64,13 +65,9 @@ def has_rows(value: Any) -> bool:
 
 def _below_robots(system: System) -> dict[str, object]:
     nodes: dict[str, list[object]] = defaultdict(list)
-    ends: dict[str, list[End]] = defaultdict(list)
-    parameters: dict[str, list[Parameter]] = defaultdict(list)
+    ends = lists_by_key((it.node, it) for it in system.ends)
+    parameters = lists_by_key((it.node, it) for it in system.parameters)
     robots = {it.name for it in system.robots}
-    for end in system.ends:
-        ends[end.node].append(end)
-    for it in system.parameters:
-        parameters[it.node].append(it)
     for node in system.nodes:
         whose = node.robot if node.robot in robots else ""
         own = plain_value(node._replace(robot="") if whose else node)

@@ -48,9 +48,6 @@ class NameOwnership(NamedTuple):
             if above in self.nodes:
                 return self.nodes[above]
             above = above.rpartition("/")[0]
-        return self._robot_by_tag(name)
-
-    def _robot_by_tag(self, name: str) -> str:
         at_its_place = self.robot_at_its_place(name)
         if at_its_place:
             return at_its_place
@@ -222,21 +219,15 @@ def name_ownership(plan: System) -> NameOwnership:
     last = _is_last({*nodes.items(), *planned, *tf})
     levels = max((name.count("/") + 1 for name in robots), default=1)
     draft = NameOwnership({}, nodes, robots, frozenset(), last, levels=levels)
-    topics = _robots_of_topics(plan, draft)
+    # The topics of which a plan says more, each with the robot whose tag is at its place there, or in
+    # the topic that it is below: of /scan/a/points that of /scan/a.
+    topics: dict[str, str] = {}
+    for name in sorted(it.name for it in plan.topics):
+        if robot := topics.get(name.rpartition("/")[0]) or draft.robot_at_its_place(name):
+            topics[name] = robot
     draft = draft._replace(exact={**topics, **_of_one_robot((*nodes.items(), *planned))})
     words = _plain_words(plan, draft, topics)
     return draft._replace(ambiguous_words=frozenset(robots.keys() & words))
-
-
-def _robots_of_topics(plan: System, draft: NameOwnership) -> dict[str, str]:
-    """The topics of which a plan says more, each with the robot whose tag is at its place there, or in
-    the topic that it is below: of /scan/a/points that of /scan/a."""
-    found: dict[str, str] = {}
-    for name in sorted(it.name for it in plan.topics):
-        robot = found.get(name.rpartition("/")[0]) or draft.robot_at_its_place(name)
-        if robot:
-            found[name] = robot
-    return found
 
 
 def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) -> set[str]:

@@ -17,7 +17,6 @@ from multibot_rewrite.system.records import (
     SIM_TIME,
     Caveat,
     Controller,
-    Node,
     Parameter,
     System,
 )
@@ -60,26 +59,21 @@ def with_answers(
     said = tuple(answers)
     silent = {it.node for it in asked if it.type == GET_PARAMETERS} - {it.node for it in said}
     states = {it.node: it.lifecycle for it in said if it.lifecycle}
-    caveats = (*system.environment.caveats, *_silent(silent))
+    caveats = system.environment.caveats
+    if silent:
+        text = (
+            f"{shorten(sorted(silent), SEVERAL)} did not answer --state within {ANSWER_SECONDS:g} s,"
+            " so what such a node does is not known; does it hang?"
+        )
+        caveats = (*caveats, Caveat(SILENT, True, text))
     return system._replace(
         environment=system.environment._replace(caveats=caveats),
-        nodes=tuple(_in_state(it, states) for it in system.nodes) if states else system.nodes,
+        nodes=tuple(
+            it._replace(lifecycle=states.get(it.name, it.lifecycle)) for it in system.nodes
+        ),
         parameters=(*system.parameters, *(own for it in said for own in it.parameters)),
         controllers=(*system.controllers, *(own for it in said for own in it.controllers)),
     )
-
-
-def _silent(nodes: Collection[str]) -> Iterator[Caveat]:
-    if nodes:
-        text = (
-            f"{shorten(sorted(nodes), SEVERAL)} did not answer --state within {ANSWER_SECONDS:g} s,"
-            " so what such a node does is not known; does it hang?"
-        )
-        yield Caveat(SILENT, True, text)
-
-
-def _in_state(node: Node, states: Mapping[str, str]) -> Node:
-    return node._replace(lifecycle=states[node.name]) if node.name in states else node
 
 
 GET_STATE = "lifecycle_msgs/srv/GetState"

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import re
-from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.system.records import End, System
 
@@ -46,9 +46,7 @@ def with_names(plan: System, graph: System) -> System:
     fits stays, and is missing. ``graph`` has its nodes as the plan calls them."""
     if not any(ANY in it.name for it in plan.ends):
         return plan
-    by_node: dict[str, list[End]] = defaultdict(list)
-    for end in graph.ends:
-        by_node[end.node].append(end)
+    by_node = lists_by_key((end.node, end) for end in graph.ends)
     found = (end for it in plan.ends for end in _there(it, by_node))
     return plan._replace(ends=tuple(dict.fromkeys(found)))
 

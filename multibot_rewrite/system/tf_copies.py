@@ -59,8 +59,11 @@ def without_bridged(plan: System, frames: Iterable[Edge]) -> tuple[Edge, ...]:
     """The transforms without those on ``/tf`` that are a robot's own with its namespace in front of
     both frames, and without what joins its world to that of the fleet."""
     seen, copied = tuple(frames), set(copying_nodes(plan).values())
+    # tf_namespace_bridge src/tf_namespace_bridge.cpp
     home = {
-        tree_topic(it.tf_topic): _prefix(it.tf_topic) for it in plan.robots if it.name in copied
+        tree_topic(it.tf_topic): it.tf_topic.removesuffix("tf").lstrip("/")
+        for it in plan.robots
+        if it.name in copied
     }
     if not home:
         return seen
@@ -74,8 +77,3 @@ def without_bridged(plan: System, frames: Iterable[Edge]) -> tuple[Edge, ...]:
         for edge in seen
         if tree_topic(edge.topic) != _TF or (edge.child, edge.parent) not in known
     )
-
-
-def _prefix(tf: str) -> str:
-    """``robot1/`` of ``/robot1/tf``. Source: tf_namespace_bridge src/tf_namespace_bridge.cpp."""
-    return tf.removesuffix("tf").lstrip("/")

@@ -70,6 +70,14 @@ def test_an_isolated_child_keeps_that_no_bytecode_is_written(
     assert "-B" not in isolated("x")
 
 
+def test_an_isolated_child_finds_what_was_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It sees no variable, and may have another working directory."""
+    monkeypatch.setattr(sys, "pycache_prefix", "compiled")
+    assert f"pycache_prefix={os.path.abspath('compiled')}" in isolated("x")
+    monkeypatch.setattr(sys, "pycache_prefix", None)
+    assert not any("pycache_prefix" in it for it in isolated("x")[:-1])
+
+
 def test_git_runs_no_program_of_a_repository(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

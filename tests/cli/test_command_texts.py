@@ -45,6 +45,7 @@ from multibot_rewrite.fleet.one_file import RewrittenFile
 from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.live import rehearsal
+from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.learning.learn import LearnedNode
 from multibot_rewrite.system.records import (
     ACTION,
@@ -413,7 +414,11 @@ def test_a_graph_of_tools_alone_has_nothing_to_judge() -> None:
     for graph, reasons in (
         (System(), said), (System((Node("/rviz2"),)), said), (System((Node("/rviz2"), Node("/a"))), []),
     ):  # fmt: skip
-        assert [*unplanned._nothing_seen(graph)] == reasons
+        seen = diagnose(graph)
+        assert [*unplanned._nothing_seen(seen)] == reasons
+        # What is found between tools was judged.
+        found = seen._replace(findings=(Finding("MG306", "error", "differs"),))
+        assert [*unplanned._nothing_seen(found)] == []
 
 
 def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) -> None:

@@ -178,6 +178,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         (f"multibot snapshot {PARAMS}", "a parameter file; rewrite it with urdf-postfix"),
         ("multibot snapshot --expect /a /b", "unexpected /b; a list is written A,B"),
         ("multibot build a.yaml b.yaml --select MB1", "unexpected b.yaml; see"),
+        ("multibot build fleet.yaml 3", "unexpected 3; the number of robots is -n 3; see"),
         ("urdf-lint a --output-format github", "did you mean '--format'?"),
         ("multibot build --robots a,b", "write the key robots: into the fleet file"),
         ("multibot build --urdf a.urdf", "write the key description: into the fleet file"),

@@ -41,8 +41,10 @@ COMMANDS = {
 def test_the_schema_is_beside_the_file(command: str, tmp_path: Path, capsys: Any) -> None:
     words, wanted = COMMANDS[command]
     (tmp_path / "graph.json").write_text(GRAPH)
+    # Alone: beside it ``init`` reads each launch file of the repository.
+    (tmp_path / "rover.urdf").write_bytes((ROBOTS / "rover.urdf").read_bytes())
     paths = {
-        "urdf": ROBOTS / "rover.urdf",
+        "urdf": tmp_path / "rover.urdf",
         "graph": tmp_path / "graph.json",
         "new": tmp_path / "new",
     }

@@ -27,6 +27,12 @@ ROVER = FIXTURES / "robots" / "rover.urdf"
         ("--affix prefix --separator _", "--affix prefix", "--separator _"),
         ("--layout frames-per-robot", "", "--layout frames-per-robot"),
         ("--layout both --affix prefix", "--layout both", "--affix prefix"),
+        # That of frame-prefix alone would be proved as well, and leave the links.
+        (
+            "--layout frames-per-robot --affix prefix",
+            "",
+            "--affix prefix --layout frames-per-robot",
+        ),
     ],
 )
 def test_the_missing_options_are_named_and_take_it_back(
@@ -47,6 +53,21 @@ def test_the_missing_options_are_named_and_take_it_back(
     assert back.read_bytes() == ROVER.read_bytes()
 
 
+def test_who_leaves_the_name_in_all_links_is_warned(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made, back = str(tmp_path / "made.urdf"), str(tmp_path / "back.urdf")
+    given = ["--layout", "frames-per-robot", "--affix", "prefix"]
+    assert main([str(ROVER), "robot1", *given, "-o", made]) == 0
+    for layout, is_warned in ((["--layout", "frame-prefix"], True), (given, False)):
+        capsys.readouterr()
+        assert main([made, "robot1", "--undo", *layout, "-o", back]) == 0
+        told = (
+            "in all links still; was the file made with --affix prefix --layout frames-per-robot?"
+        )
+        assert (told in capsys.readouterr().err) is is_warned
+
+
 def test_what_no_option_takes_back_is_told_as_before(capsys: pytest.CaptureFixture[str]) -> None:
     """The source itself was not rewritten at all, and not for another robot."""
     assert main([str(ROVER), "robot1", "--undo"]) == 1
@@ -59,14 +80,15 @@ def tried(takes_back: Callable[[dict[str, Any]], bool], **given: Any) -> tuple[l
     error = RewriteRefused((Finding("MB000", "error", "refused", "as before"),))
     counts: list[int] = []
 
-    def undo(more: argparse.Namespace) -> None:
+    def undo(more: argparse.Namespace) -> bytes:
         added = {name: it for name, it in vars(more).items() if it and not given.get(name)}
         assert given.items() <= vars(more).items()
         counts.append(len(added))
         if not takes_back(added):
             raise InputError("no")
+        return b"<robot/>"
 
-    (found,) = with_missing_options(error, options, undo).findings
+    (found,) = with_missing_options(error, options, undo, "robot1").findings
     return counts, found.hint
 
 

@@ -444,7 +444,8 @@ def test_what_is_said_of_a_camera_and_of_windows_of_their_own() -> None:
         2,
         "MF203",
         "one rviz2 reads one tf topic, but in layout tf-per-robot each robot has its own",
-        "each robot gets its own config; start rviz2 with -r /tf:=/robot1/tf, see commands.md",
+        "each robot gets its own config; for one window write layout: frames-per-robot, or"
+        " relayed: true, in the fleet file",
     )
 
 

@@ -493,6 +493,25 @@ def test_what_is_in_a_comment_is_for_no_simulator(fleet: Any) -> None:
     assert [spawn.simulators(fleet("L2", body=it)) for it in bodies] == [["classic"], ["gz"]]
 
 
+@pytest.mark.parametrize(
+    ("other", "simulators"),
+    [
+        ("", ["classic"]),
+        ('<gazebo><plugin name="p" filename="gz-sim-acme-system"/></gazebo>', ["classic", "gz"]),
+        ('<gazebo reference="base"><sensor name="s" type="imu"/></gazebo>', ["classic", "gz"]),
+    ],
+)
+def test_what_says_nothing_of_a_simulator_is_in_that_of_the_others(
+    fleet: Any, tmp_path: Path, other: str, simulators: list[str]
+) -> None:
+    (tmp_path / "arm.urdf").write_text(ROVER.format(other))
+    more = "robots:\n  - {name: a, description: arm.urdf}\n"
+    fleet("L2", body=classic(SPACE))
+    text = (tmp_path / "fleet.yaml").read_text()
+    (tmp_path / "fleet.yaml").write_text(text.replace("robots:\n", more))
+    assert spawn.simulators(planned_fleet("fleet.yaml")) == simulators
+
+
 def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:
     for layout in LAYOUTS:
         made, _ = spawn.spawns(fleet(layout))

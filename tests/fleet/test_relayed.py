@@ -73,6 +73,11 @@ def test_a_relay_reads_the_robots_tf_and_writes_tf(
     assert ends == {(SUBSCRIBES, source), (PUBLISHES, "/tf")}
 
 
+@pytest.mark.parametrize("layout", ["both", "postfix", "tf-per-robot"])
+def test_what_relays_send_is_no_gap_of_their_robot(tmp_path: Path, layout: str) -> None:
+    assert "MG405" not in {it.code for it in fleet(tmp_path, layout).made.findings}
+
+
 @pytest.mark.parametrize("layout", ["both", "postfix"])
 def test_a_relayed_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path, layout: str) -> None:
     plan = expected(fleet(tmp_path, layout).plan.fleet)

@@ -554,6 +554,23 @@ def test_a_file_is_judged_with_the_descriptions_beside_it(tmp_path: Path) -> Non
     assert [it.code for it in lint_files(paths, Settings(select=("MB85",)))] == ["MB853"]
 
 
+def test_a_file_is_held_against_the_description_that_is_named(tmp_path: Path) -> None:
+    """Where none of its joints is there, too: without --urdf it may be another robot's."""
+    (tmp_path / "arm.urdf").write_text(
+        '<robot name="arm"><link name="a"/><link name="b"/><joint name="ur_shoulder" type="fixed">'
+        '<parent link="a"/><child link="b"/></joint></robot>'
+    )
+    file = tmp_path / "control.yaml"
+    file.write_text(
+        "jtc:\n  ros__parameters: {joints: [shoulder], command_interfaces: [position]}\n"
+    )
+    named = Settings(select=("MB854",), urdf=str(tmp_path / "arm.urdf"))
+    assert [it.message for it in lint_file(str(file), named)] == [
+        "joint 'shoulder' is in no description"
+    ]
+    assert lint_file(str(file), named._replace(urdf="")) == []
+
+
 @pytest.mark.slow
 def test_the_known_parameters_are_those_of_the_sources() -> None:
     """After a change: python -m tools.interfaces.declared_table fixtures/interfaces"""

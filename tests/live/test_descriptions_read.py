@@ -144,6 +144,22 @@ def test_a_description_fits_its_robot(links: str, joints: str, told: str) -> Non
     assert all(told in it.message for it in found)
 
 
+@pytest.mark.parametrize(
+    ("heard", "wrong"), [(["head"], False), (["head", "a"], False), (["head", "neck"], True)]
+)
+def test_several_who_send_joints_have_them_together(heard: list[str], wrong: bool) -> None:
+    """One that sends none of the description's is healthy where another does, or was not heard."""
+    lines = [it.format("robot1") for it in ROBOT]
+    lines += [
+        "/robot1/more publishes /robot1/joint_states sensor_msgs/msg/JointState",
+        "description on /robot1/robot_description: links robot1/base, robot1/arm; joints a, b",
+        *(f"joints {it} on /robot1/joint_states" for it in heard),
+    ]
+    found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    assert [it.code for it in found] == ["MG420"] * wrong
+    assert all("/robot1/jsb, /robot1/more sends head, neck" in it.message for it in found)
+
+
 def test_who_waits_for_an_empty_one_is_named() -> None:
     lines = [
         ROBOT[0].format("robot1"),

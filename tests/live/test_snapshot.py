@@ -564,3 +564,13 @@ def test_an_empty_view_is_looked_at_again(
     monkeypatch.setattr(child, "_observe_once", lambda *_: views.pop())
     assert child.observe(Request(15.0), {}).nodes == full.nodes
     assert len(views) == 2 - looks
+
+
+def test_nothing_is_planned_by_a_graph_without_nodes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = str(tmp_path / "graph.json")
+    Path(file).write_bytes(to_json(System(environment=Environment(settled="quiet"))))
+    assert main(["check", file, "--from", file]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f"{file}: no node ran when this snapshot was taken; take one" in line

@@ -7,7 +7,7 @@ code of the nodes and of tf2_ros.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import pytest
@@ -732,3 +732,31 @@ def test_a_controller_has_the_type_of_its_own_section(
         "MG728 no parameter of /controller_manager says the type of bare"
     ]
     assert "/own (acme/Own)" in said.err
+
+
+TELEOP = "teleop_twist_keyboard/teleop_twist_keyboard"
+UNTOLD = ParameterText("", "", untold="stamped")
+
+
+@pytest.mark.parametrize(
+    ("program", "topic", "values", "types"),
+    [
+        (TELEOP, "cmd_vel", {}, ("Twist",)),
+        (TELEOP, "cmd_vel", {"stamped": True}, ("TwistStamped",)),
+        # twist_mux 4.5.0, which Jazzy has.
+        ("twist_mux/twist_mux", "cmd_vel_out", {}, ("TwistStamped",)),
+        ("twist_mux/twist_mux", "cmd_vel_out", {"use_stamped": False}, ("Twist",)),
+        ("nav2_velocity_smoother/velocity_smoother", "cmd_vel", {}, ("Twist",)),
+    ],
+)
+def test_a_type_that_a_parameter_chooses_has_its_default(
+    run: Graph, program: str, topic: str, values: Mapping[str, object], types: Sequence[str]
+) -> None:
+    it = node(program, "n", **values)
+    (end,) = [one for one in run(it).ends if one.name == f"/robot1/{topic}"]
+    assert (end.type, *end.also) == tuple(f"geometry_msgs/msg/{one}" for one in types)
+    # A value that only a run tells may be any.
+    doubtful = it._replace(parameters=(*it.parameters, UNTOLD))
+    (end,) = [one for one in run(doubtful).ends if one.name == f"/robot1/{topic}"]
+    # What is chosen is chosen still.
+    assert bool(end.also) is (types == ("Twist",))

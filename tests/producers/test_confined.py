@@ -138,6 +138,45 @@ def test_a_launch_file_sees_nothing_of_a_machine(
     assert not read(file, trust=True).notes
 
 
+def test_a_launch_file_waits_for_nothing(kept: Path) -> None:
+    """What it would wait for is not started; where it may start it, it waits."""
+    file = kept / "own/a.launch.py"
+    file.write_text(ASKS.replace("LINE", "__import__('time').sleep(3600)"))
+    assert [it.executable for it in read(file).nodes] == ["None"]
+    (found,) = read_launch_files([LaunchOrder(str(file), (), (), True)], 2.0)
+    assert "took more than 2 s" in str(found)
+
+
+def test_a_launch_file_reads_what_python_has_compiled(
+    kept: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else what it imports is compiled for each launch file anew."""
+    compiled = kept / "compiled"
+    compiled.mkdir()
+    monkeypatch.setenv("PYTHONPYCACHEPREFIX", str(compiled))
+    file = kept / "own/a.launch.py"
+    file.write_text(ASKS.replace("LINE", "os.listdir(__import__('sys').pycache_prefix)"))
+    assert next(it.executable for it in read(file).nodes).startswith("[")
+
+
+def test_of_a_description_no_folder_is_asked_for(kept: Path) -> None:
+    """Its text has thousands of slashes: as a path it would be as many folders."""
+    file = kept / "own/a.launch.py"
+    file.write_text(
+        "import os\nfrom launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
+        "look, asked = os.lstat, [0]\n"
+        "def counted(path, *words, **options):\n"
+        "    asked[0] += len(os.fspath(path)) > 2000\n    return look(path, *words, **options)\n"
+        "def generate_launch_description():\n"
+        "    text = '<robot>' + '\\n<link/>' * 400\n    os.lstat = counted\n"
+        "    from launch.actions import OpaqueFunction as Then\n"
+        "    told = lambda _: [Node(package='p', executable=str(asked[0]))]\n"
+        "    one = Node(package='p', executable='one', parameters=[{'robot_description': text}])\n"
+        "    return LaunchDescription([one, Then(function=told)])\n"
+    )
+    assert [it.executable for it in read(file).nodes] == ["one", "0"]
+
+
 def test_what_a_launch_file_may_do(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """All that is refused leaves everything as it was; all else is done."""
     if not fences.version():

@@ -11,10 +11,20 @@ from graph_calls import diagnose, seen_plan
 from graph_examples import read_system
 from graph_faults import FAULTS, Fault
 
-from multibot_rewrite.base.findings.finding import Finding, Remap
+from multibot_rewrite.base.findings.finding import Finding, Remap, Setting
 from multibot_rewrite.rules.check import check, judge
-from multibot_rewrite.system.records import Edge, System
+from multibot_rewrite.system.records import (
+    SIM_TIME,
+    SUBSCRIBES,
+    TOPIC,
+    Edge,
+    End,
+    Heard,
+    Parameter,
+    System,
+)
 
+CLOCK = "rosgraph_msgs/msg/Clock"
 TWIST, SCAN = "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan"
 
 
@@ -28,6 +38,27 @@ def remapped(graph: System, rules: Iterable[Remap]) -> System:
         edges = (moved for it in graph.edges for moved in _moved(it, rule))
         graph = graph._replace(ends=ends, edges=tuple(_once(edges)))
     return graph
+
+
+def with_settings(graph: System, settings: Iterable[Setting]) -> System:
+    """The system whose nodes have these values: of parameters, or in what they send."""
+    for it in settings:
+        if it.topic:
+            heard = (one._replace(**_told(one, it)) for one in graph.heard)
+            graph = graph._replace(heard=tuple(heard))
+            continue
+        others = (one for one in graph.parameters if one[:2] != (it.node, it.name))
+        graph = graph._replace(parameters=(*others, Parameter(it.node, it.name, it.value)))
+        if it.name == SIM_TIME:
+            clock = End(TOPIC, SUBSCRIBES, "/clock", CLOCK, node=it.node)
+            apart = (one for one in graph.ends if one[:3] != clock[:3] or one.node != it.node)
+            graph = graph._replace(ends=(*apart, *[clock] * (it.value == "true")))
+    return graph
+
+
+def _told(heard: Heard, it: Setting) -> dict[str, str]:
+    field = "child" if it.name == "child_frame_id" else "frame"
+    return {field: it.value} if heard.topic == it.topic else {}
 
 
 def _moved(edge: Edge, rule: Remap) -> Iterator[Edge]:
@@ -73,6 +104,25 @@ def test_rules_of_a_hint_mend_the_fault(fault: Fault, found: tuple[Finding, ...]
         for rule in it.remaps:
             assert rule.old.rpartition("/")[2] in it.hint, "the hint does not say it"
         after = diagnose(remapped(graph, it.remaps)).findings
+        assert (it.code, it.robot, it.node) not in about(after), it
+        assert about(after) <= about(found), it
+
+
+SET = [(it, diagnose(it.change(it.system())).findings) for it in FAULTS]
+SET = [(it, found) for it, found in SET if any(one.settings for one in found)]
+
+
+def test_faults_of_clocks_and_frames_have_such_a_hint() -> None:
+    codes = {one.code for _, found in SET for one in found if one.settings}
+    assert codes >= {"MG411", "MG412", "MG503"}
+
+
+@pytest.mark.parametrize(("fault", "found"), SET, ids=[it.name for it, _ in SET])
+def test_values_of_a_hint_mend_the_fault(fault: Fault, found: tuple[Finding, ...]) -> None:
+    graph = fault.change(fault.system())
+    for it in (one for one in found if one.settings):
+        assert all(one.value in it.hint for one in it.settings), "the hint does not say it"
+        after = diagnose(with_settings(graph, it.settings)).findings
         assert (it.code, it.robot, it.node) not in about(after), it
         assert about(after) <= about(found), it
 

@@ -68,6 +68,26 @@ def test_which_command_a_reader_may_have_meant(reader: str, senders: str, meant:
     assert found == [f"MG303 {level} /robot1/{node}: {miss}; {there}"] * bool(meant)
 
 
+@pytest.mark.parametrize(
+    ("reader", "sender", "is_meant"),
+    [
+        ("docking_server detected_dock_pose", "following_server filtered_dynamic_pose", False),
+        ("docking_server detected_dock_pose", "finder dock_location", True),
+        ("docking_server detected_dock_pose", "finder other/detected_dock_pose", True),
+    ],
+)
+def test_of_plain_data_the_names_have_something_in_common(
+    reader: str, sender: str, is_meant: bool
+) -> None:
+    pose = "geometry_msgs/msg/PoseStamped"
+    (one, asked), (other, sent) = reader.split(), sender.split()
+    found = said(
+        f"/robot1/{one} subscribes /robot1/{asked} {pose} as {asked}",
+        f"/robot1/{other} publishes /robot1/{sent} {pose} as {sent}",
+    )
+    assert any(it.startswith("MG303") for it in found) is is_meant
+
+
 PAIR = (f"/robot1/amcl subscribes /clock {CLOCK}", f"/robot2/amcl subscribes /clock {CLOCK}")
 BRIDGE = f"/ros_gz_bridge publishes /clock {CLOCK}"
 
@@ -1068,3 +1088,17 @@ def test_only_a_robot_of_its_kind_sends_what_another_lacks(
         + ("no node sends /robot1/scan, and one sends /robot2/scan" if level == "error" else
            "no known node sends /robot1/scan")
     ]  # fmt: skip
+
+
+def test_velocities_of_nav2_that_no_input_of_the_mux_reads() -> None:
+    """Nor the input of a joystick, which a person sends."""
+    mux = (
+        f"/robot1/twist_mux subscribes /robot1/{it} {TWIST} as <topics.*.topic>"
+        for it in ("cmd_vel", "joy_teleop/cmd_vel")
+    )
+    lines = [
+        *mux, f"/robot1/twist_mux publishes /robot1/platform/cmd_vel {TWIST} as cmd_vel_out",
+        f"/robot1/controller_server publishes /robot1/cmd_vel_nav {TWIST} as cmd_vel",
+    ]  # fmt: skip
+    (found,) = (it for it in said(*lines) if "cmd_vel_nav" in it)
+    assert found.endswith("which no node reads; /robot1/twist_mux reads /robot1/cmd_vel")

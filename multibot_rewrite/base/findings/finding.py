@@ -67,6 +67,16 @@ class Remap(NamedTuple):
     new: str
 
 
+class Setting(NamedTuple):
+    """A value that a node of a graph should have: of a parameter, or of a field of the messages that it
+    sends on ``topic``, which is empty for a parameter."""
+
+    node: str
+    name: str
+    value: str
+    topic: str = ""
+
+
 class Finding(NamedTuple):
     """Something that a person should know, and where.
 
@@ -78,8 +88,8 @@ class Finding(NamedTuple):
 
     In a fleet or graph, ``robot`` and ``node`` say who it is about (either may be empty) and
     ``names`` which topics, services, actions or frames. ``robots`` are all of which it is true, that of
-    its words first, where it is one for several or is known by its line. ``remaps`` mend it: the rules
-    that the hint names.
+    its words first, where it is one for several or is known by its line. ``remaps`` and ``settings``
+    mend it: the rules and values that the hint names.
     """
 
     code: str
@@ -97,6 +107,7 @@ class Finding(NamedTuple):
     names: tuple[str, ...] = ()
     robots: tuple[str, ...] = ()
     remaps: tuple[Remap, ...] = ()
+    settings: tuple[Setting, ...] = ()
 
     @property
     def place(self) -> str:

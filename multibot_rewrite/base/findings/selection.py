@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from multibot_rewrite.base.findings.finding import LEVELS, Finding, Remap
+from multibot_rewrite.base.findings.finding import LEVELS, Finding, Remap, Setting
 
 # In the place of a level: the rule is off.
 OFF = "off"
@@ -130,6 +130,7 @@ def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
         robot=_SLOT,
         names=tuple(map(blank, finding.names)),
         remaps=tuple(Remap(*map(blank, it)) for it in finding.remaps),
+        settings=tuple(Setting(*map(blank, it)) for it in finding.settings),
         robots=(),
     )
 

@@ -105,22 +105,18 @@ def typed(text: str) -> Scalar:
         number = int(text, 16 if hexadecimal else 8 if octal else 10)
         if -(2**63) <= number < 2**63:
             return number
-    return _float(text)
-
-
-def _float(text: str) -> float | str:
     if _DOTTED.fullmatch(text):
         return float(text.replace(".", "", 1))
     named = _NO_NUMBER.fullmatch(text)
     if named and (text[-1] != ")" or "n(" in text.lower()):
         return float(named[1])
     if _HEX_FLOAT.fullmatch(text):
-        number = float.fromhex(text)
+        amount = float.fromhex(text)
     elif _FLOAT.fullmatch(text):
-        number = float(text)
+        amount = float(text)
     else:
         return text
     # strtod reports what does not fit into a double; rcl then takes the text.
-    lost = math.isinf(number) or 0 < abs(number) < _SMALLEST
-    lost = lost or (number == 0 and any(it in "123456789" for it in text.lower().partition("e")[0]))
-    return text if lost else number
+    lost = math.isinf(amount) or 0 < abs(amount) < _SMALLEST
+    lost = lost or (amount == 0 and any(it in "123456789" for it in text.lower().partition("e")[0]))
+    return text if lost else amount

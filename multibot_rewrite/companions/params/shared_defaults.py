@@ -75,7 +75,16 @@ def default_lines(
             continue
         done.add(section.full)
         same = [names.known for other, names in pages if other.full == section.full]
-        here = set().union(*same) | _set_for(section, everywhere)
+        # What is set by any section that is, or may be, for the same node.
+        found: set[str] = set()
+        for full, names in everywhere:
+            if (
+                f"/{section.path}" == full
+                or ("*" in full and is_for(full, section.full))
+                or (section.wild and is_for(section.full, full))
+            ):
+                found |= names
+        here = set().union(*same) | found
         there = here | bare_frames(section.node) if frames_stay(job, section) else here
         lines = list(missing_defaults(job.context, section.node, there))
         if lines:
@@ -105,19 +114,6 @@ def missing_defaults(
                 yield DefaultLine(
                     DEFAULT if own == param.default else OWN_FRAME, param.path, quoted(text)
                 )
-
-
-def _set_for(section: ParamSection, everywhere: Iterable[tuple[str, set[str]]]) -> set[str]:
-    """What is set by any section that is, or may be, for the same node."""
-    found: set[str] = set()
-    for full, names in everywhere:
-        if (
-            f"/{section.path}" == full
-            or ("*" in full and is_for(full, section.full))
-            or (section.wild and is_for(section.full, full))
-        ):
-            found |= names
-    return found
 
 
 NOT_INSERTED = declare("MF124", "default-not-inserted", WARNING, formats=("params",))

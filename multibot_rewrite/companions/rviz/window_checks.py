@@ -38,7 +38,10 @@ def _tf_topic(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Fi
         message = (
             f"one rviz2 reads one tf topic, but in layout {layout.name} each robot has its own"
         )
-        hint = f"each robot gets its own config; start rviz2 with -r /tf:={first}, see commands.md"
+        hint = (
+            "each robot gets its own config; for one window write layout: frames-per-robot, or"
+            " relayed: true, in the fleet file"
+        )
     yield found_at(config.document, config.manager, ONE_TF_TOPIC, message, hint)
 
 

@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, POSTFIX, PREFIX, TF_TOPICS, Naming
+from multibot_rewrite.base.conventions import SHARED_TOPICS
+from multibot_rewrite.base.naming import (
+    FRAME_KINDS,
+    NAMESPACE,
+    POSTFIX,
+    PREFIX,
+    TF_TOPICS,
+    TOPIC_KINDS,
+    Naming,
+)
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.base.wording import plural
@@ -37,13 +46,15 @@ DESCRIPTION_NODE = "robot_param_node"
 DESCRIPTIONS = ("robot_param", "robotParam", DESCRIPTION_NODE)
 # Sensors of base_link that PX4 looks for: PX4-Autopilot src/modules/simulation/gz_bridge/GZBridge.cpp.
 OF_PX4 = ("imu_sensor", "air_pressure_sensor")
+# What no robot has to itself, whoever shares it.
+OF_EVERYBODY = frozenset(it.strip("/") for it in (*SHARED_TOPICS, *TF_TOPICS))
 # What is left where a name has to stay, and is looked up in the whole world.
 ALONE = "run each robot in a Gazebo of its own, by GZ_PARTITION, in Classic by GAZEBO_MASTER_URI"
 
 
 def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     """All of them; they do not depend on the robots' names."""
-    for of_naming in (prefix_only, leading_slashes, moved_tf, process_wide):
+    for of_naming in (prefix_only, leading_slashes, moved_tf, shared_below, process_wide):
         yield from of_naming(inventory, renames.naming)
     spelt = zip(inventory.claims, renames.values, strict=True)
     # The elements with a name that is below another one, which is renamed.
@@ -94,6 +105,25 @@ def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
             message = f"{claim.value!r} moves this plugin away from the shared {rule.source}"
             hint = "drop the rule, or use --layout both"
             yield about(claim, "MB423", message, hint)
+
+
+def shared_below(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
+    """Yield relative names that all robots are said to share, and that the namespace of each moves."""
+    shared = naming.shared_topics - OF_EVERYBODY
+    if not shared or naming.topics != NAMESPACE:
+        return
+    says = "is below the namespace of each robot, so it is not shared"
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        for it in names if claim.site.namespaced else ():
+            if it.kind in TOPIC_KINDS and it.text in shared:
+                yield about(claim, "MB430", f"{it.text!r} {says}", f"write /{it.text}")
+    for section, host in _known_hosts(inventory):
+        rules = (split_remap(text_of(it)) for it in host.element.iter("remapping", "argument"))
+        ruled = {it.source.strip("/") for it in rules if it}
+        left = (it.name for it in section.wired if not it.is_moved)
+        for name in (it for it in left if it in shared and it not in ruled):
+            hint = f"write the rule {name}:=/{name}"
+            yield _host(host, "MB430", f"{name!r} of {section.names[0]} {says}", hint)
 
 
 def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:

@@ -8,6 +8,7 @@ from typing import NamedTuple, TypeVar
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.description.checks.numbers import number, value_of
 from multibot_rewrite.description.rewriters.text import kept_joints
 
@@ -122,10 +123,7 @@ def _joint(element: _Element) -> Joint:
 
 
 def _by_name(pairs: Iterable[tuple[str, Joint]]) -> dict[str, tuple[Joint, ...]]:
-    found: dict[str, list[Joint]] = {}
-    for name, joint in pairs:
-        if name:
-            found.setdefault(name, []).append(joint)
+    found = lists_by_key((name, joint) for name, joint in pairs if name)
     return {name: tuple(joints) for name, joints in found.items()}
 
 

@@ -35,6 +35,7 @@ REASONS = {
     "MB426": ("remap rule", "of the whole process"),
     "MB143": ("frame", "that an argument of the xacro misses"),
     "MB422": ("prefix parameter", "that no postfix reaches"),
+    "MB430": ("topic", "below each robot's namespace that all should share"),
     "MB428": ("name", "fixed in a plugin's code"),
     "MB429": ("model namespace", "that not every Gazebo reads"),
 }

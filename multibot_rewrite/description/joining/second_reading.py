@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError, ProofError
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.links_and_joints import WORLD
@@ -140,9 +141,7 @@ def _check_tree(root: _Element) -> None:
     """One root, and each other link below it, by one joint."""
     links = {it.get("name", "") for it in root.iterchildren("link")}
     ends = [(end_of(it, "child"), end_of(it, "parent")) for it in root.iterchildren("joint")]
-    below: dict[str, list[str]] = {}
-    for child, parent in ends:
-        below.setdefault(parent, []).append(child)
+    below = lists_by_key((parent, child) for child, parent in ends)
     todo = sorted(links - {child for child, _ in ends})
     is_one = len(todo) == 1 and len(ends) == len(links) - 1
     for link in todo:  # grows

@@ -11,6 +11,7 @@ from contextlib import suppress
 from itertools import chain
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -198,10 +199,7 @@ def _uses(inventory: Inventory) -> Iterator[Use]:
         (it.kind or it.kinds[0], it.text) for found in inventory.names for it in found
     )
     totals = Counter(kind for kind, _ in names)
-    groups: dict[tuple[str, str, str], list[str]] = {}
-    for kind, text in names:
-        if _MARK in text:
-            groups.setdefault((kind, *_how(text)), []).append(text)
+    groups = lists_by_key(((kind, *_how(text)), text) for kind, text in names if _MARK in text)
     for (kind, how, separator), texts in groups.items():
         example = texts[0].replace(_MARK, ROBOT)
         yield Use(kind, how, separator, len(texts), totals[kind], example)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.description.rewriters.text import text_at
 
 if TYPE_CHECKING:
@@ -47,8 +48,5 @@ def switched_off(plugin: _Element, section: VocabularySection) -> dict[str, str]
     """The topics that no switch of theirs turns on, and what would."""
     found = switches(plugin, section)
     on = {it.topic for it in found if it.on}
-    off: dict[str, list[str]] = {}
-    for it in found:
-        if it.topic not in on:
-            off.setdefault(it.topic, []).append(it.parameter)
+    off = lists_by_key((it.topic, it.parameter) for it in found if it.topic not in on)
     return {topic: " or ".join(parameters) for topic, parameters in off.items()}

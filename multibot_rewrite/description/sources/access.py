@@ -175,16 +175,18 @@ def _real(path: str) -> tuple[str, str]:
 
 @outside
 def _homes(path: str) -> tuple[str, ...]:
-    """The folder of a file, its package and its repository; those of the file a link leads to, too.
+    """Return the folder of a file, its package, its repository and the working directory if the file is
+    below it; those of the file a link leads to, too.
 
     The home of a user and what is above it are none, although they may hold a robot or be a repository.
     """
-    home = os.path.realpath(os.path.expanduser("~"))
+    home, here = os.path.realpath(os.path.expanduser("~")), os.path.realpath(os.curdir)
     found: list[str] = []
     for file in _real(path):
         folder = os.path.dirname(file)
-        marked = (_marked(folder, "package.xml"), _repository(folder))
-        found += (it for it in (folder, *marked) if it and not _below(home, it))
+        marked = _marked(folder, "package.xml"), _repository(folder)
+        worked_in = here if _below(folder, here) else ""
+        found += (it for it in (folder, *marked, worked_in) if it and not _below(home, it))
     return tuple(found)
 
 

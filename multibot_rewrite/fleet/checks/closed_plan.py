@@ -119,8 +119,9 @@ def _gaps(
     alone = [(it.robots[0], it.fleet) for it in split_per_robot(few)]
     written = {it.spec.name: as_written(own, it, texts) for it, own in alone}
     shared = of_all_robots((it for it in few.fleet.table.runs if not it.robot), texts)
-    whose = whose_by_plan(planned(few.fleet))
-    yield from contradicted(plan, joined(shared, *written.values()), whose)
+    expected = planned(few.fleet)
+    whose = whose_by_plan(expected)
+    yield from contradicted(plan, joined(shared, *written.values()), expected)
     parameters = load_known_nodes(plan.file.nodes, plan.file.distro)
     for group in groups:
         robot = group.robots[0]

@@ -24,7 +24,7 @@ from multibot_rewrite.rules.system.states import (
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
 from multibot_rewrite.rules.system.unsent import frame_not_sent, no_longer_sent, open_ends
 from multibot_rewrite.system.index import Index, index
-from multibot_rewrite.system.ownership import ALONE, Whose
+from multibot_rewrite.system.ownership import ALONE, Whose, whose_by_plan
 from multibot_rewrite.system.records import (
     CLAIMS,
     EXPORTS,
@@ -35,22 +35,25 @@ from multibot_rewrite.system.records import (
     Interface,
     System,
 )
+from multibot_rewrite.system.tf_copies import copying_nodes
 
 Key = tuple[str, ...]
 # What is asked of the sources and of what is written apart from the rest.
 _ASKED = (tf_tree_in_pieces.code, frame_not_sent.code, interface_not_exported.code)
 
 
-def contradicted(plan: FleetPlan, whole: System, whose: Whose) -> Iterator[Finding]:
+def contradicted(plan: FleetPlan, whole: System, expected: System) -> Iterator[Finding]:
     """What nodes that surely run do to each other; in one robot they did so before its rewrite.
 
-    What all robots are told to share is meant, where robots meet is said with the table.
+    What all robots are told to share is meant, as is what relays of tf ``expected`` send; where robots
+    meet is said with the table.
     """
+    whose, copies = whose_by_plan(expected), copying_nodes(expected)
     met = {(it.code, name) for it in plan.fleet.table.problems for name in it.names}
     shared = {f"/{it}" for it in plan.fleet.naming.shared_topics}
     robots = {it.spec.namespace: it for it in plan.robots}
     for it in contradictions(index(whole, whose)):
-        if it.names and shared.issuperset(it.names):
+        if it.node in copies or (it.names and shared.issuperset(it.names)):
             continue
         if any((it.code, about) in met for about in (*it.names, it.node)):
             continue

@@ -115,7 +115,11 @@ _HINT = "start what does in its launch file, or write which name is meant as a r
 def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -> Iterator[Finding]:
     """Yield what is open in a robot of which all is known, by its own ``system``. Of another robot a
     driver may be missing that nobody has named."""
-    if not _is_told(robot, facts):
+    # Is all known that it runs, some of it by its source?
+    known = all(it.is_known and not it.untold for it in facts)
+    by_source = any(" " in it.kind for it in facts)
+    parts = active_parts(robot.member.source.root, robot.member.vocabulary)
+    if not (known and by_source and all(it.is_known for it in parts)):
         return
     read = {it.name for it in system.ends if it.role == SUBSCRIBES}
     sent = {it.name for it in system.ends if it.role == PUBLISHES}
@@ -130,14 +134,6 @@ def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -
     if said:
         who = f"robot {robot.spec.name!r}: all that it runs is known, and"
         yield at_robot(NOTHING_MOVES, robot, f"{who} {' and '.join(said)}", _HINT)
-
-
-def _is_told(robot: RewrittenRobot, facts: Sequence[NodeFacts]) -> bool:
-    """Is all known that it runs, some of it by its source?"""
-    known = all(it.is_known and not it.untold for it in facts)
-    by_source = any(" " in it.kind for it in facts)
-    parts = active_parts(robot.member.source.root, robot.member.vocabulary)
-    return known and by_source and all(it.is_known for it in parts)
 
 
 def _words(ends: Iterable[End]) -> str:

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.naming import FRAME_KINDS, TF_TOPICS, TOPIC_KINDS, Naming
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.description.steps.collect import Inventory
@@ -79,9 +80,7 @@ def shared_by_nothing(
 
 def _described(fleet: NamesOfFleet, kinds: Collection[str]) -> set[str]:
     """Return the names of some kinds in the descriptions, with and without the robot's name."""
-    words: dict[str, list[str]] = {}
-    for word, robot in fleet.words.items():
-        words.setdefault(robot, []).append(word)
+    words = lists_by_key((robot, word) for word, robot in fleet.words.items())
     found: set[str] = set()
     for robot, inventory in fleet.inventories.items():
         named = (it for names in inventory.names for it in names)

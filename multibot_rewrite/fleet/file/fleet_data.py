@@ -60,14 +60,9 @@ def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
 def texts_of(values: Sequence[Any], file: str) -> dict[str, str]:
     """The texts of parameters that stand in the fleet file itself, by the path that each has then."""
     given = [it for it in values if not isinstance(it, str)]
-    paths = (values_path(file, at) for at in range(len(given)))
+    paths = (os.path.join(file, f"values{at or ''}.yaml") for at in range(len(given)))
     full = ({node: {"ros__parameters": own} for node, own in it.items()} for it in given)
     return {path: yaml.safe_dump(it, sort_keys=False) for path, it in zip(paths, full, strict=True)}
-
-
-def values_path(file: str, at: int = 0) -> str:
-    """Return the path that one of the values in a fleet file has."""
-    return os.path.join(file, f"values{at or ''}.yaml")
 
 
 def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:

@@ -7,24 +7,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.naming import Policy, make_naming
+from multibot_rewrite.base.naming import Naming, Policy, make_naming
 from multibot_rewrite.base.releases import chosen_release, why_told
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_of_all
 from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart, apart_of
 from multibot_rewrite.fleet.file.fleet_data import (
+    FleetData,
     FleetSource,
     listed,
     nodl_files,
     read_data,
 )
 from multibot_rewrite.fleet.file.robot_choice import ALL, Choice, with_robots
-from multibot_rewrite.fleet.file.robot_spec import (
-    WORLD_LINK,
-    RobotSpec,
-    is_simulated,
-    robot_spec,
-)
+from multibot_rewrite.fleet.file.robot_spec import WORLD_LINK, RobotSpec, is_simulated, robot_spec
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, zenoh_of
 
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
@@ -87,37 +83,21 @@ def read_fleet(
     read = with_cell(with_robots(read_data(source), choice))
     data = read.data
     release, why = _release(data, distro, environment)
-    given = {key: data[key] for key in POLICY if key in data}
-    lists = {key: tuple(listed(given[key])) for key in LISTS if key in given}
-    if "shared_frames" in lists and any(is_simulated(data, own) for own in data["robots"]):
-        # sdformat fixes a robot to the link of this name and to no other (parser_urdf.cc).
-        lists["shared_frames"] = tuple(dict.fromkeys((*lists["shared_frames"], WORLD_LINK)))
-    policy = cast(Policy, given | lists)
-    try:
-        naming = make_naming(**policy)
-    except UsageError as error:
-        # The schema covers everything except separators.
-        file, line = read.places.get(("separators",), (read.file, 1))
-        raise InputError(f"{file}:{line}: {error}") from None
-    vocabulary = tuple(listed(data.get("vocabulary", [])))
-    documents = nodl_files(tuple(listed(data.get("nodl", []))), read.places)
+    policy, naming = _policy(read)
+    vocabulary, nodl = (tuple(listed(data.get(it, []))) for it in ("vocabulary", "nodl"))
+    documents = nodl_files(nodl, read.places)
     named = (data.get("nodes", ""), data.get("simulator_world", ""), *documents)
     robots = tuple(robot_spec(read, naming, at, release) for at in range(len(data["robots"])))
     _check_robots_differ(robots)
-    world = data.get("world", "")
-    if world and world not in naming.shared_frames:
-        file, line = read.places["world",]
-        shared = ", ".join(sorted(naming.shared_frames)) or "none"
-        hint = "add it to shared_frames"
-        raise InputError(f"{file}:{line}: world {world!r} is not a shared frame ({shared}); {hint}")
+    _check_world(read, naming)
     return FleetFile(
         read.file,
         policy,
-        world,
+        data.get("world", ""),
         release,
         data.get("installed", ""),
         data.get("nodes", ""),
-        tuple(listed(data.get("nodl", []))),
+        nodl,
         vocabulary,
         robots,
         tuple(filter(None, (*read.files, *named, *vocabulary))),
@@ -135,6 +115,33 @@ def read_fleet(
         tuple((it, read.places[it,]) for it in LISTS if (it,) in read.places),
         _nodes(data, "own_nodes"),
     )
+
+
+def _policy(read: FleetData) -> tuple[Policy, Naming]:
+    """The options of ``make_naming`` that a fleet file sets, and the naming; raises InputError."""
+    data = read.data
+    given = {key: data[key] for key in POLICY if key in data}
+    lists = {key: tuple(listed(given[key])) for key in LISTS if key in given}
+    if "shared_frames" in lists and any(is_simulated(data, own) for own in data["robots"]):
+        # sdformat fixes a robot to the link of this name and to no other (parser_urdf.cc).
+        lists["shared_frames"] = tuple(dict.fromkeys((*lists["shared_frames"], WORLD_LINK)))
+    policy = cast(Policy, given | lists)
+    try:
+        return policy, make_naming(**policy)
+    except UsageError as error:
+        # The schema covers everything except separators.
+        file, line = read.places.get(("separators",), (read.file, 1))
+        raise InputError(f"{file}:{line}: {error}") from None
+
+
+def _check_world(read: FleetData, naming: Naming) -> None:
+    """Raises InputError for a world that is no frame of all robots."""
+    world = read.data.get("world", "")
+    if world and world not in naming.shared_frames:
+        file, line = read.places["world",]
+        shared = ", ".join(sorted(naming.shared_frames)) or "none"
+        hint = "add it to shared_frames"
+        raise InputError(f"{file}:{line}: world {world!r} is not a shared frame ({shared}); {hint}")
 
 
 def _nodes(data: Mapping[str, Any], key: str) -> tuple[str, ...]:

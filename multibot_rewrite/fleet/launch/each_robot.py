@@ -14,6 +14,7 @@ from itertools import count
 from keyword import iskeyword
 from typing import Any, NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.fleet.launch.starts import RobotStarts
 from multibot_rewrite.spelling.start import Start
 
@@ -57,9 +58,7 @@ class Function(NamedTuple):
 
 def functions(robots: Sequence[RobotStarts]) -> list[Function]:
     """Return the functions for these robots, in the order of the first robot of each."""
-    groups: dict[object, list[RobotStarts]] = {}
-    for it in robots:
-        groups.setdefault(_kind(it), []).append(it)
+    groups = lists_by_key((_kind(it), it) for it in robots)
     found = [one for group in groups.values() for one in _functions(group)]
     if len(found) == 1 and len(robots) > 1:
         return [found[0]._replace(title="start")]

@@ -513,7 +513,7 @@ def _spawned(given: _Given) -> Iterator[Start]:
     if not is_simulated(robot):
         return
     (it,) = spawn.in_folder(given.plan)
-    made, own = spawn.spawner(it, spawn.is_classic(robot)), given.plan.evidence_of(robot).placing
+    made, own = spawn.spawner(it, robot.is_classic), given.plan.evidence_of(robot).placing
     if own is not None and not spawn.is_of_vendor(own):
         delay = own.process.delay if not own.process.event else 0.0
         made = made._replace(number=own.number, process=made.process._replace(delay=delay))

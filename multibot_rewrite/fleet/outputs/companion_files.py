@@ -163,7 +163,9 @@ def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesAndF
     else:
         text_made = text_of(spec, path)
         made = made_for_any(_KINDS[key], text_made, path, group.context, group.facts)
-    numbers = _numbers(plan, key, path)
+    # The robots that have a file, counted from 0.
+    having = (it for it in plan.robots if path in it.spec.companions.get(key, ()))
+    numbers = {it.spec.name: at for at, it in enumerate(having)}
     # Robots that differ in their descriptions may have one file.
     file = made.file._replace(is_for_one=made.file.is_for_one and len(numbers) == 1)
     found = (*made.findings, *wrong_in_file(plan, file, group.robots))
@@ -195,12 +197,6 @@ def _own_defaults(plan: FleetPlan, group: RobotGroup) -> Iterator[OutputFile]:
     for robot in group.robots if text else ():
         made = fill_template(template, robot.spec.namespace, robot.spec.tag)
         yield OutputFile(path_for(robot, DEFAULTS), made.encode())
-
-
-def _numbers(plan: FleetPlan, key: str, path: str) -> dict[str, int]:
-    """The robots that have a file, counted from 0."""
-    having = (it for it in plan.robots if path in it.spec.companions.get(key, ()))
-    return {it.spec.name: at for at, it in enumerate(having)}
 
 
 def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:

@@ -40,7 +40,23 @@ def configurations(plan: System, setup: FreeFleet) -> Iterator[tuple[str, bytes]
             what = f"no node of {robot.name} serves {served}"
             raise UsageError(f"{FREE_FLEET}: {what}; name the stack that does, as nav2")
         yield f"{FREE_FLEET}/{robot.name}.json5", _bridge(robot, numbers[robot.name], setup)
-    yield f"{FREE_FLEET}/{ROBOTS_FILE}", _robots(plan, setup, whose).encode()
+    rows = [
+        "# The robots of the fleet adapter: put them below rmf_fleet of its configuration.",
+        "rmf_fleet:",
+        "  robots:",
+    ]
+    for it in plan.robots:
+        own_map = (one for one in it.other_frames if whose.plain_frame(one) == _MAP)
+        told = {
+            "charger": setup.charger.replace("{robot}", it.name),
+            "navigation_stack": 2,
+            "initial_map": setup.map,
+            "map_frame": _MAP if _MAP in plan.shared_frames else next(own_map, _MAP),
+            "robot_frame": _robot_frame(plan, it, whose),
+        }
+        rows.append(f"    {it.name}:")
+        rows += [f"      {key}: {json.dumps(value)}" for key, value in told.items()]
+    yield f"{FREE_FLEET}/{ROBOTS_FILE}", "\n".join((*rows, "")).encode()
 
 
 def _bridge(robot: Robot, domain: int, setup: FreeFleet) -> bytes:
@@ -66,26 +82,6 @@ def _bridge(robot: Robot, domain: int, setup: FreeFleet) -> bytes:
     }
     about = f"On {robot.name}: zenoh-bridge-ros2dds -c {robot.name}.json5"
     return f"// {about}\n{json.dumps(config, indent=2)}\n".encode()
-
-
-def _robots(plan: System, setup: FreeFleet, whose: Whose) -> str:
-    rows = [
-        "# The robots of the fleet adapter: put them below rmf_fleet of its configuration.",
-        "rmf_fleet:",
-        "  robots:",
-    ]
-    for it in plan.robots:
-        own_map = (one for one in it.other_frames if whose.plain_frame(one) == _MAP)
-        told = {
-            "charger": setup.charger.replace("{robot}", it.name),
-            "navigation_stack": 2,
-            "initial_map": setup.map,
-            "map_frame": _MAP if _MAP in plan.shared_frames else next(own_map, _MAP),
-            "robot_frame": _robot_frame(plan, it, whose),
-        }
-        rows.append(f"    {it.name}:")
-        rows += [f"      {key}: {json.dumps(value)}" for key, value in told.items()]
-    return "\n".join((*rows, ""))
 
 
 def _robot_frame(plan: System, robot: Robot, whose: Whose) -> str:

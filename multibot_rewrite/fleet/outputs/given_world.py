@@ -17,6 +17,7 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.description.rewriters.text import text_at, text_of
@@ -112,9 +113,7 @@ def _sent(world: str, systems: Sequence[str]) -> dict[str, str]:
 
 
 def _kinds(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
-    found: dict[str, list[RewrittenRobot]] = {}
-    for it in robots:
-        found.setdefault(it.spec.simulated or it.spec.description, []).append(it)
+    found = lists_by_key((it.spec.simulated or it.spec.description, it) for it in robots)
     for alike in found.values():
         root = alike[0].member.source.root
         model = root if root.tag == "robot" else next(root.iter("model"), root)

@@ -40,18 +40,6 @@ class Relay(NamedTuple):
     start: Start
 
 
-def check_relayed(file: FleetFile, naming: Naming) -> None:
-    """Raises UsageError for a layout whose tf need not be relayed to one topic, or cannot be."""
-    layout, place = naming.layout, f"{file.file}: relayed"
-    if not layout.tf_per_robot:
-        raise UsageError(
-            f"{place}: layout {layout.name} has one /tf for all robots; remove relayed"
-        )
-    if not layout.frames and naming.topics != NAMESPACE:
-        what = f"{BRIDGE} reads tf in the robot's namespace, and topics: {naming.topics} moves it"
-        raise UsageError(f"{place}: {what}; remove topics, or take layout both")
-
-
 def relays(robot: str, naming: Naming, file: FleetFile) -> list[Relay]:
     """The relays of a robot (its namespace), if the fleet file asks for them."""
     if not file.relayed:
@@ -103,7 +91,15 @@ def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
     """The fleet with the relays that its file asks for; raises as ``check_relayed``."""
     if not file.relayed:
         return fleet
-    check_relayed(file, fleet.naming)
+    # Raises UsageError for a layout whose tf need not be relayed to one topic, or cannot be.
+    layout, place = fleet.naming.layout, f"{file.file}: relayed"
+    if not layout.tf_per_robot:
+        raise UsageError(
+            f"{place}: layout {layout.name} has one /tf for all robots; remove relayed"
+        )
+    if not layout.frames and fleet.naming.topics != NAMESPACE:
+        what = f"{BRIDGE} reads tf in the robot's namespace, and topics: {fleet.naming.topics} moves it"
+        raise UsageError(f"{place}: {what}; remove topics, or take layout both")
     made = [it for spec in file.robots for it in relays(spec.namespace, fleet.naming, file)]
     runs = (*fleet.table.runs, *(it.run for it in made))
     return fleet._replace(table=fleet.table._replace(runs=runs))

@@ -12,14 +12,13 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
-from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
-from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.fleet.robots.rewritten_robots import CLASSIC_PLUGIN, RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, without_mass
 from multibot_rewrite.producers.launch.programs import program_of, programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
@@ -33,7 +32,6 @@ FLAGS = {"x": "-x", "y": "-y", "z": "-z", "roll": "-R", "pitch": "-P", "yaw": "-
 _FURTHER = ("-timeout", "-spawn_service_timeout", "-package_to_model", "-world")
 DESCRIPTION = "/robot_description"
 # File names of Gazebo Classic plugins that are ROS nodes start like this.
-CLASSIC_PLUGIN = "libgazebo_ros"
 
 
 class Spawn(NamedTuple):
@@ -98,14 +96,9 @@ def in_folder(plan: FleetPlan) -> tuple[Spawn, ...]:
     return tuple(found)
 
 
-def is_classic(robot: RewrittenRobot) -> bool:
-    """Is its simulator Gazebo Classic?"""
-    return CLASSIC_PLUGIN.encode() in without_comments(robot.simulated or robot.description)
-
-
 def simulators(plan: FleetPlan) -> list[str]:
     """The simulators of the robots: ``classic``, ``gz``, none."""
-    return sorted({"classic" if is_classic(it) else "gz" for it in plan.robots if is_simulated(it)})
+    return sorted({"classic" if it.is_classic else "gz" for it in plan.robots if is_simulated(it)})
 
 
 def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
@@ -140,7 +133,7 @@ def spawner(it: Spawn, classic: bool) -> Start:
 def either(it: Spawn, robot: RewrittenRobot) -> str:
     """The command for the description's simulator, with the other simulator's as a comment."""
     gz, classic = (shell_line(spawner(it, classic)) for classic in (False, True))
-    if is_classic(robot):
+    if robot.is_classic:
         return f"{classic}\n# gz-sim: {gz}\n"
     return f"{gz}\n# Gazebo Classic: {classic}\n"
 
@@ -166,7 +159,7 @@ def _namespaces(robot: RewrittenRobot) -> tuple[list[str], list[str]]:
     named: list[str] = []
     bare: list[str] = []
     for plugin in robot.member.inventory.document.root.iter("plugin"):
-        if CLASSIC_PLUGIN in (plugin.get("filename") or ""):
+        if CLASSIC_PLUGIN.decode() in (plugin.get("filename") or ""):
             # Without <ros> gazebo_ros reads the plugin element itself (node.cpp).
             ros = plugin.find("ros")
             space = text_at(plugin if ros is None else ros, "namespace")

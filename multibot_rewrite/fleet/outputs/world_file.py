@@ -17,7 +17,6 @@ from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.given_world import own_world
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile
-from multibot_rewrite.fleet.outputs.spawn import is_classic
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, systems_of
 from multibot_rewrite.knowledge.worlds import SYSTEMS
@@ -38,7 +37,7 @@ def world_file(plan: FleetPlan) -> FilesAndFindings:
     """The world of the fleet file with what the robots need; else an empty one, where a robot in gz-sim
     has a sensor that Gazebo's own does not run. Raises InputError for a file that is no world."""
     kind = "ignition-gazebo" if has_release(OLD_NAMES, plan.file.distro) else "gz-sim"
-    robots = [it for it in plan.robots if is_simulated(it) and not is_classic(it)]
+    robots = [it for it in plan.robots if is_simulated(it) and not it.is_classic]
     usual = {library: _system(kind, library, name) for library, name in _ALWAYS.items()}
     ours = _needed(robots, kind)
     given = plan.file.simulator_world

@@ -13,7 +13,7 @@ keystore, as in rmw_zenoh's ``zenoh_security_tools``; their common name is the e
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.bounded import own_text
@@ -96,13 +96,6 @@ def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
             f"Who may do anything, as {enclave}: {_session(name)}, multibot snapshot --from {name}"
         )
         yield name, _text(_client(enclave, setup), about)
-
-
-def file_names(robots: Sequence[str], setup: Setup) -> list[str]:
-    """What the files are called."""
-    words = [*robots, *map(operator_word, setup.operators)]
-    words += [f"{robot}_router" for robot in robots if setup.own_routers]
-    return [ROUTER_FILE, *(f"{word}.json5" for word in words)]
 
 
 def operator_word(enclave: str) -> str:
@@ -195,7 +188,11 @@ def zenoh_of(read: FleetData) -> Setup | None:
         raise InputError(f"{place} {what}")
     for it in (it for it in setup.operators if not it.startswith("/")):
         raise InputError(f"{place} {it!r} is no enclave; write /{it}")
-    names = file_names([it["name"] for it in read.data["robots"]], setup)
+    # What the files are called.
+    robots = [it["name"] for it in read.data["robots"]]
+    words = [*robots, *map(operator_word, setup.operators)]
+    words += [f"{robot}_router" for robot in robots if setup.own_routers]
+    names = [ROUTER_FILE, *(f"{word}.json5" for word in words)]
     for name in sorted({it for it in names if names.count(it) > 1}):
         what = f"two of robots, operators and router are {name.removesuffix('.json5')}"
         raise InputError(f"{place} {what}; choose another name for one")

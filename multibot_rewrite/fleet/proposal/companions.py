@@ -163,8 +163,9 @@ def _of_kind(
 
 
 def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) -> Iterator[Fitting]:
-    """The parameter files that can be read; those with fewest names that the robot has not come first,
-    then the nearest. Raises Undecided where none is more likely than another for one node."""
+    """The parameter files that can be read; those that were named come first, that after the robot's
+    description first of all, then those with fewest names that the robot has not, then the nearest.
+    Raises Undecided where none is more likely than another for one node."""
     known = load_known_nodes("", release)
     loaded = {*_loaded(robot)}
     asked = {*filter(lambda it: it in found.meant or os.path.abspath(it) in loaded, found.params)}
@@ -181,7 +182,8 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
             continue
         read.append(fitting(robot, path, nodes, known, found.bridge))
     meant = {it.path for it in read if it.path in asked}
-    order = sorted(read, key=lambda it: (it.path not in meant, len(it.strange)))
+    own = {path for path, before in found.follows if before == robot.path}
+    order = sorted(read, key=lambda it: (it.path not in meant, it.path not in own, len(it.strange)))
     settled = {node for it in order if it.path in meant for node in it.nodes}
     check_winner([it for it in order if not it.nodes & settled], robot, found)
     yield from order

@@ -11,7 +11,7 @@ import re
 import shlex
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.file_kinds import (
     DESCRIPTIONS,
@@ -68,7 +68,8 @@ class Found(NamedTuple):
     """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched.
 
     ``descriptions`` are those that were named, if any were; ``every`` are all that are there. ``meant``
-    are files beside them that were named, ``named`` is the launch file that was.
+    are files beside them that were named, ``follows`` those with the description that was named before
+    each, ``named`` is the launch file that was.
     """
 
     descriptions: tuple[str, ...] = ()
@@ -83,6 +84,7 @@ class Found(NamedTuple):
     folders: tuple[str, ...] = ()
     every: tuple[str, ...] = ()
     meant: tuple[str, ...] = ()
+    follows: tuple[tuple[str, str], ...] = ()
     named: tuple[LaunchOrder, ...] = ()
 
     @property
@@ -129,10 +131,13 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
     kinds["every"] = kinds.get("descriptions", [])
     if files:
         kinds["descriptions"] = files
-    fields = {kind: tuple(its) for kind, its in kinds.items() if kind}
+    fields: dict[str, Any] = {kind: tuple(its) for kind, its in kinds.items() if kind}
     if launch:
         fields["launch"] = tuple(it.file for it in launch)
-    return Found(**fields, folders=tuple(homes), meant=tuple(meant), named=tuple(launch))
+    above = ((it, [one for one in named[:at] if one in files]) for at, it in enumerate(named))
+    follows = tuple((it, before[-1]) for it, before in above if it in meant and before)
+    fields |= {"meant": tuple(meant), "follows": follows, "named": tuple(launch)}
+    return Found(**fields, folders=tuple(homes))
 
 
 def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:

@@ -69,7 +69,14 @@ def member(
     data = without_simulator(data, document.file) if real else data
     written = collect(read_document(data, document.file), tree)
     reading = read(data, document.file, tree.vocabulary)
-    _check_names(reading, document)
+    for node in reading.nodes:
+        try:
+            bound = bind(node.name, node.namespace, [it.rule for it in node.rules])
+            for it in node.endpoints:
+                resolve_bound(it.code_name, it.kind, bound)
+        except UsageError as error:
+            place = f"{document.file}:{line_of(document, 'plugin', node.number)}"
+            raise InputError(f"{place}: {error}; change it in the description") from None
     shared = tuple(it for it in source.findings if it.code in SHARED_CODES)
     unread = tuple(it for it in source.findings if it.code == UNREAD)
     job = source.prepared.job
@@ -111,17 +118,6 @@ def line_of(document: Document, tag: str, number: int) -> int:
     element = next(islice(document.root.iter(tag), number, None), document.root)
     line: int = element.sourceline or 1  # type: ignore[assignment]
     return line
-
-
-def _check_names(reading: Reading, document: Document) -> None:
-    for node in reading.nodes:
-        try:
-            bound = bind(node.name, node.namespace, [it.rule for it in node.rules])
-            for it in node.endpoints:
-                resolve_bound(it.code_name, it.kind, bound)
-        except UsageError as error:
-            place = f"{document.file}:{line_of(document, 'plugin', node.number)}"
-            raise InputError(f"{place}: {error}; change it in the description") from None
 
 
 def is_for_simulator(member: Member) -> bool:

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding, Rule, declare
+from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names, with_srdf
@@ -64,13 +65,17 @@ _FEWEST = 3
 NO_SYSTEMS: Mapping[str, str] = MappingProxyType({})
 
 
+# How the files of the plugins of Gazebo Classic begin.
+CLASSIC_PLUGIN = b"libgazebo_ros"
+
+
 class RewrittenRobot(NamedTuple):
     """A robot with its rewritten description and SRDF (empty if it has none).
 
     ``names`` is the rename map of frames, joints and planning groups, ``topics`` that of ROS names.
     ``findings`` are warnings about the source. ``simulated`` is the model for the simulator,
     empty where that is the description. ``world_systems`` are plugins that were in it, by library, and
-    are loaded by the world.
+    are loaded by the world. ``is_classic``: its simulator is Gazebo Classic.
     """
 
     spec: RobotSpec
@@ -82,6 +87,7 @@ class RewrittenRobot(NamedTuple):
     findings: tuple[Finding, ...]
     simulated: bytes = b""
     world_systems: Mapping[str, str] = NO_SYSTEMS
+    is_classic: bool = False
 
     @property
     def written(self) -> Written:
@@ -185,7 +191,8 @@ def _taken(robot: RobotSpec, *files: str) -> Arguments:
 def rewrite_robots(
     robots: Sequence[RobotSpec], jobs: Mapping[Sources, Jobs]
 ) -> list[RewrittenRobot]:
-    """Rewrite every robot's description and SRDF, in the order of the robots.
+    """Rewrite every robot's description and SRDF, in the order of the robots. One that says nothing of
+    a simulator is in that of the others.
 
     Raises as ``rewrite_all``.
     """
@@ -194,7 +201,18 @@ def rewrite_robots(
         groups.setdefault(robot.sources, []).append(robot)
     made = (it for key, group in groups.items() for it in _rewritten(group, jobs[key]))
     found = {it.spec.name: it for it in made}
-    return [found[robot.name] for robot in robots]
+    classic = any(it.is_classic for it in found.values())
+    return [
+        it._replace(is_classic=it.is_classic or (classic and not _names_simulator(it)))
+        for it in (found[robot.name] for robot in robots)
+    ]
+
+
+def _names_simulator(it: RewrittenRobot) -> bool:
+    """Has its description what one simulator alone loads: plugins, sensors, hardware, an SDF?"""
+    root = it.member.inventory.document.root
+    parts = ("gazebo//plugin", "gazebo//sensor", "ros2_control")
+    return root.tag == "sdf" or any(root.find(part) is not None for part in parts)
 
 
 def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
@@ -234,6 +252,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             # These the fleet says, of the robots that it has.
             tuple(it for it in found if it.code not in (*SHARED_CODES, UNREAD)),
             simulated,
+            is_classic=CLASSIC_PLUGIN in without_comments(simulated or data),
         )
 
 

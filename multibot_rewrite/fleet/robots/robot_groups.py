@@ -3,18 +3,18 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.selection import grouped
+from multibot_rewrite.base.grouping import dicts_by_key
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes, stack_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.system.records import Edge
 
 
 class RobotGroup(NamedTuple):
@@ -53,9 +53,7 @@ def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
     """Each robot as a fleet of its own, so that steps about one robot need not search all others."""
     fleet = plan.fleet
     tables = fleet.table.by_robot(it.spec.namespace for it in plan.robots)
-    edges: dict[str, dict[tuple[str, str], Sequence[Edge]]] = defaultdict(dict)
-    for key, sent in fleet.edges.items():
-        edges[key[0]][key] = sent
+    edges = dicts_by_key((key[0], key, sent) for key, sent in fleet.edges.items())
     for robot in plan.robots:
         own = robot.spec.namespace
         alone = fleet._replace(table=tables[own], edges=edges[own])

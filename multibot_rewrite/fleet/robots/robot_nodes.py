@@ -137,16 +137,7 @@ def robot_nodes(
     started_here = {it.name: it for it in load_stack(PROGRAM, file.distro) if it.name == MANAGER}
     without, findings = nodes_with(launched, stack, given, known | started_here)
     source = member.source
-    held = source.root.iterfind("joint[@type='fixed']/parent")
-    standing = without
-    if not wheels_in(source.root) or any(it.get("link") == WORLD for it in held):
-        # Without controllers of wheels that a stack has for robots that drive.
-        filed = {it.node for it in given}
-        standing = tuple(
-            it
-            for it in without
-            if it.name in filed or not (it.host == MANAGER and it.when and it.sends)
-        )
+    standing = _for_its_wheels(without, given, member)
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
@@ -166,15 +157,54 @@ def robot_nodes(
     written = _as_written(nodes, own, parameters, file.distro)
     named = _made_by_arguments(written, given, topics) if topics else written
     marked, shared = apart(tuple(named), file)
-    unsimulated = launched is not None and launched.whole and not launched.simulated
-    of_launch = _of_launch(spec, launched, file) if launched else ()
-    said = (*notes, *findings, *shared, *processes_not_known(of_launch[1] if of_launch else ()))
-    said = said if launched else (*said, *left_idle(marked, given, known))
-    arguments = tuple(word for it in started.values() for word in it.arguments)
     placing = not brings_transforms(spec) and sends_too(nodes, free, has.sent)
-    is_placed = placing or is_led_elsewhere(member, spec)
-    more = unsimulated, arguments, frames, has.sent, is_placed, *of_launch
-    return RobotEvidence(given, known, marked, said, spawned, *more)
+    evidence = RobotEvidence(
+        given,
+        known,
+        marked,
+        (*notes, *findings, *shared),
+        spawned,
+        frames=frames,
+        simulated=has.sent,
+        is_placed=placing or is_led_elsewhere(member, spec),
+    )
+    return _with_launch(evidence, spec, launched, file)
+
+
+def _for_its_wheels(
+    nodes: tuple[NodeFacts, ...], given: Iterable[Run], member: Member
+) -> tuple[NodeFacts, ...]:
+    """The nodes; of a robot that does not drive without controllers of wheels that a stack has for
+    those that do."""
+    root = member.source.root
+    held = root.iterfind("joint[@type='fixed']/parent")
+    if wheels_in(root) and not any(it.get("link") == WORLD for it in held):
+        return nodes
+    filed = {it.node for it in given}
+    return tuple(
+        it for it in nodes if it.name in filed or not (it.host == MANAGER and it.when and it.sends)
+    )
+
+
+def _with_launch(
+    it: RobotEvidence, spec: RobotSpec, launched: Launched | None, file: FleetFile
+) -> RobotEvidence:
+    """What is known of a robot's nodes, with what its launch files start; without any with what its
+    files leave idle."""
+    if not launched:
+        idle = left_idle(it.nodes, it.given, it.known)
+        return it._replace(findings=(*it.findings, *idle))
+    handed_on, processes, environment, placing, idle = _of_launch(spec, launched, file)
+    return it._replace(
+        findings=(*it.findings, *processes_not_known(processes)),
+        unsimulated=launched.whole and not launched.simulated,
+        arguments=tuple(word for one in launched.started.values() for word in one.arguments),
+        handed_on=handed_on,
+        processes=processes,
+        environment=environment,
+        placing=placing,
+        idle=idle,
+    )
 
 
 def _of_launch(spec: RobotSpec, launched: Launched, file: FleetFile) -> tuple[Any, ...]:

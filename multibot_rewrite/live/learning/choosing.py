@@ -140,7 +140,18 @@ def fold_actions(seen: Seen) -> dict[EndpointId, tuple[str, ...]]:
 
     A node with only the topics of an action is not its client: those topics stay.
     """
-    actions = _actions(seen)
+    kinds = defaultdict(set)
+    found = {}
+    for key, types in seen.items():
+        if _HIDDEN in key.name:
+            kinds[_action_of(key)].add(key.kind)
+        if key.kind == SERVICE and key.name.endswith(f"{_HIDDEN}send_goal") and types:
+            goal = tuple(type_.removesuffix(_SEND_GOAL) for type_ in types)
+            found[EndpointId(ACTION, *_action_of(key))] = goal
+    listed = {key: types for key, types in seen.items() if key.kind == ACTION and types}
+    # rcl lists every subscriber of the feedback as a client.
+    only_topics = {key for key in listed if kinds.get((key.role, key.name)) == {TOPIC}}
+    actions = found | {key: types for key, types in listed.items() if key not in only_topics}
     whole = {(key.role, key.name) for key in actions}
     rest = {
         key: types
@@ -154,21 +165,6 @@ def _action_of(key: EndpointId) -> tuple[str, str]:
     """Role and name of the action that a hidden endpoint belongs to."""
     role = SERVES if key.role in (SERVES, PUBLISHES) else CALLS
     return role, key.name.partition(_HIDDEN)[0]
-
-
-def _actions(seen: Seen) -> dict[EndpointId, tuple[str, ...]]:
-    kinds = defaultdict(set)
-    found = {}
-    for key, types in seen.items():
-        if _HIDDEN in key.name:
-            kinds[_action_of(key)].add(key.kind)
-        if key.kind == SERVICE and key.name.endswith(f"{_HIDDEN}send_goal") and types:
-            whole = tuple(type_.removesuffix(_SEND_GOAL) for type_ in types)
-            found[EndpointId(ACTION, *_action_of(key))] = whole
-    listed = {key: types for key, types in seen.items() if key.kind == ACTION and types}
-    # rcl lists every subscriber of the feedback as a client.
-    only_topics = {key for key in listed if kinds.get((key.role, key.name)) == {TOPIC}}
-    return found | {key: types for key, types in listed.items() if key not in only_topics}
 
 
 def fold_images(seen: Seen) -> tuple[dict[EndpointId, tuple[str, ...]], frozenset[EndpointId]]:

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import with_gaps
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import TF_TOPICS
@@ -92,9 +93,7 @@ def learn(
     for an endpoint that no node can have.
     """
     base = namespace_prefix(namespace)
-    ends: dict[str, list[End]] = defaultdict(list)
-    for end in graph.ends:
-        ends[end.node].append(end)
+    ends = lists_by_key((end.node, end) for end in graph.ends)
     helpers = helpers_of(graph, names)
     return tuple(
         _learn_node(name, base, ends, helpers.get(name, Helpers()), library) for name in names
@@ -108,13 +107,17 @@ def _learn_node(
     known = library.nodes.get(node)
     place = _SeenPlace(base, node)
     if known:
-        place = _SeenPlace(
-            base, node, frozenset(_literal_names(known)), frozenset(_relative_names(known))
-        )
-    usual = _on_every_node(library)
+        # Full names of what the code of a node that stands apart writes without a slash.
+        names = (end.name for end in known.endpoints if known.apart and end.name[0] not in "/~<")
+        relative = frozenset(f"/{name}" for name in names)
+        place = _SeenPlace(base, node, frozenset(_literal_names(known)), relative)
+    # The endpoints of every node, by role and name; without the clock, which some do not use.
+    every = {(end.role, end.name) for end in library.parts[EVERY_NODE] if end.name != CLOCK}
+    usual = frozenset({*every, SINCE_JAZZY})
     found = _with_helpers(name, ends, helpers, place)
     rest, parts = fold_parts(found.values(), library.parts, not base and "/" not in node)
-    own = sorted((end for end in rest if (end.role, end.name) not in usual), key=_order)
+    own = [end for end in rest if (end.role, end.name) not in usual]
+    own.sort(key=lambda it: (ROLES.index(it.role), it.name))
     taken = (end for part in parts for end in library.parts[part])
     # That its code places it cannot be seen.
     apart = known is not None and known.apart
@@ -123,16 +126,6 @@ def _learn_node(
     remarks += [] if helpers.sure else [f"{SHARED_PROCESS}: {', '.join(helpers.names)}"]
     remarks += [_compare(facts, known, usual)] if known else []
     return LearnedNode(name, facts, tuple(own), parts, tuple(remarks))
-
-
-def _order(end: Endpoint) -> tuple[int, str]:
-    return ROLES.index(end.role), end.name
-
-
-def _on_every_node(library: NodeLibrary) -> frozenset[_Slot]:
-    """The endpoints of every node, by role and name; without the clock, which some do not use."""
-    every = {(end.role, end.name) for end in library.parts[EVERY_NODE] if end.name != CLOCK}
-    return frozenset({*every, SINCE_JAZZY})
 
 
 def _full_name(name: str, node: str) -> str:
@@ -147,12 +140,6 @@ def _literal_names(known: NodeFacts) -> Iterator[str]:
         full = _full_name(end.name, known.name)
         if end.name.startswith("/") or (end.name[0] != "~" and full.startswith(f"/{known.name}/")):
             yield full
-
-
-def _relative_names(known: NodeFacts) -> Iterator[str]:
-    """Full names of what the code of a node that stands apart writes without a slash."""
-    names = (end.name for end in known.endpoints if known.apart and end.name[0] not in "/~<")
-    return (f"/{name}" for name in names)
 
 
 def _endpoints(ends: Iterable[End], place: _SeenPlace) -> dict[_Slot, Endpoint]:
@@ -183,16 +170,11 @@ def _types_by_endpoint(ends: Iterable[End]) -> Seen:
             raise UsageError(
                 f"{end.node} {end.role} the {end.kind} {end.name}, which is not possible in ROS"
             )
-        found = types[EndpointId(end.kind, end.role, end.name)]
-        if _is_valid_type(end):
+        found, valid = types[EndpointId(end.kind, end.role, end.name)], _TYPE.fullmatch(end.type)
+        # Another type counts as not known.
+        if valid and valid[1] in _WORDS[end.kind]:
             found.add(end.type)
     return {key: tuple(sorted(found)) for key, found in types.items()}
-
-
-def _is_valid_type(end: End) -> bool:
-    """Whether the type is valid for its kind; another type counts as not known."""
-    found = _TYPE.fullmatch(end.type)
-    return found is not None and found[1] in _WORDS[end.kind]
 
 
 def _name_in_code(name: str, types: Sequence[str], place: _SeenPlace) -> str:

@@ -58,27 +58,23 @@ def _lines(learned: Sequence[LearnedNode], stack: str) -> Iterator[str]:
     yield from _comment(f"Of: {' '.join(node.seen for node in learned)}", "")
     yield from ("", "nodes:")
     for node in learned:
-        yield from _node(node)
+        facts = node.facts
+        for remark in node.remarks:
+            yield from _comment(remark, "  ")
+        yield f"  {_scalar(facts.name)}:"
+        yield f"    note: {_scalar(facts.note)}"
+        yield from ["    apart: true"] * facts.apart
+        if node.parts:
+            yield f"    with: {_flow(list(node.parts))}"
+        for role in ROLES:
+            own = [end for end in node.own if end.role == role]
+            if own:
+                yield f"    {role}:"
+            yield from (f"      {_scalar(end.name)}: {_value(end)}" for end in own)
         yield ""
     yield from ("stacks:", f"  {_scalar(stack)}:", "    about: Learned from a running graph")
     yield "    nodes:"
     yield from (f"      - {_scalar(node.facts.name)}" for node in learned)
-
-
-def _node(node: LearnedNode) -> Iterator[str]:
-    facts = node.facts
-    for remark in node.remarks:
-        yield from _comment(remark, "  ")
-    yield f"  {_scalar(facts.name)}:"
-    yield f"    note: {_scalar(facts.note)}"
-    yield from ["    apart: true"] * facts.apart
-    if node.parts:
-        yield f"    with: {_flow(list(node.parts))}"
-    for role in ROLES:
-        own = [end for end in node.own if end.role == role]
-        if own:
-            yield f"    {role}:"
-        yield from (f"      {_scalar(end.name)}: {_value(end)}" for end in own)
 
 
 def _value(end: Endpoint) -> str:
@@ -127,7 +123,8 @@ def to_nodl(
     """
     usual = {(it.role, it.name) for it in library.parts[EVERY_NODE]} | {("subscribes", CLOCK)}
     ends = [it for it in node.facts.endpoints if (it.role, it.name) not in usual]
-    written = [it for end in ends for it in _entries(end)]
+    # One entry for each of its types.
+    written = [it._replace(type=one, also=()) for it in ends for one in (it.type, *it.also)]
     seen = _Seen(graph, node, namespace.rstrip("/"))
     written += [it for end in ends if end.transport for it in seen.transports(end)]
     description = f"Seen as {node.seen} in a running graph, by multibot snapshot"
@@ -161,26 +158,17 @@ class _Seen(NamedTuple):
                 yield Endpoint(TOPIC, end.role, f"{end.name}/{transport}", found.type)
 
 
-def _entries(end: Endpoint) -> Iterator[Endpoint]:
-    """One endpoint for each of its types."""
-    yield from (end._replace(type=it, also=()) for it in (end.type, *end.also))
-
-
 def _qos(qos: Qos | None) -> dict[str, object]:
     if qos is None:
         return dict(UNKNOWN_QOS)
-    history = qos.history if qos.history in POLICIES["history"] else DEFAULT
+    found: dict[str, object] = {"history": DEFAULT, "reliability": DEFAULT}
     # Fast DDS does not announce the depth to other processes.
-    if history == KEEP_LAST and qos.depth < 1:
-        history = DEFAULT
-    found: dict[str, object] = {"history": history}
-    if history == KEEP_LAST:
-        found["depth"] = qos.depth
-    known = qos.reliability in POLICIES["reliability"]
-    found["reliability"] = qos.reliability if known else DEFAULT
-    for key in ("durability", "liveliness"):
-        if getattr(qos, key) in POLICIES[key]:
-            found[key] = getattr(qos, key)
+    if qos.history == KEEP_LAST and qos.depth > 0:
+        found = {"history": KEEP_LAST, "depth": qos.depth, "reliability": DEFAULT}
+    for key in ("history", "reliability", "durability", "liveliness"):
+        word = getattr(qos, key)
+        if word in POLICIES[key] and word != KEEP_LAST:
+            found[key] = word
     for key in ("deadline", "lifespan", "liveliness_lease_duration"):
         seconds = getattr(qos, key)
         if seconds > 0 and not math.isinf(seconds):

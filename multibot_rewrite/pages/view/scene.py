@@ -11,6 +11,7 @@ from math import acos, degrees, dist, isfinite
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Change
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.checks.poses import inverse, matrix_of_quaternion, product
@@ -199,9 +200,7 @@ def placed(edge: Edge) -> tuple[float, ...]:
 
 
 def _below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
-    children: dict[str, list[Edge]] = defaultdict(list)
-    for it in above.values():
-        children[it.parent].append(it)
+    children = lists_by_key((it.parent, it) for it in above.values())
     todo = [root]
     for name in todo:  # grows
         for it in children[name]:

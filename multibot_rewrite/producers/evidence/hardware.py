@@ -74,7 +74,15 @@ def exported(root: _Element, file: str) -> Iterator[Exported]:
                     name = f"{owner.get('name', '')}/{it.get('name', '')}"
                     yield Exported(kind, name, _place(it, file))
         for hardware in system.iterchildren("hardware"):
-            yield from _by_code(hardware, file)
+            # What the plugin exports whatever the description names.
+            plugin = _plugin(hardware)
+            claims = plugin.claims if plugin else ()
+            params = {
+                one.get("name", ""): Given((one.text or "").strip(), _place(one, file))
+                for one in hardware.iterchildren("param")
+            }
+            for one in claimed(claims, params):
+                yield Exported(one.kind, one.name, one.place or _place(hardware, file))
 
 
 def with_hardware(
@@ -96,18 +104,6 @@ def with_hardware(
             node = known[kind]._replace(name=name, known=kind, origin=origin, when=when)
             made.append(node._replace(of_hardware=True))
     return (*own, *made)
-
-
-def _by_code(hardware: _Element, file: str) -> Iterator[Exported]:
-    """What the plugin exports whatever the description names."""
-    plugin = _plugin(hardware)
-    claims = plugin.claims if plugin else ()
-    params = {
-        it.get("name", ""): Given((it.text or "").strip(), _place(it, file))
-        for it in hardware.iterchildren("param")
-    }
-    for it in claimed(claims, params):
-        yield Exported(it.kind, it.name, it.place or _place(hardware, file))
 
 
 def _place(element: _Element, file: str) -> Place:

@@ -34,7 +34,8 @@ Sent = Mapping[str, Sequence[Edge]]
 def edges_of(it: Run, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
     """The transforms of a node, each with its topic."""
     sent = [end.name for end in it.fact.endpoints if end.role == PUBLISHES and not end.when]
-    for edge in _made(it):
+    whole = publishes_a_tree(it)
+    for edge in (tree_of(it) or ()) if whole else _below(prefix_of(it), sent_by(it.fact, "")):
         topic = TF_STATIC if edge.static else TF
         # A driver may send its odometry on tf_static, and nodes may only have one of the two.
         named = next((name for name in sent if name.strip("/") == topic.strip("/")), "")
@@ -48,12 +49,6 @@ def passed_on(it: Run, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Ed
         if (end.role, end.type) == (PUBLISHES, TF_TYPE):
             full = resolve_bound(end.name, TOPIC, bound)
             yield from ((full, edge) for edge in inside.get(own, ()))
-
-
-def _made(it: Run) -> Iterable[Edge]:
-    if publishes_a_tree(it):
-        return tree_of(it) or ()
-    return _below(prefix_of(it), sent_by(it.fact, ""))
 
 
 def _below(prefix: str, edges: Iterable[Edge]) -> list[Edge]:

@@ -16,6 +16,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from errno import ENOENT
@@ -56,12 +57,13 @@ def read_commands() -> list[str]:
 
 
 def start_nothing(lines: list[str]) -> list[str]:
-    """From now on a launch file starts no program itself, either, and the ``lines`` of those that it
-    would start are kept; what is not known of the output of one is in the list."""
+    """From now on a launch file starts no program itself, either, and waits for none; the ``lines`` of
+    those that it would start are kept; what is not known of the output of one is in the list."""
     lost: list[str] = []
     started: Any = type("Popen", (_Program,), {"lost": lost, "lines": lines})
     vars(subprocess)["Popen"] = started
     vars(os)["system"] = lambda line: started(line).returncode
+    vars(time)["sleep"] = lambda seconds: None
     return lost
 
 

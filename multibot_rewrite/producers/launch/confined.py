@@ -43,9 +43,9 @@ from multibot_rewrite.producers.launch.records import LaunchOrder
 _LIBRARIES = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache")
 # Variables that are no secret, beside those that xacro sees.
 _PLAIN = (
-    *("COLUMNS", "DISPLAY", "HOME", "HOSTNAME", "LANG", "LOGNAME", "PATH", "USER", "MULTIBOT_"),
-    *("LD_LIBRARY_PATH", "LINES", "PYTHONPATH"),
-)
+    "COLUMNS", "DISPLAY", "HOME", "HOSTNAME", "LANG", "LOGNAME", "PATH", "USER", "MULTIBOT_",
+    "LD_LIBRARY_PATH", "LINES", "PYTHONPATH",
+)  # fmt: skip
 NOT_FENCED = (
     "a launch file is a program, and this system has not both Landlock and seccomp to fence it in;"
     " --trust runs it without (SECURITY.md)"
@@ -108,6 +108,7 @@ def _readable(access: Access) -> Iterator[str]:
             yield from (os.path.join(above, it) for it in ("src", "build"))
     yield from sys.path
     yield from (sysconfig.get_path(it) for it in ("stdlib", "platstdlib"))
+    yield from filter(None, [sys.pycache_prefix])
     yield from (*_LIBRARIES, "/dev/null", "/dev/urandom")
 
 

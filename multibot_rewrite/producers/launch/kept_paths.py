@@ -28,8 +28,9 @@ _REST = r"[^\s'\"<>:;,|)]*"
 
 
 def is_made(path: str) -> bool:
-    """Is it a file of the launch itself?"""
-    return os.path.realpath(path).startswith(os.path.realpath(_top()) + os.sep)
+    """Is it a file of the launch itself? A text of several lines is no path: a description has
+    thousands of slashes, and each would be a folder to ask for."""
+    return "\n" not in path and os.path.realpath(path).startswith(os.path.realpath(_top()) + os.sep)
 
 
 def _top() -> str:

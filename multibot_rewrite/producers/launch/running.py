@@ -268,10 +268,14 @@ def _started(
 
 
 def _with_values(run: Run) -> NodeFacts:
-    """Return what is known of a node with its parameters and arguments."""
+    """Return what is known of a node with its parameters and arguments. Where all of its parameters are
+    known, an end whose type they choose has its default."""
     if not run.has_fact:
         return run.fact
     made = filled(run.fact, run)._replace(known=run.fact.kind)
+    if not run.untold:
+        ends = (it._replace(also=()) if it.types else it for it in made.endpoints)
+        made = made._replace(endpoints=tuple(ends))
     return with_static_transform(as_named(made, run.arguments, run.values), run.arguments)
 
 

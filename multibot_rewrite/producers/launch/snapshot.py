@@ -7,12 +7,12 @@ condition that nobody knows may be there.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
@@ -269,10 +269,7 @@ def _without_own_time(ends: Sequence[End]) -> Iterator[End]:
 
 def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
     """Each transform once, with all who send it."""
-    senders: dict[tuple[str, Edge], list[str]] = defaultdict(list)
-    for part in parts:
-        for it in dict.fromkeys(part.edges):
-            senders[it].append(part.name)
+    senders = lists_by_key((it, part.name) for part in parts for it in dict.fromkeys(part.edges))
     for (topic, edge), who in senders.items():
         yield edge._replace(topic=topic, publishers=unique(who), several=len(who) > 1)
 

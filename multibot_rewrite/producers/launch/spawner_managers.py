@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterable
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.producers.launch.spawners import Spawned
 
 NO_MANAGER = declare("MG723", "no-controller-manager", ERROR, formats=("fleet",))
@@ -31,9 +32,7 @@ def under_managers(spawned: Iterable[Spawned], started: Collection[str]) -> Unde
     lost = [it for it in every if meant and it.manager not in started]
     found = tuple(it._replace(manager=meant) if it in lost else it for it in every)
     # One finding a spawner.
-    spawners: dict[tuple[str, int, str], list[str]] = {}
-    for it in lost:
-        spawners.setdefault((it.place.file, it.place.line, it.manager), []).append(it.name)
+    spawners = lists_by_key(((it.place.file, it.place.line, it.manager), it.name) for it in lost)
     findings = []
     for (file, line, manager), names in spawners.items():
         message = f"the spawner of {', '.join(names)} asks for {manager}, which nothing starts"

@@ -11,6 +11,7 @@ import argparse
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, NoReturn
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.producers.launch.ros_arguments import ros_arguments
@@ -98,9 +99,7 @@ def texts_of(
 ) -> Iterator[tuple[str, list[ParameterText]]]:
     """Each manager by its full name, and all parameters that decide its controllers: what it gets
     itself (``given``, by its name), what the spawners name, and the types that they say."""
-    by_manager: dict[str, list[Spawned]] = {}
-    for it in spawned:
-        by_manager.setdefault(it.manager, []).append(it)
+    by_manager = lists_by_key((it.manager, it) for it in spawned)
     for manager, controllers in by_manager.items():
         named = (text for it in controllers for text in it.parameters)
         said = (_declaration(it) for it in controllers)

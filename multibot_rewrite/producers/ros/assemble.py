@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import math
 import time
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.conventions import SENT_BY_EVERY_NODE
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.system.record_values import FARTHEST
 from multibot_rewrite.system.records import (
@@ -190,10 +191,7 @@ def topics_to_query(
     """
     if len(set(names)) < len(names):
         return sorted(topics)
-    sides = defaultdict(set)
-    for end in endpoints:
-        if end.kind == TOPIC:
-            sides[end.name].add(end.role)
+    sides = sets_by_key((end.name, end.role) for end in endpoints if end.kind == TOPIC)
     # Almost every node publishes one of these, so few queries show which nodes share a process.
     wanted = {*SENT_BY_EVERY_NODE, *requested}
     return sorted(
@@ -211,10 +209,7 @@ def merged(by_node: Iterable[End], by_topic: Mapping[str, Iterable[End]]) -> lis
 
 def processes_by_node(endpoints: Iterable[End]) -> dict[str, list[str]]:
     """The processes seen for each node name."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for end in endpoints:
-        if end.process:
-            found[end.node].add(end.process)
+    found = sets_by_key((end.node, end.process) for end in endpoints if end.process)
     return {node: sorted(own) for node, own in found.items()}
 
 
@@ -272,10 +267,9 @@ def frames(
     ``of_several`` are those that more than one publisher sends, ``last`` what each was at last,
     ``rates`` how often it came, ``ages`` how old it was.
     """
-    publishers = defaultdict(set)
-    for end in endpoints:
-        if end.kind == TOPIC and end.role == PUBLISHES:
-            publishers[end.name].add(end.node)
+    publishers = sets_by_key(
+        (end.name, end.node) for end in endpoints if end.kind == TOPIC and end.role == PUBLISHES
+    )
     latched: dict[tuple[str, str, str], bool] = {}
     for topic, is_latched, parent, child in received:
         edge = (topic, parent, child)

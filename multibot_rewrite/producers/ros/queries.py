@@ -11,6 +11,7 @@ from contextlib import suppress
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.producers.ros import assemble
 from multibot_rewrite.system.environment import machine
 from multibot_rewrite.system.records import (
@@ -144,9 +145,7 @@ def with_topic_details(
 def _query_topics(
     node: Any, topics: Iterable[str], found: Iterable[End], asked: TopicQueries
 ) -> dict[str, list[End]]:
-    ends: dict[str, list[End]] = {}
-    for end in found:
-        ends.setdefault(end.name, []).append(end)
+    ends = lists_by_key((end.name, end) for end in found)
     result = {}
     for topic in topics:
         now = frozenset(ends.get(topic, ()))

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.producers.rosgraph.reading import (
     DURABILITY,
     HISTORY,
@@ -46,9 +46,7 @@ def to_yaml(snapshot: System) -> bytes:
 
 def to_message(snapshot: System) -> dict[str, object]:
     """The snapshot as the fields of a message; what a message cannot hold is left out."""
-    ends: dict[str, list[End]] = defaultdict(list)
-    for end in snapshot.ends:
-        ends[end.node].append(end)
+    ends = lists_by_key((end.node, end) for end in snapshot.ends)
     # Of two nodes with a name the first gets all: a message does not say whose an endpoint is.
     return {"nodes": [_node(it.name, ends.pop(it.name, [])) for it in snapshot.nodes]}
 

@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeVar
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.producers.sources.expressions import last
 from multibot_rewrite.producers.sources.records import (
     ANY,
@@ -104,9 +105,7 @@ def frame_in(it: Value) -> str:
 
 
 def _by(items: Iterable[Item], key: Callable[[Item], Key]) -> dict[Key, tuple[Item, ...]]:
-    found: dict[Key, list[Item]] = {}
-    for item in items:
-        found.setdefault(key(item), []).append(item)
+    found = lists_by_key((key(item), item) for item in items)
     return {name: tuple(rows) for name, rows in found.items()}
 
 
@@ -167,7 +166,17 @@ def _candidates(names: Names, spot: Spot, name: str, depth: int) -> Iterator[tup
         yield from ((_where(spot, it), it.text) for it in rows)
         if rows:
             return
-    yield from _constants(names, spot, name)
+    # What is set outside of functions, in the same file or once in all.
+    word = name.rpartition(".")[2]
+    every = [it for it in names.constants.get(word, ()) if it.text]
+    near = [it for it in every if it.place.path == spot.path]
+    if not near and ("." in name) and not word.isupper():
+        return
+    for it in near or every:
+        yield (
+            spot._replace(owner=it.owner, function="", given=NO_WORDS, path=it.place.path),
+            it.text,
+        )
 
 
 def _rows_inside(names: Names, spot: Spot, name: str) -> tuple[Value, ...]:
@@ -192,20 +201,6 @@ def _where(spot: Spot, row: Value) -> Spot:
     makes = row.function in ("__init__", row.owner)
     given = spot.made.given.get(row.owner, NO_WORDS) if makes else NO_WORDS
     return spot._replace(owner=row.owner, function=row.function, given=given, path=row.place.path)
-
-
-def _constants(names: Names, spot: Spot, name: str) -> Iterator[tuple[Spot, str]]:
-    """What is set outside of functions, in the same file or once in all."""
-    word = name.rpartition(".")[2]
-    every = [it for it in names.constants.get(word, ()) if it.text]
-    near = [it for it in every if it.place.path == spot.path]
-    if not near and ("." in name) and not word.isupper():
-        return
-    for it in near or every:
-        yield (
-            spot._replace(owner=it.owner, function="", given=NO_WORDS, path=it.place.path),
-            it.text,
-        )
 
 
 def default_of(names: Names, spot: Spot, parameter: str) -> str | None:

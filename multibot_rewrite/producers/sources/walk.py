@@ -228,15 +228,11 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
         for it in followed:
             yield from _function(walk, it)
     elif name not in harmless():
-        yield from _handed(names, spot, call, name)
-
-
-def _handed(names: Names, spot: Spot, call: Call, name: str) -> Iterator[Unread]:
-    """Something that is not here is given the node."""
-    texts = {text_in(names, spot, it) for it in call.given}
-    own = {"<this>", "<shared_from_this>"} if spot.made.chain else set()
-    if name and (texts & own or any(_is_new_node(names, it) for it in texts)):
-        yield Unread(name, call.place)
+        # Something that is not here is given the node.
+        texts = {text_in(names, spot, it) for it in call.given}
+        mine = {"<this>", "<shared_from_this>"} if spot.made.chain else set()
+        if name and (texts & mine or any(_is_new_node(names, it) for it in texts)):
+            yield Unread(name, call.place)
 
 
 def _is_new_node(names: Names, text: str) -> bool:

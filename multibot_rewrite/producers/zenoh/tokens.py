@@ -71,22 +71,18 @@ class _Malformed(Exception):
 def read_token(key: str) -> Token | None:
     """The token with this key expression; None for what rmw_zenoh would not take either."""
     try:
-        return _token(key)
+        parts = key.split("/")
+        if len(parts) < _NODE_PARTS or parts[0] != SPACE or "" in parts:
+            raise _Malformed
+        domain, session, node_id, _, kind, enclave, namespace, name = parts[1:_NODE_PARTS]
+        space = _plain(namespace)
+        node = f"{'' if space == '/' else space}/{_plain(name)}"
+        if not node.startswith("/"):
+            raise _Malformed
+        end = None if kind == NODE else _end(kind, node, session, parts[_NODE_PARTS:])
+        return Token(_number(domain), session, node_id, node, _plain(enclave), end)
     except _Malformed:
         return None
-
-
-def _token(key: str) -> Token:
-    parts = key.split("/")
-    if len(parts) < _NODE_PARTS or parts[0] != SPACE or "" in parts:
-        raise _Malformed
-    domain, session, node_id, _, kind, enclave, namespace, name = parts[1:_NODE_PARTS]
-    space = _plain(namespace)
-    node = f"{'' if space == '/' else space}/{_plain(name)}"
-    if not node.startswith("/"):
-        raise _Malformed
-    end = None if kind == NODE else _end(kind, node, session, parts[_NODE_PARTS:])
-    return Token(_number(domain), session, node_id, node, _plain(enclave), end)
 
 
 def _end(kind: str, node: str, session: str, rest: Sequence[str]) -> End:

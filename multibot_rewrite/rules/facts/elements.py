@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.description.steps.document import Document
 
 _ByTag = Mapping[str, Sequence[_Element]]
@@ -57,10 +57,7 @@ def _of(found: _ByTag, tags: tuple[str, ...]) -> Sequence[_Element]:
 
 
 def _by_tag(elements: Iterable[_Element]) -> _ByTag:
-    found: dict[str, list[_Element]] = defaultdict(list)
-    for it in elements:
-        found[it.tag].append(it)
-    return found
+    return lists_by_key((it.tag, it) for it in elements)
 
 
 def name_of(element: _Element) -> str:

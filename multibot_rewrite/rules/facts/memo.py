@@ -109,12 +109,10 @@ def since_jazzy(subject: Subject) -> str:
 
 
 # Types that render what is in front of them, along x of their pose.
-CAMERAS = frozenset(
-    (
-        *("camera", "depth", "depth_camera", "rgbd_camera", "rgbd", "thermal", "thermal_camera"),
-        *("segmentation_camera", "boundingbox_camera", "wideanglecamera", "wide_angle_camera"),
-    )
-)
+CAMERAS = frozenset((
+    "camera", "depth", "depth_camera", "rgbd_camera", "rgbd", "thermal", "thermal_camera",
+    "segmentation_camera", "boundingbox_camera", "wideanglecamera", "wide_angle_camera",
+))  # fmt: skip
 LIDARS = frozenset(("ray", "gpu_ray", "lidar", "gpu_lidar"))
 
 

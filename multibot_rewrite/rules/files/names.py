@@ -76,8 +76,7 @@ def _undeclared(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Finding]:
         if name not in hinted and len(hinted) < HINTED:
             hinted[name] = _near(file, site, name, known)
         near = hinted.get(name, "")
-        meant = file.is_named or site.together in there
-        alone = site.kind == "joint" and file.is_whole and meant
+        alone = site.kind == "joint" and file.is_whole and site.together in there
         if not near and not (_is_sure(file, site) or (not file.is_certain and alone)):
             continue
         level = WARNING if file.is_certain else ""

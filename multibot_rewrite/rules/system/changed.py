@@ -10,19 +10,21 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import OF_EVERY_NODE
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import DOES
+from multibot_rewrite.rules.system.matching import qos_words
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
-from multibot_rewrite.system.index import TF, Ends, Index, at_work
+from multibot_rewrite.system import words
+from multibot_rewrite.system.index import TF, Index, at_work
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, TOPIC, Edge, End, System
 
-# Services of every node.
-_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
 # In metres and parts of a quaternion.
 _SAME = 1e-3
 _MEANT = "is it meant? Then take a new snapshot"
-_POLICIES = ("reliability", "durability", "deadline", "liveliness")
+
+
 # Parent, child and topic.
 _Place = tuple[str, str, str]
 
@@ -77,22 +79,14 @@ def untold(found: Iterable[Finding]) -> list[Finding]:
 
 
 def _changes(before: System, seen: Index) -> Iterator[_Change]:
-    yield from _ends(before, seen)
-    yield from _transforms(before, seen)
-    yield from _frames(before, seen)
-    yield from _parameters(before, seen)
-
-
-def _ends(before: System, seen: Index) -> Iterator[_Change]:
     old, new = _by_key(before.ends), _by_key(seen.system.ends)
     nodes = {it.name for it in before.nodes}
     for key, end in new.items():
-        ends = seen.by_name.get((end.kind, end.name))
         if key in old:
             if (was := _said(old[key])) != (now := _said(end)) and not seen.is_tool(end.node):
                 what = f"{DOES[end.role]} {end.name} as {now}, and did as {was}"
                 yield _Change(end.node, what, (end.name,))
-        elif ends and (obeyed := _is_obeyed(seen, end, ends)):
+        elif obeyed := _is_obeyed(seen, end):
             what = f"{DOES[end.role]} {end.name}, and did not; {obeyed} obeys it"
             yield _Change(end.node, what, (end.name,), ERROR)
         elif end.node in nodes and not seen.is_tool(end.node):
@@ -101,6 +95,9 @@ def _ends(before: System, seen: Index) -> Iterator[_Change]:
         if key not in new and end.node in seen.nodes and not seen.is_tool(end.node):
             what = f"{DOES[end.role]} {end.name} no more"
             yield _Change(end.node, what, (end.name,))
+    yield from _transforms(before, seen)
+    yield from _frames(before, seen)
+    yield from _parameters(before, seen)
 
 
 def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
@@ -111,26 +108,21 @@ def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
         if it.name not in OF_EVERY_NODE
         and "/_" not in it.name
         and it.type != TF
-        and not it.type.startswith(_EVERY_NODE)
+        and not it.type.startswith(words.OF_EVERY_NODE)
     }
 
 
 def _said(end: End) -> str:
-    own = end.qos._asdict() if end.qos else {}
-    words = (
-        str(own[it]) for it in _POLICIES if str(own.get(it, "")) not in ("", "inf", "AUTOMATIC")
-    )
-    return " ".join((end.type, *words))
+    return " ".join((end.type, *qos_words(end)))
 
 
-def _is_obeyed(seen: Index, end: End, ends: Ends) -> str:
+def _is_obeyed(seen: Index, end: End) -> str:
     """Who does what a new sender orders, tools as well; empty for nobody."""
+    ends, others = seen.ends_at(end.kind, end.name), list[End]()
     if end.kind == TOPIC and end.role == PUBLISHES and end.name in seen.orders:
         others = at_work(ends.subscribers)
     elif end.kind == ACTION and end.role == CALLS and not seen.is_tool(end.node):
         others = [*ends.servers]
-    else:
-        others = []
     return next((it.node for it in others if it.node != end.node), "")
 
 
@@ -154,11 +146,8 @@ def _transforms(before: System, seen: Index) -> Iterator[_Change]:
         elif place in new and _is_moved(edge, new[place]):
             yield _Change("", f"{sent} is elsewhere than it was", (child,))
     known = {(child, topic) for _, child, topic in old}
-    fresh = [it for it in new if it not in old and it[1:] not in known]
-    by_topic: dict[str, list[_Place]] = defaultdict(list)
-    for it in fresh:
-        by_topic[it[2]].append(it)
-    for topic, places in by_topic.items():
+    fresh = (it for it in new if it not in old and it[1:] not in known)
+    for topic, places in lists_by_key((it[2], it) for it in fresh).items():
         listed = shorten(f"{parent} -> {child}" for parent, child, _ in places)
         senders = [it for place in places for it in new[place].publishers]
         yield _Change(
@@ -177,20 +166,20 @@ def _edges(edges: Iterable[Edge]) -> Mapping[_Place, Edge]:
 
 
 def _is_moved(old: Edge, new: Edge) -> bool:
-    if not (old.static and new.static and old.transform and new.transform):
-        return False
-    return any(abs(it - was) > _SAME for was, it in zip(old.transform, new.transform, strict=True))
+    fixed = old.static and new.static and old.transform and new.transform
+    both = zip(old.transform, new.transform, strict=True) if fixed else ()
+    return any(abs(it - was) > _SAME for was, it in both)
 
 
 def _frames(before: System, seen: Index) -> Iterator[_Change]:
     """The frames that messages name, of topics from which some came both times."""
-    sides: tuple[dict[str, set[str]], ...] = (defaultdict(set), defaultdict(set))
-    for side, system in zip(sides, (before, seen.system), strict=True):
-        for it in system.heard:
-            side[it.topic].add(
-                " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints)
-            )
-    old, new = sides
+    old, new = (
+        sets_by_key(
+            (it.topic, " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints))
+            for it in system.heard
+        )
+        for system in (before, seen.system)
+    )
     for topic, frames in new.items():
         if topic in old and frames != old[topic]:
             was, now = (shorten(sorted(it)) or "nothing" for it in (old[topic], frames))

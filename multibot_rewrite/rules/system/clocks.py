@@ -10,26 +10,20 @@ from collections.abc import Iterator, Mapping, Set
 from fnmatch import translate
 from math import inf, isinf
 
-from multibot_rewrite.base.conventions import CLOCK
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap
+from multibot_rewrite.base.conventions import CLOCK, TIMED
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap, Setting
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.tf_pieces import publishes_description
 from multibot_rewrite.system import words
-from multibot_rewrite.system.index import Index, nodes_of, once, robots_of, sent_on
+from multibot_rewrite.system.index import Index, at_work, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SIM_TIME, TOPIC, Edge, without_clock
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
-# They compare the time of messages with their own clock, and subscribe to /clock with use_sim_time.
-_TIMED = (
-    "robot_state_publisher*", "amcl*", "ekf*", "ukf*", "*slam_toolbox*", "cartographer_node*",
-    "bt_navigator*", "controller_server*", "planner_server*", "behavior_server*", "map_server*",
-    "velocity_smoother*", "collision_monitor*", "local_costmap", "global_costmap", "navsat_transform*",
-    "icp_odometry", "rgbd_odometry",
-)  # fmt: skip
-_IS_TIMED = lazy_compile("|".join(map(translate, _TIMED)))
+_IS_TIMED = lazy_compile("|".join(map(translate, TIMED)))
 
 _TYPE = "rosgraph_msgs/msg/Clock"
 _SENT = (TOPIC, PUBLISHES, CLOCK)
@@ -58,18 +52,14 @@ def no_clock(seen: Index) -> Iterator[Finding]:
 
 
 def _clocks(seen: Index) -> tuple[str, ...]:
-    ends = seen.by_name.get((TOPIC, CLOCK))
-    return nodes_of(ends.publishers) if ends else ()
+    return nodes_of(seen.ends_at(TOPIC, CLOCK).publishers)
 
 
 def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
     """The nodes that surely subscribe to the clock, by robot."""
-    ends = seen.by_name.get((TOPIC, CLOCK))
-    found: dict[str, list[str]] = defaultdict(list)
-    for node in nodes_of(it for it in ends.subscribers if it.sure == RUNS) if ends else ():
-        if not is_viewer(node) and not seen.is_tool(node):
-            found[seen.robot(node)].append(node)
-    return found
+    readers = at_work(it for it in seen.ends_at(TOPIC, CLOCK).subscribers if it.sure == RUNS)
+    nodes = (it for it in nodes_of(readers) if not seen.is_tool(it))
+    return lists_by_key((seen.robot(it), it) for it in nodes)
 
 
 @system_rule("MG502", "two-clocks", ERROR)
@@ -96,10 +86,7 @@ def _times(seen: Index, node: str) -> int:
 @once
 def _processes(seen: Index) -> Mapping[str, Set[str]]:
     """The processes of all nodes of a name."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for it in seen.system.nodes:
-        found[it.name].add(it.process)
-    return found
+    return sets_by_key((it.name, it.process) for it in seen.system.nodes)
 
 
 @system_rule("MG504", "clock-stands-or-goes-back", ERROR, absence=True)
@@ -132,18 +119,27 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
     if not simulated or not _clocks(seen):
         return
     untold = without_clock(seen.system)
-    asked = {node for node in seen.nodes if _is_timed(seen, node) and node not in untold}
-    timed = asked - planned_clocks(seen).keys()
+    asked = (it for it in seen.nodes if not is_viewer(it) and it not in untold)
+    timed = {it for it in asked if compares_times(last_word(seen.plain(it)))}
+    timed -= planned_clocks(seen).keys()
     first, their = min(simulated), {*map(seen.robot, simulated)}
-    by_robot: dict[str, list[str]] = defaultdict(list)
-    for node in sorted(timed):
-        by_robot[seen.robot(node)].append(node)
+    by_robot = lists_by_key((seen.robot(node), node) for node in sorted(timed))
     for robot, own in by_robot.items():
         others = [node for node in own if node not in simulated]
         if others and robot in their:
-            yield _mixed(robot, others, next((it for it in own if it in simulated), first))
+            simulated_one = next((it for it in own if it in simulated), first)
+            message = f"not on simulated time, as {simulated_one} is: {shorten(others)}"
+            cause, level = "set use_sim_time: true for all nodes of the robot", ERROR
         elif others and robot:
-            yield _real_beside_simulated(robot, others, first)
+            message = f"{robot} is on the machine's time, {first} on simulated time"
+            cause = f"a real robot beside a simulation? Else set use_sim_time: true for {robot}"
+            level = WARNING
+        else:
+            continue
+        yield clocks_mixed.finding(
+            message, cause, level=level, robot=robot, node=others[0], names=(CLOCK,),
+            settings=tuple(Setting(it, SIM_TIME, parameter_text(True)) for it in others),
+        )  # fmt: skip
 
 
 def planned_clocks(seen: Index) -> dict[str, str]:
@@ -154,13 +150,14 @@ def planned_clocks(seen: Index) -> dict[str, str]:
 
 def _not_as_planned(seen: Index) -> Iterator[Finding]:
     """One finding for the nodes of a robot that differ alike, by what they subscribe to."""
-    ends = seen.by_name.get((TOPIC, CLOCK))
-    timed = nodes_of(ends.subscribers) if ends else ()
+    timed = nodes_of(seen.ends_at(TOPIC, CLOCK).subscribers)
     told = {it.node for it in seen.system.parameters if it.name == SIM_TIME}
-    differing: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for node, wanted in planned_clocks(seen).items():
-        if node in seen.nodes and node not in told and wanted != parameter_text(node in timed):
-            differing[seen.robot(node), wanted].append(node)
+    here = [(it, wanted) for it, wanted in planned_clocks(seen).items() if it in seen.nodes]
+    differing = lists_by_key(
+        ((seen.robot(node), wanted), node)
+        for node, wanted in here
+        if node not in told and wanted != parameter_text(node in timed)
+    )
     for (robot, wanted), nodes in differing.items():
         verb = "do not subscribe" if wanted == parameter_text(True) else "subscribe"
         which = f"these nodes {verb} to {CLOCK}: {shorten(nodes)}"
@@ -168,31 +165,13 @@ def _not_as_planned(seen: Index) -> Iterator[Finding]:
             f"{SIM_TIME} is planned to be {wanted}, but {which}",
             f"start them with {SIM_TIME}: {wanted}",
             robot=robot, node=nodes[0], names=tuple(nodes),
+            settings=tuple(Setting(it, SIM_TIME, wanted) for it in nodes),
         )  # fmt: skip
-
-
-def _is_timed(seen: Index, node: str) -> bool:
-    """Does a node compare times, by its name without the robot's?"""
-    return not is_viewer(node) and compares_times(last_word(seen.plain(node)))
 
 
 def compares_times(name: str) -> bool:
     """Does a node of this name, without its namespace, compare the time of messages with its own?"""
     return bool(_IS_TIMED.fullmatch(name))
-
-
-def _mixed(robot: str, others: list[str], simulated: str) -> Finding:
-    message = f"not on simulated time, as {simulated} is: {shorten(others)}"
-    cause = "set use_sim_time: true for all nodes of the robot"
-    return clocks_mixed.finding(message, cause, robot=robot, node=others[0], names=(CLOCK,))
-
-
-def _real_beside_simulated(robot: str, others: list[str], simulated: str) -> Finding:
-    message = f"{robot} is on the machine's time, {simulated} on simulated time"
-    cause = f"a real robot beside a simulation? Else set use_sim_time: true for {robot}"
-    return clocks_mixed.finding(
-        message, cause, level=WARNING, robot=robot, node=others[0], names=(CLOCK,)
-    )
 
 
 # A costmap waits a part of a second for a transform, tf2 keeps ten seconds (buffer_core.h).

@@ -14,7 +14,9 @@ from multibot_rewrite.base.conventions import (
     team,
 )
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.wording import and_then, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.causes import Spelled, alike
@@ -64,8 +66,12 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
     """Where the other name has no sender, its reader is the finding, but for the drive beside a
     twist_mux: what it chooses is meant for the drive. What RViz offers is a note."""
     obeyed, plainly = defaultdict(list), defaultdict(list)
-    sent = {name: _sent_for_sure(it) for name, it in seen.orders.items() if not _obeyed(it)}
-    unread = {name: it for name, it in sent.items() if it.publishers}
+    unread: dict[str, Ends] = {}
+    for name, it in seen.orders.items():
+        # What only may be sent is not missed.
+        sent = tuple(one for one in it.publishers if one.sure == RUNS)
+        if sent and not _obeyed(it):
+            unread[name] = it._replace(publishers=sent)
     for (kind, name), ends in seen.by_name.items() if unread else ():
         if kind == TOPIC and ends.publishers and _obeyed(ends):
             obeyed[ends.type].append(name)
@@ -103,12 +109,9 @@ def _alike(seen: Index, ends: Ends, known: Spelled) -> str:
     return alike(ends.name, known, ends.type, lambda it: not mine or seen.robot(it) in ("", mine))
 
 
-def _sent_for_sure(ends: Ends) -> Ends:
-    return ends._replace(publishers=tuple(it for it in ends.publishers if it.sure == RUNS))
-
-
 def _of_a_mux(seen: Index, ends: Ends) -> str:
-    """What the drive reads, where the velocities that twist_mux or Nav2 sends are unread."""
+    """What the drive reads, where the velocities that twist_mux or Nav2 sends are unread; of Nav2 else
+    the input of its robot's mux that nobody sends."""
     robot, kinds = seen.robot(ends.name), _kinds(ends)
     # MoveIt's nodes have drives of their own kind, and each its own goal.
     chosen = any(map(chooses, nodes_of(ends.publishers)))
@@ -124,10 +127,17 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
         # What a drive gets by way of another node may be meant, and what is chosen for it as well.
         if relays.isdisjoint(nodes_of(it.publishers))
         if not set(nodes_of(ends.publishers)).intersection(nodes_of(it.subscribers))
-        # What a drive that runs for certain reads in vain is the finding, but for a topic of its own.
-        if chosen or it.publishers or not any(map(_waits_for_sure, it.subscribers))
+        # What a drive that runs for certain reads in vain is the finding, but for a topic below its own
+        # name, since people send there, too.
+        if chosen
+        or it.publishers
+        or all(one.sure != RUNS or one.name.startswith(f"{one.node}/") for one in it.subscribers)
     ]
-    return min(drives, key=lambda it: bool(it.publishers)).name if drives else ""
+    if drives or chosen:
+        return min(drives, key=lambda it: bool(it.publishers)).name if drives else ""
+    idle = (it for it in moving.get(robot, ()) if kinds & _kinds(it) and not it.publishers)
+    inputs = (it.name for it in idle if any(map(chooses, nodes_of(it.subscribers))))
+    return nearest(ends.name, [it for it in inputs if not _BY_HAND.search(it)], alike=0.0)
 
 
 @once
@@ -137,25 +147,16 @@ def _moving(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends
     senders = {it.node for ends in moving for it in ends.publishers}
     asked = (it for it in moving if it.publishers or not is_from_outside(it.name))
     relays = senders.intersection(it.node for ends in asked for it in ends.subscribers)
-    found: dict[str, list[Ends]] = defaultdict(list)
-    for it in moving:
-        found[seen.robot(it.name)].append(it)
+    found = lists_by_key((seen.robot(it.name), it) for it in moving)
     return senders, relays, found
 
 
 @once
 def _goals(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
     """The orders that somebody obeys, by type and robot."""
-    found: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for it in seen.orders.values():
-        if _obeyed(it):
-            found[it.type, seen.robot(it.name)].append(it.name)
-    return found
-
-
-def _waits_for_sure(end: End) -> bool:
-    """Nobody is asked for a topic below its node, since people send there, too."""
-    return end.sure == RUNS and not end.name.startswith(f"{end.node}/")
+    return lists_by_key(
+        ((it.type, seen.robot(it.name)), it.name) for it in seen.orders.values() if _obeyed(it)
+    )
 
 
 def _kinds(ends: Ends) -> set[str]:
@@ -170,15 +171,12 @@ def _of_a_person(seen: Index, ends: Ends, same: Sequence[str]) -> str:
         if not any(_BY_HAND.search(it) for it in nodes_of(ends.publishers)):
             return ""
         # What one node of Nav2 hands to the next is no drive's.
-        own = [it for it in same if seen.robot(it) == robot]
-        own = [it for it in own if not _is_in_a_chain(seen.by_name[TOPIC, it])]
+        mine = [it for it in same if seen.robot(it) == robot]
+        readers = {it: at_work(seen.by_name[TOPIC, it].subscribers) for it in mine}
+        own = [it for it in mine if any(team(one.node) == one.node for one in readers[it])]
     else:
         own = [*_goals(seen).get((ends.type, robot), ())]
     return own[0] if len(own) == 1 else ""
-
-
-def _is_in_a_chain(ends: Ends) -> bool:
-    return all(team(it.node) != it.node for it in at_work(ends.subscribers))
 
 
 def _obeyed(ends: Ends) -> bool:
@@ -229,7 +227,9 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
         served = kind == TOPIC or ends.servers
         for node in nodes_of(_of_others(seen, owner, senders)) if served else ():
             robot = seen.robot(node)
-            if not _mistaken(seen, node, robot, ends):
+            # Who has both coordinates the two; a service that its own robot has not is for others.
+            own = seen.of_robot(robot, kind, seen.plain(name))
+            if node in nodes_of((*own.publishers, *own.clients)) if own else kind != TOPIC:
                 continue
             does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
             message = f"{does} {name}, a name of {owner}"
@@ -252,15 +252,6 @@ def _is_waited_for(seen: Index, ends: Ends) -> bool:
         return False
     own = (seen.of_robot(it, ends.kind, plain) for it in robots_of(seen, nodes_of(ends.publishers)))
     return any(it and at_work(it.subscribers) and not it.publishers for it in own)
-
-
-def _mistaken(seen: Index, node: str, robot: str, ends: Ends) -> bool:
-    """Is it the other robot's name in place of its own? Who has both coordinates the two; a service
-    that its own robot does not have is for others."""
-    own = seen.of_robot(robot, ends.kind, seen.plain(ends.name))
-    if own is None:
-        return ends.kind == TOPIC
-    return node not in nodes_of((*own.publishers, *own.clients))
 
 
 @system_rule("MG312", "several-command-senders", WARNING, meant=(PUBLISHES,))
@@ -292,24 +283,18 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
         cause = f"{_MUX} {guards[0]}{_EACH}" if past else _CHOOSE
         if past and chooses(guards[0]):
             cause = f"send it to a topic that {guards[0]} reads"
-        robot = seen.robot(ends.name) or seen.robot(readers[0])
+        plan, robot = seen.expected, seen.robot(ends.name) or seen.robot(readers[0])
+        planned = nodes_of(plan.ends_at(TOPIC, ends.name).publishers) if plan else ()
         yield several_command_senders.finding(
-            message, cause, level=ERROR if past or _is_unplanned(seen, tool, ends.name) else WARNING,
+            message, cause, level=ERROR if past or (planned and tool not in planned) else WARNING,
             robot=robot, node=tool, names=(ends.name,),
         )  # fmt: skip
-
-
-def _is_unplanned(seen: Index, node: str, name: str) -> bool:
-    """Has the plan other senders of a command than this one?"""
-    planned = seen.expected.by_name.get((TOPIC, name)) if seen.expected else None
-    senders = nodes_of(planned.publishers) if planned else ()
-    return bool(senders) and node not in senders
 
 
 @system_rule("MG313", "bag-beside-a-robot", ERROR)
 def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
     """A bag that is played to nodes which only read is what bags are for."""
-    mixed: dict[str, list[str]] = {}
+    mixed: dict[str, list[str]] = defaultdict(list)
     played = {end.name for end in seen.system.ends if words.PLAYER in end.node}
     for ends in seen.by_name.values() if played else ():
         if ends.kind != TOPIC or ends.name not in played:
@@ -318,12 +303,11 @@ def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
         others = [it for it in nodes_of(at_work(ends.publishers)) if it not in players]
         obeyed = words.moves(seen.plain(ends.name), ends.type) and _obeyed(ends)
         if players and ends.name not in OF_EVERY_NODE and (others or obeyed):
-            mixed.setdefault(players[0], []).append(ends.name)
+            mixed[players[0]].append(ends.name)
     for player, names in mixed.items():
         message = f"plays {shorten(sorted(names))} into the running system"
         cause = "play it in another ROS_DOMAIN_ID, or give its topics other names with --remap"
-        robots = robots_of(seen, names)
-        robot = robots[0] if len(robots) == 1 else ""
+        robot = only(robots_of(seen, names))
         yield bag_beside_a_robot.finding(
             message, cause, robot=robot, node=player, names=tuple(sorted(names))
         )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.wording import SEVERAL, only, shorten
+from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
 from multibot_rewrite.system import words
@@ -69,16 +69,21 @@ def _is_of(frame: str, links: Sequence[str]) -> bool:
 
 
 def _other_joints(seen: Index, it: Description) -> tuple[str, str] | None:
-    """Of the joint states beside it, in one namespace."""
+    """Return what is wrong where no sender of joint states in its namespace has a joint of it. One with
+    joints of its own alone is healthy among others, so each of them has to be heard."""
     space = it.topic.rpartition("/")[0]
-    for heard in seen.system.heard:
-        type_, senders = sent_on(seen, heard.topic)
-        beside = type_ == words.JOINTS and heard.topic.rpartition("/")[0] == space
-        named = heard.joints if beside and senders and it.joints else ()
-        if named and {*named}.isdisjoint(it.joints):
+    heard = [one for one in seen.system.heard if one.joints]
+    for topic in unique(one.topic for one in heard):
+        type_, senders = sent_on(seen, topic)
+        said = [one.joints for one in heard if one.topic == topic]
+        fits = type_ == words.JOINTS and topic.rpartition("/")[0] == space and it.joints
+        if not fits or not senders or len(said) < len(senders):
+            continue
+        named = unique(name for joints in said for name in joints)
+        if {*named}.isdisjoint(it.joints):
             return (
-                f"{it.topic} has the joints {shorten(it.joints, SEVERAL)}, and {senders[0]} sends"
-                f" {shorten(named, SEVERAL)} on {heard.topic}",
-                f"give {senders[0]} the names that the description has",
+                f"{it.topic} has the joints {shorten(it.joints, SEVERAL)}, and"
+                f" {shorten(senders, SEVERAL)} sends {shorten(named, SEVERAL)} on {topic}",
+                f"give {shorten(senders, SEVERAL)} the names that the description has",
             )
     return None

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
@@ -18,8 +19,9 @@ from multibot_rewrite.rules.system.likes import (
     made_of,
     nodes_of_each,
 )
+from multibot_rewrite.rules.system.matching import qos_words
 from multibot_rewrite.system.index import Index, once
-from multibot_rewrite.system.records import SIM_TIME, ZENOH, Edge, End
+from multibot_rewrite.system.records import SIM_TIME, ZENOH, Edge
 
 # What is each robot's own: who and where it is, what it is connected to, which files it reads.
 _OWN = lazy_compile(
@@ -30,7 +32,6 @@ _OWN = lazy_compile(
 # A description's place of a part, in metres and parts of a quaternion.
 _SAME = 1e-3
 _TWO = 2
-_POLICIES = "reliability", "durability", "deadline", "liveliness"
 
 
 class _Told(NamedTuple):
@@ -138,14 +139,9 @@ def _qualities(seen: Index) -> _Values:
     for robot, made in made_of(seen).items() if told else ():
         for key, end in made.ends.items():
             if end.qos:
-                words, what = _words(end), (*key, "qos")
-                found[what][robot] = _Told(end.node, end.name, words, words)
+                words = " ".join(qos_words(end))
+                found[(*key, "qos")][robot] = _Told(end.node, end.name, words, words)
     return found
-
-
-def _words(end: End) -> str:
-    own = end.qos._asdict() if end.qos else {}
-    return " ".join(str(own[it]) for it in _POLICIES if str(own[it]) not in ("inf", "AUTOMATIC"))
 
 
 def _edges_of(seen: Index) -> Iterator[tuple[str, Edge]]:
@@ -175,9 +171,7 @@ def _parts(seen: Index) -> _Values:
 
 
 def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterator[Finding]:
-    by_robot: dict[str, list[tuple[_Told, _Told]]] = defaultdict(list)
-    for robot, own, other in odd:
-        by_robot[robot].append((own, other))
+    by_robot = lists_by_key((robot, (own, other)) for robot, own, other in odd)
     for robot, pairs in by_robot.items():
         listed = (f"{own.name} {own.value}, not {other.value}" for own, other in pairs)
         like = seen.robot(pairs[0][1].node) or seen.frame_robot(pairs[0][1].name)
@@ -211,7 +205,6 @@ def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
 @once
 def _frames(seen: Index) -> Mapping[str, Mapping[str, str]]:
     """By robot: its frames by their names without its own."""
-    found: dict[str, dict[str, str]] = defaultdict(dict)
-    for robot, it in _edges_of(seen):
-        found[robot][seen.plain_frame(it.child)] = it.child
-    return found
+    return dicts_by_key(
+        (robot, seen.plain_frame(it.child), it.child) for robot, it in _edges_of(seen)
+    )

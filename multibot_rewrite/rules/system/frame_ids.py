@@ -8,13 +8,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cache, partial
 from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.conventions import FRAMES_OF_SENSORS, types_of
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Setting
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule, where
 from multibot_rewrite.system.index import Index, Tree, at_work, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
-from multibot_rewrite.system.records import NOWHERE, TOPIC, Edge, End, Heard, Place
+from multibot_rewrite.system.records import NOWHERE, TOPIC, Edge, Place
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _ODOMETRY = "nav_msgs/msg/Odometry"
@@ -22,9 +24,7 @@ _MEASURED = ("sensor_msgs/", _ODOMETRY, "stereo_msgs/", "radar_msgs/")
 
 _IMU = "sensor_msgs/msg/Imu"
 # Of no use without a frame.
-_PLACED = (
-    "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", _ODOMETRY, "nav_msgs/msg/OccupancyGrid",
-)  # fmt: skip
+_PLACED = types_of("placed")
 
 
 class _Message(NamedTuple):
@@ -48,14 +48,20 @@ def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
             topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
             owner = seen.frame_robot(frame)
             message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
-            cause = f"set the frame of {_who(senders)} to that of {robot}"
+            sent = {one for tree in trees_of(seen, robot) for one in frames_in(tree.edges)}
+            alike = (it for it in sent if seen.plain_frame(it) == seen.plain_frame(frame))
+            own = only([it for it in alike if seen.frame_robot(it) == robot])
+            cause = f"set the frame of {_one_of(senders)} to {own or f'that of {robot}'}"
             yield frame_id_of_another_robot.finding(
-                f"{message}; sent by {_who(senders)}",
-                cause,
-                robot=robot,
-                node=senders[0],
-                names=(frame,),
-            )
+                f"{message}; sent by {_one_of(senders)}", cause,
+                robot=robot, node=senders[0], names=(frame,), settings=_with_frame(messages, own),
+            )  # fmt: skip
+
+
+def _with_frame(messages: Iterable[_Message], frame: str) -> tuple[Setting, ...]:
+    """The settings that give messages of one sender each this frame; none without one."""
+    own = (it for it in messages if frame and len(it.senders) == 1)
+    return tuple(Setting(it.senders[0], it.field, frame, it.topic) for it in own)
 
 
 def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Message]) -> bool:
@@ -66,7 +72,7 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
 @system_rule("MG412", "frame-id-unknown", ERROR, absence=True)
 def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     """Where no transform was received at all nothing is known; others say that."""
-    frames, read = _by_topic(seen), partial(_is_placed_by_readers, seen)
+    frames = _by_topic(seen)
     yield from _nameless(seen)
     yield from _with_slash(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
@@ -75,21 +81,29 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         if there or _is_of_another(seen, frame, robot, messages):
             continue
         own = sorted({it for tree in heard for who in ("", robot) for it in tree.get(who, ())})
-        meant = _meant(seen, frame, own)
+        # Those of the robot that have this name beside the robot's, or without it.
+        last = frame.rpartition("/")[2]
+        meant = sorted(it for it in own if seen.plain_frame(it) in (frame, last) or it == last)
+        alike = [*filter(None, [nearest(frame, own, MISTYPED)])]
+        likely = meant or alike or _of_its_kind(messages, own)
         elsewhere = _where(seen).get(frame, ())
-        topics = shorten([it.topic for it in messages])
-        # Next to what a launch file starts there may be what sends the transform.
-        needed = seen.is_live and any(map(read, messages))
+        topics, link = shorten([it.topic for it in messages]), messages[0].link
+        # Of no use to their readers without a place; filters turn that of an IMU. Next to what a launch
+        # file starts there may be what sends the transform.
+        placed = [it.topic for it in messages if it.type in (*_PLACED, _IMU)]
+        needed = seen.is_live and any(_is_read(seen, it) for it in placed)
         yield frame_id_unknown.finding(
             f"{messages[0].field} of {topics} is {frame}, which is in no transform of"
             f" {robot or 'tf'}; sent by"
-            f" {_who(senders)}",
-            _in_the_sensor(messages[0])
-            or _remedy(senders, meant or _alike(frame, own) or _of_its_kind(messages, own))
+            f" {_one_of(senders)}",
+            # A sensor in a simulator sends what its description says, else a name that is in no tf.
+            (f"write <gz_frame_id>{link}</gz_frame_id> in the sensor" if link else "")
+            or (f"set the frame of {_one_of(senders)} to {_one_of(likely)}" if likely else "")
             or _sent_there(seen, frame, robot, elsewhere)
-            or f"send a transform for it, or set the frame of {_who(senders)} to one that is in tf",
+            or f"send a transform for it, or set the frame of {_one_of(senders)} to one that is in tf",
             level=ERROR if meant or elsewhere or needed else WARNING,
             robot=robot, node=senders[0], names=(frame,), **where(messages[:1]),
+            settings=() if link else _with_frame(messages, only(likely)),
         )  # fmt: skip
 
 
@@ -105,8 +119,8 @@ def joints_of_another_robot(seen: Index) -> Iterator[Finding]:
         if robot and senders and foreign:
             yield joints_of_another_robot.finding(
                 f"the joints on {it.topic} are {shorten(foreign, SEVERAL)}, of {others[foreign[0]]};"
-                f" sent by {_who(senders)}",
-                f"give {_who(senders)} the joints of {robot}",
+                f" sent by {_one_of(senders)}",
+                f"give {_one_of(senders)} the joints of {robot}",
                 robot=robot, node=senders[0], names=(it.topic,),
             )  # fmt: skip
 
@@ -126,11 +140,9 @@ def _robot_of_joint(seen: Index, joint: str) -> str:
 @once
 def _that_send(seen: Index) -> Mapping[str, Set[str]]:
     """The robots on whose topics each joint is."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for it in seen.system.heard:
-        for joint in it.joints:
-            found[joint].add(seen.robot(it.topic))
-    return found
+    return sets_by_key(
+        (joint, seen.robot(it.topic)) for it in seen.system.heard for joint in it.joints
+    )
 
 
 @once
@@ -147,11 +159,7 @@ def _by_topic(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
 @once
 def _where(seen: Index) -> Mapping[str, Sequence[str]]:
     """The topics that each frame is on."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for tree in seen.trees:
-        for it in frames_in(tree.edges):
-            found[it].append(tree.topic)
-    return found
+    return lists_by_key((it, tree.topic) for tree in seen.trees for it in frames_in(tree.edges))
 
 
 @once
@@ -172,12 +180,14 @@ def _nameless(seen: Index) -> Iterator[Finding]:
     readers guess (robot_localization ros_filter.cpp: the base's)."""
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
-        field = _unsaid(it, type_)
+        # Of odometry: its pose is known where all of the message was read.
+        field = "child_frame_id" if type_ == _ODOMETRY and it.pose and not it.child else ""
+        field = "frame_id" if not it.frame and type_ in _PLACED else field
         if senders and field:
             yield frame_id_unknown.finding(
                 f"{field} of {it.topic} is empty: tf cannot say where it was measured; sent by"
-                f" {_who(senders)}",
-                f"set the frame of {_who(senders)}",
+                f" {_one_of(senders)}",
+                f"set the frame of {_one_of(senders)}",
                 level=WARNING if it.frame else ERROR,
                 robot=seen.robot(it.topic) or only(robots_of(seen, senders)),
                 node=senders[0], names=(it.topic,),
@@ -199,42 +209,17 @@ def _with_slash(seen: Index) -> Iterator[Finding]:
         topic = next(iter(topics))
         yield frame_id_unknown.finding(
             f"messages on {shorten(topics)} are in {named}: tf2 refuses to look up a frame with a slash"
-            f" in front; sent by {_who(senders)}",
-            f"leave the slash out of the frames of {_who(senders)}",
-            level=ERROR if any(_readers(seen, it) for it in topics) else WARNING,
+            f" in front; sent by {_one_of(senders)}",
+            f"leave the slash out of the frames of {_one_of(senders)}",
+            level=ERROR if any(_is_read(seen, it) for it in topics) else WARNING,
             robot=seen.robot(topic) or only(robots_of(seen, senders)),
             node=senders[0], names=tuple(topics),
         )  # fmt: skip
 
 
-def _readers(seen: Index, topic: str) -> Sequence[End]:
-    """The ends of nodes that do more than look."""
-    ends = seen.by_name.get((TOPIC, topic))
-    return at_work(ends.subscribers) if ends else ()
-
-
-def _is_placed_by_readers(seen: Index, it: _Message) -> bool:
-    """Do nodes read what is of no use to them without its place? Filters turn that of an IMU."""
-    return it.type in (*_PLACED, _IMU) and bool(_readers(seen, it.topic))
-
-
-def _unsaid(it: Heard, type_: str) -> str:
-    if not it.frame and type_ in _PLACED:
-        return "frame_id"
-    # Its pose is known where all of the message was read.
-    return "child_frame_id" if type_ == _ODOMETRY and it.pose and not it.child else ""
-
-
-def _in_the_sensor(it: _Message) -> str:
-    """A sensor in a simulator sends what its description says, else a name that is in no tf."""
-    return f"write <gz_frame_id>{it.link}</gz_frame_id> in the sensor" if it.link else ""
-
-
-def _remedy(senders: Sequence[str], meant: Sequence[str]) -> str:
-    if not meant:
-        return ""
-    word = meant[0] if len(meant) == 1 else f"one of {shorten(meant, SEVERAL)}"
-    return f"set the frame of {_who(senders)} to {word}"
+def _is_read(seen: Index, topic: str) -> bool:
+    """Do nodes read it that do more than look?"""
+    return bool(at_work(seen.ends_at(TOPIC, topic).subscribers))
 
 
 def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -> str:
@@ -249,44 +234,17 @@ def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -
     return ""
 
 
-def _meant(seen: Index, frame: str, own: Sequence[str]) -> list[str]:
-    """The frames of the robot that have this name beside the robot's, or without it."""
-    last = frame.rpartition("/")[2]
-    return sorted(it for it in own if seen.plain_frame(it) in (frame, last) or it == last)
-
-
-def _alike(frame: str, own: Sequence[str]) -> list[str]:
-    found = nearest(frame, own, MISTYPED)
-    return [found] if found else []
-
-
-# What frames of sensors of a type are called.
-_CALLED = {
-    "sensor_msgs/msg/LaserScan": ("laser", "lidar", "scan"),
-    "sensor_msgs/msg/PointCloud2": ("lidar", "velodyne", "ouster", "depth"),
-    "sensor_msgs/msg/Imu": ("imu",),
-    "sensor_msgs/msg/Image": ("optical",),
-    "sensor_msgs/msg/NavSatFix": ("gps", "gnss", "navsat"),
-}
-
-
 def _of_its_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str]:
     """The one frame of the robot that is called as such a sensor's is."""
-    called = {word for it in messages for word in _CALLED.get(it.type, ())}
+    called = {word for it in messages for word in FRAMES_OF_SENSORS.get(it.type, ())}
     found = sorted(it for it in own if any(word in it for word in called))
     return found if len(found) == 1 else []
 
 
 def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Message]]:
-    """Frame, robot and senders -> the messages; a camera has several topics, and one fault."""
+    """Frame, robot and senders -> the messages of nodes other than viewers; a camera has several
+    topics, and one fault. tf2 takes a frame with a slash in front as one without."""
     found: dict[tuple[str, str, tuple[str, ...]], list[_Message]] = defaultdict(list)
-    for it in _messages(seen):
-        found[it.frame, it.robot, it.senders].append(it)
-    return found
-
-
-def _messages(seen: Index) -> Iterator[_Message]:
-    """What nodes other than viewers send; tf2 takes a frame with a slash in front as one without."""
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
         for field, written in (("frame_id", it.frame), ("child_frame_id", it.child)):
@@ -294,7 +252,8 @@ def _messages(seen: Index) -> Iterator[_Message]:
             if senders and frame:
                 robot = seen.robot(it.topic) or only(robots_of(seen, senders))
                 told = (robot, senders, field, it.link, it.place)
-                yield _Message(it.topic, type_, frame, *told)
+                found[frame, robot, senders].append(_Message(it.topic, type_, frame, *told))
+    return found
 
 
 def trees_of(seen: Index, robot: str) -> list[Tree]:
@@ -308,11 +267,11 @@ def trees_of(seen: Index, robot: str) -> list[Tree]:
 @once
 def _trees_by_robot(seen: Index) -> Mapping[str, Set[int]]:
     """The places of the trees on a robot's own topic or at its nodes; of those of all by ""."""
-    found: dict[str, set[int]] = defaultdict(set)
-    for at, it in enumerate(seen.trees):
-        for robot in (seen.robot(it.topic), *robots_of(seen, (*it.senders, *it.listeners))):
-            found[robot].add(at)
-    return found
+    return sets_by_key(
+        (robot, at)
+        for at, it in enumerate(seen.trees)
+        for robot in (seen.robot(it.topic), *robots_of(seen, (*it.senders, *it.listeners)))
+    )
 
 
 def frames_in(edges: Iterable[Edge]) -> set[str]:
@@ -320,5 +279,5 @@ def frames_in(edges: Iterable[Edge]) -> set[str]:
     return {it.removeprefix("/") for edge in edges for it in (edge.parent, edge.child)}
 
 
-def _who(senders: Sequence[str]) -> str:
-    return senders[0] if len(senders) == 1 else f"one of {shorten(senders, SEVERAL)}"
+def _one_of(names: Sequence[str]) -> str:
+    return only(names) or f"one of {shorten(names, SEVERAL)}"

@@ -9,20 +9,12 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import cache, partial
 
-from multibot_rewrite.base.conventions import chooses, is_from_outside, team
+from multibot_rewrite.base.conventions import chooses, is_from_outside, team, types_of
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, ends_of, once, spaces
-from multibot_rewrite.system.records import (
-    CALLS,
-    PUBLISHES,
-    RUNS,
-    SERVICE,
-    SUBSCRIBES,
-    UNKNOWN_NODES,
-    End,
-)
+from multibot_rewrite.system.records import CALLS, PUBLISHES, RUNS, SERVICE, SUBSCRIBES, End
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 _DIGITS = lazy_compile(r"_?\d+")
@@ -30,10 +22,7 @@ _DIGITS = lazy_compile(r"_?\d+")
 _SLIP = 0.85
 MANAGER, _CHANGE = "lifecycle_manager", ("/change_state", "/get_state")
 # Every node serves them, or many do: another one of such a type says nothing.
-COMMON = (
-    *("rcl_interfaces/", "lifecycle_msgs/", "std_srvs/", "type_description_interfaces/"),
-    "std_msgs/",
-)
+COMMON = types_of("common")
 # Of such a type are many topics that have nothing to do with each other.
 _PLAIN_TYPES = "std_"
 # Such messages are sent for many ends: the name has to say which.
@@ -54,11 +43,12 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
     if known := meant(seen, end):
         return known
     # Where nodes may run that are not known, one of them may send it, or read the other.
-    doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
-    if doubt or is_viewer(end.node) or not end.type:
+    if seen.in_doubt or is_viewer(end.node) or not end.type:
         return None
     if end.role == CALLS:
-        return _nearest(end, list(_served(seen, end)))
+        # The one with the likest name.
+        given = {it.name: it for it in _served(seen, end)}
+        return given.get(nearest(end.name, given, alike=0.0)) or next(iter(given.values()), None)
     if end.role != SUBSCRIBES or chooses(end.node):
         return None
     return _data(seen, end) or _orphan(seen, end)
@@ -68,7 +58,12 @@ def _orphan(seen: Index, end: End) -> Ends | None:
     """What is sent of its very type and read by no node, where that is one topic, or one of them has a
     word in common with it: of a plain type, and of what a person may send, always."""
     robot = seen.robot(end.name)
-    merges = _has_another(seen, end) and not _reads_another_robots(seen, end)
+    # Does its node read the same of another robot, from which it comes?
+    merges = _has_another(seen, end) and not any(
+        it.name != end.name and seen.plain(it.name) == seen.plain(end.name)
+        for it in seen.by_node[end.node]
+        if it.role == SUBSCRIBES and it.name in seen.published
+    )
     if merges or seen.robot(end.node) not in ("", robot):
         return None
     given = [
@@ -125,15 +120,6 @@ def _unread(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
         if senders and not at_work(it.subscribers):
             found[it.type, seen.robot(it.name)].append(it)
     return found
-
-
-def _reads_another_robots(seen: Index, end: End) -> bool:
-    """Does its node read the same of another robot, from which it comes?"""
-    return any(
-        it.name != end.name and seen.plain(it.name) == seen.plain(end.name)
-        for it in seen.by_node[end.node]
-        if it.role == SUBSCRIBES and it.name in seen.published
-    )
 
 
 def _begin_alike(one: str, other: str) -> bool:
@@ -252,13 +238,6 @@ def _nobodys(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
     return found
 
 
-def _nearest(end: End, given: Sequence[Ends]) -> Ends | None:
-    """The one with the likest name."""
-    by_name = {it.name: it for it in given}
-    likest: Callable[[str], Ends | None] = by_name.get
-    return likest(nearest(end.name, by_name, alike=0.0)) or next(iter(given), None)
-
-
 def in_other_namespace(seen: Index, end: End) -> str:
     """What a robot without a name serves, where the client has a namespace too many or lacks one that
     has no node; empty for none."""
@@ -307,6 +286,9 @@ def meant(seen: Index, end: End) -> Ends | None:
         words_of = {last_word(seen.plain(it)): it for it in alike}
         near = nearest(last_word(seen.plain(end.name)), words_of, alike=_SLIP)
         return alike.get(words_of.get(near, ""))
+    if end.type.startswith(_PLAIN_DATA) and not last:
+        own_words = _words(seen, end.name)
+        alike = {name: it for name, it in alike.items() if own_words & _words(seen, name)}
     return alike.get(nearest(end.name, last or alike, alike=0.0))
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, SENT_FRAMES, chooses
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
@@ -31,8 +32,8 @@ from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 # Fewer nodes in common say nothing.
 _ENOUGH = 3
-# Services of every node.
-_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
+
+
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"\d{4}")
@@ -94,7 +95,7 @@ def _ends(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
     by_node, plain_of = seen.by_node, seen.plain
     for plain, name in nodes.items():
         for it in by_node.get(name, ()):
-            plumbing = it.name in EVERYBODYS or it.type.startswith(_EVERY_NODE)
+            plumbing = it.name in EVERYBODYS or it.type.startswith(words.OF_EVERY_NODE)
             if not plumbing and it.type != TF and "/_" not in it.name:
                 ends[plain, it.kind, it.role, plain_of(it.name)] = it
     return ends
@@ -140,9 +141,7 @@ def _lost_ends(
 ) -> Iterator[Finding]:
     """Those of a node in one finding."""
     like = next(it for it in likes if it != robot)
-    by_node: dict[str, list[_Key]] = defaultdict(list)
-    for key in gone:
-        by_node[key[0]].append(key)
+    by_node = lists_by_key((key[0], key) for key in gone)
     for plain, keys in by_node.items():
         own, node = _waiting(seen, made, robot, keys), made[robot].nodes[plain]
         if not own:
@@ -197,7 +196,13 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
     yield from _silent(seen)
     yield from _slow(seen)
     yield from _slow_transforms(seen)
-    for there in _of_each(seen).values():
+    # Name without the robot's -> robot -> name, of the topics whose messages were counted.
+    counted = dicts_by_key(
+        (seen.plain(name), robot, name)
+        for name in seen.known.messages
+        if (robot := seen.robot(name))
+    )
+    for there in counted.values():
         best = max(there.values(), key=lambda it: seen.known.messages[it])
         most = seen.known.messages[best]
         for robot, name in there.items() if most >= ENOUGH else ():
@@ -209,15 +214,6 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
                 slow, usual = (f"{it / seen.known.seconds:.1f} Hz" for it in (count, most))
                 message = f"{name} came at {slow}, {best} at {usual}"
                 yield less_than_another_robot.finding(message, robot=robot, names=(name,))
-
-
-def _of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
-    """Name without the robot's -> robot -> name, of the topics whose messages were counted."""
-    found: dict[str, dict[str, str]] = defaultdict(dict)
-    for name in seen.known.messages:
-        if robot := seen.robot(name):
-            found[seen.plain(name)][robot] = name
-    return found
 
 
 def _slow(seen: Index) -> Iterator[Finding]:
@@ -302,7 +298,8 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
         robot = seen.robot(ends.name)
         role = _missed_side(seen, ends) if robot else ""
-        if role and (node := _who_does(seen, ends, role)):
+        what = ends.kind, seen.plain(ends.name), ends.type, role
+        if role and (node := _first_to_do(seen).get(what)):
             lost[robot, node].append(ends)
     for (robot, node), missed in lost.items():
         names, plain = tuple(it.name for it in missed), seen.plain(node)
@@ -310,21 +307,18 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
         users = nodes_of(end for own in using for end in at_work(own))
         vain = f"{shorten(users, SEVERAL)} in vain"
         there = nodes_of_each(seen)[robot].get(plain, "")
-        what = (
+        message = (
             f"{robot} has no {plain.strip('/')}, as {seen.robot(node)} has ({node});"
             f" {shorten(names, SEVERAL)} is used by {vain}"
         )
         hint = "start it for this robot too"
         if there:
-            what = f"lacks {shorten(names, SEVERAL)}, which {node} has; it is used by {vain}"
+            message = f"lacks {shorten(names, SEVERAL)}, which {node} has; it is used by {vain}"
             hint = "see its log; a remap rule, a parameter or a version of its own?"
-        level = ERROR if seen.is_live else WARNING
-        yield driver_missing.finding(what, hint, level=level, robot=robot, node=there, names=names)
-
-
-def _who_does(seen: Index, ends: Ends, role: str) -> str:
-    """The first node of another robot that does this with its own topic of that name, or empty."""
-    return _first_to_do(seen).get((ends.kind, seen.plain(ends.name), ends.type, role), "")
+        yield driver_missing.finding(
+            message, hint, level=ERROR if seen.is_live else WARNING,
+            robot=robot, node=there, names=names,
+        )  # fmt: skip
 
 
 @once

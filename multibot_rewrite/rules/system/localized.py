@@ -5,13 +5,13 @@ tf2 drops transforms as they come.
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Set
 from math import inf, isfinite
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.states import ACTIVE
@@ -41,23 +41,19 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
         if not localizers or not tree.edges or collide(seen, tree):
             continue
         for node in localizers:
-            body = _body(seen, tree, seen.robot(node))
-            if body and not _is_told_not_to(seen, node):
-                yield _lost(seen, tree, node, body)
+            body, start = _body(seen, tree, seen.robot(node)), _starts_at(seen, node)
+            if body and node not in _told_not_to(seen):
+                yield map_not_joined.finding(
+                    f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
+                    _why(seen, node, body, start.name if start else ""),
+                    robot=seen.robot(node), node=node, names=(body.root, *body.loose),
+                )  # fmt: skip
 
 
 def _starts_at(seen: Index, node: str) -> End | None:
     """Where the node surely reads a start pose; None for one that needs none."""
-    return next(
-        (
-            it
-            for it in seen.by_node.get(node, ())
-            if it.role == SUBSCRIBES
-            and it.sure == RUNS
-            and words.is_start_pose(seen.plain(it.name), it.type)
-        ),
-        None,
-    )
+    read = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES and it.sure == RUNS)
+    return next((it for it in read if words.is_start_pose(seen.plain(it.name), it.type)), None)
 
 
 def _body(seen: Index, tree: Tree, robot: str) -> _Body | None:
@@ -71,37 +67,20 @@ def _body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     } - {*above}
     if len(roots) != 1 or roots & {*WORLD_FRAMES}:
         return None
-    return _Body(next(iter(roots)), tuple(_loose(above, robot, seen)))
-
-
-def _loose(above: Mapping[str, str], robot: str, seen: Index) -> Iterator[str]:
-    """What hangs on the map and has nothing below it."""
-    parents = {*above.values()}
-    for child, parent in above.items():
-        if parent in WORLD_FRAMES and child not in parents and _is_of(seen, child, robot):
-            yield child
+    # What hangs on the map and has nothing below it.
+    ends = above.keys() - {*above.values()}
+    loose = (it for it in above if it in ends and above[it] in WORLD_FRAMES)
+    return _Body(next(iter(roots)), tuple(it for it in loose if _is_of(seen, it, robot)))
 
 
 def _is_of(seen: Index, frame: str, robot: str) -> bool:
     return seen.frame_robot(frame) in ("", robot)
 
 
-def _is_told_not_to(seen: Index, node: str) -> bool:
-    return node in _told_not_to(seen)
-
-
 @once
 def _told_not_to(seen: Index) -> Set[str]:
+    """The nodes that a parameter forbids to send a transform."""
     return {node for it in seen.system.edges if it.sure == OFF for node in it.publishers}
-
-
-def _lost(seen: Index, tree: Tree, node: str, body: _Body) -> Finding:
-    start = _starts_at(seen, node)
-    return map_not_joined.finding(
-        f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
-        _why(seen, node, body, start.name if start else ""),
-        robot=seen.robot(node), node=node, names=(body.root, *body.loose),
-    )  # fmt: skip
 
 
 def _why(seen: Index, node: str, body: _Body, start: str) -> str:
@@ -114,26 +93,18 @@ def _why(seen: Index, node: str, body: _Body, start: str) -> str:
             f"{_MAP} -> {body.loose[0]} is sent, and nothing is below {body.loose[0]}: set its"
             f" odom_frame_id to {body.root}"
         )
-    if unsent := _unsent(seen, node):
+    # The scans and maps that it reads.
+    read = [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
+    read = [it for it in read if words.is_of_a_body(it.type) or it.type == words.MAP]
+    if unsent := [it.name for it in read if it.name not in seen.published]:
         return f"it waits for {shorten(unsent)}, which no node publishes"
-    ends = seen.by_name.get((TOPIC, start))
     told = any(
         (it.node, it.name, it.value) == (node, _START, "true") for it in seen.system.parameters
     )
-    nobody = not told and not (ends and ends.publishers)
+    nobody = not told and not seen.ends_at(TOPIC, start).publishers
     return (
         f"it waits for an initial pose: {'nothing publishes' if nobody else 'send one to'} {start}"
     )
-
-
-def _unsent(seen: Index, node: str) -> Sequence[str]:
-    """The scans and maps that it reads and no node publishes."""
-    names = (
-        it.name
-        for it in seen.by_node.get(node, ())
-        if it.role == SUBSCRIBES and (words.is_of_a_body(it.type) or it.type == words.MAP)
-    )
-    return [it for it in names if it not in seen.published]
 
 
 @system_rule("MG414", "odometry-of-another-robot", ERROR)
@@ -157,11 +128,8 @@ _TOLERANCE = 10e-3
 @system_rule("MG416", "transform-refused", ERROR)
 def transform_refused(seen: Index) -> Iterator[Finding]:
     """By the checks of BufferCore::setTransformImpl; the transforms of one topic and reason are one."""
-    found: dict[tuple[str, str], list[Edge]] = defaultdict(list)
-    for tree in seen.trees:
-        for it in tree.edges:
-            if why := _why_dropped(it):
-                found[it.topic, why].append(it)
+    edges = [it for tree in seen.trees for it in tree.edges]
+    found = lists_by_key(((it.topic, why), it) for it in edges if (why := _why_dropped(it)))
     for (topic, why), edges in found.items():
         senders = unique(node for it in edges for node in it.publishers)
         listed = shorten(
@@ -174,10 +142,6 @@ def transform_refused(seen: Index) -> Iterator[Finding]:
             robot=only(robots) or only(robots_of(seen, senders)),
             names=(topic, *unique(it.child for it in edges if it.child)),
         )
-    yield from _poses(seen)
-
-
-def _poses(seen: Index) -> Iterator[Finding]:
     for it in seen.system.heard:
         _, senders = sent_on(seen, it.topic)
         if senders and (why := _odd(it.pose)):

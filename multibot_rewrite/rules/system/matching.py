@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import caused, plugin_of
@@ -108,14 +109,18 @@ def _all_types(ends: Iterable[End]) -> set[tuple[str, str]]:
 
 def _apart(ends: Iterable[End], given: set[tuple[str, str]]) -> Mapping[str, Sequence[End]]:
     """By node: the ends that connect with none of the types, where all of its own are known."""
-    by_node: dict[str, list[End]] = defaultdict(list)
-    for end in ends if given else ():
-        by_node[end.node].append(end)
+    by_node = lists_by_key((end.node, end) for end in (ends if given else ()))
+    # Both sides have a version of a type; one without a hash may be any.
     return {
         node: own
         for node, own in by_node.items()
         if all(end.type for end in own)
-        and not _meet((it for end in own for it in _types(end)), given)
+        and not any(
+            one == other and (hash_ == its or not (hash_ and its))
+            for end in own
+            for one, hash_ in _types(end)
+            for other, its in given
+        )
     }
 
 
@@ -124,15 +129,6 @@ def _types(end: End) -> Iterator[tuple[str, str]]:
     if end.type:
         yield end.type, end.type_hash if end.type_hash.startswith(HASH) else ""
     yield from ((it, "") for it in end.also)
-
-
-def _meet(asked: Iterable[tuple[str, str]], given: set[tuple[str, str]]) -> bool:
-    """Have both sides a version of a type? One without a hash may be any."""
-    return any(
-        one == other and (hash_ == its or not (hash_ and its))
-        for one, hash_ in asked
-        for other, its in given
-    )
 
 
 def _difference(
@@ -238,8 +234,7 @@ def not_latched(seen: Index) -> Iterator[Finding]:
 
 def _offered_otherwise(seen: Index, name: str, qos: Iterable[tuple[str, str]]) -> Iterator[Finding]:
     """Where it is known what is offered; a policy of which no word is known is as planned."""
-    ends = seen.by_name.get((TOPIC, name))
-    for end in ends.publishers if ends else ():
+    for end in seen.ends_at(TOPIC, name).publishers:
         offered = [(policy, word, getattr(end.qos, policy)) for policy, word in qos if end.qos]
         known = (it for it in offered if it[2] not in (it[1], "UNKNOWN", "SYSTEM_DEFAULT"))
         if different := [f"{policy} {there}, the plan has {word}" for policy, word, there in known]:
@@ -257,7 +252,9 @@ def _with_durability(ends: Iterable[End], word: str) -> list[End]:
 def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
     """Who reads without it what is sent once. Who makes a map of scans sends it again and again."""
     latched = nodes_of(_with_durability(ends.publishers, DURABILITY[1]))
-    once = [it for it in latched if not any(words.is_of_a_body(e.type) for e in _read_by(seen, it))]
+    read = [it for node in latched for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
+    again = {it.node for it in read if it.type != JOINTS and words.is_of_a_body(it.type)}
+    once = [it for it in latched if it not in again]
     readers = nodes_of(at_work(_with_durability(ends.subscribers, DURABILITY[0])))
     if once and readers and len(once) == len(ends.publishers):
         yield not_latched.finding(
@@ -267,10 +264,6 @@ def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
             level=WARNING, robot=seen.robot(ends.name) or seen.robot(readers[0]),
             node=readers[0], names=(ends.name,),
         )  # fmt: skip
-
-
-def _read_by(seen: Index, node: str) -> Iterator[End]:
-    return (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES and it.type != JOINTS)
 
 
 def _is_latched(ends: Ends) -> bool:
@@ -298,6 +291,14 @@ def qos_conflicts(offered: Qos, requested: Qos) -> tuple[tuple[str, str], ...]:
         *((o, r) for o, r, order in words if _is_weaker(o, r, order)),
         *((_time(o, what), _time(r, what)) for o, r, what in times if _seconds(o) > _seconds(r)),
     )
+
+
+def qos_words(end: End) -> list[str]:
+    """What an end's QoS says, without what is as usual; nothing where it is not known."""
+    own = end.qos._asdict() if end.qos else {}
+    policies = ("reliability", "durability", "deadline", "liveliness")
+    told = (str(own.get(it, "")) for it in policies)
+    return [it for it in told if it not in ("", "inf", "AUTOMATIC")]
 
 
 def _is_weaker(offered: str, requested: str, order: Sequence[str]) -> bool:

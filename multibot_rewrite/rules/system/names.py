@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses, is_from_outside, team
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules.declaration import see, system_rule, where
@@ -31,7 +32,7 @@ from multibot_rewrite.system.index import (
     robots_of,
     spaces,
 )
-from multibot_rewrite.system.records import ACTION, RUNS, SERVES, SERVICE, TOPIC, UNKNOWN_NODES, End
+from multibot_rewrite.system.records import ACTION, RUNS, SERVES, SERVICE, TOPIC, End
 from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
 
 ABSENT = "is that robot started, and is its name right?"
@@ -165,29 +166,24 @@ def _of_a_robot_without(seen: Index, end: End, published: Mapping[str, Ends]) ->
 @once
 def _with_node(seen: Index) -> Mapping[str, Set[str]]:
     """The robots that have a node, by its name without theirs."""
-    found: dict[str, set[str]] = defaultdict(set)
-    for it in seen.nodes:
-        found[seen.plain(it)].add(seen.robot(it))
-    return found
+    return sets_by_key((seen.plain(it), seen.robot(it)) for it in seen.nodes)
 
 
 @once
 def _by_plain(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
     """The published topics of each robot, by their name without it."""
-    found: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for it in (one for own in _published(seen).values() for one in own):
-        found[seen.robot(it.name), seen.plain(it.name)].append(it.name)
-    return found
+    return lists_by_key(
+        ((seen.robot(it.name), seen.plain(it.name)), it.name)
+        for it in (one for own in _published(seen).values() for one in own)
+    )
 
 
 @once
 def _published(seen: Index) -> Mapping[str, Sequence[Ends]]:
     """The topics with a publisher, by their type."""
-    found: dict[str, list[Ends]] = defaultdict(list)
-    for (kind, _), it in seen.by_name.items():
-        if kind == TOPIC and it.publishers:
-            found[it.type].append(it)
-    return found
+    return lists_by_key(
+        (it.type, it) for (kind, _), it in seen.by_name.items() if kind == TOPIC and it.publishers
+    )
 
 
 def _written_out(node: str, name: str) -> Iterator[str]:
@@ -225,12 +221,6 @@ def _without_own_name(end: End) -> str:
     return f"{end.node.rpartition('/')[0]}/{last}" if end.name == f"{end.node}/{last}" else ""
 
 
-def _is_doubled(name: str, meant: str) -> bool:
-    """Is it the other name with a namespace of it once more in front?"""
-    front = name.removesuffix(meant)
-    return front != name and meant.startswith(f"{front}/")
-
-
 def _missed_topic(
     seen: Index, end: End, other: Ends, level: str, more: Sequence[End] = ()
 ) -> Finding:
@@ -242,8 +232,10 @@ def _missed_topic(
     )
     remaps = tuple(Remap(it.node, end.name, other.name) for it in (end, *more))
     each = " to each" if more else ""
-    # The side in the wrong place is the one whose name has no robot, or is below the node.
-    if _is_doubled(other.name, end.name):
+    # The side in the wrong place is the one whose name has no robot, is below the node, or has a
+    # namespace of the other name once more in front.
+    front = other.name.removesuffix(end.name)
+    if front != other.name and end.name.startswith(f"{front}/"):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
         remaps = (Remap(sender, other.name, end.name),)
     elif seen.robot(end.name) and not seen.robot(other.name) and other.name not in EVERYBODYS:
@@ -291,14 +283,10 @@ def _served(seen: Index) -> Mapping[tuple[str, str], _Served]:
     for (kind, name), ends in seen.by_name.items():
         if ends.servers:
             found[kind, ends.type][name] = ends
-    return {key: _Served(it, _plainly(seen, it), Spelled(it)) for key, it in found.items()}
-
-
-def _plainly(seen: Index, names: Iterable[str]) -> Mapping[str, Sequence[str]]:
-    found: dict[str, list[str]] = defaultdict(list)
-    for it in names:
-        found[seen.plain(it)].append(it)
-    return found
+    return {
+        key: _Served(it, lists_by_key((seen.plain(name), name) for name in it), Spelled(it))
+        for key, it in found.items()
+    }
 
 
 def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
@@ -310,7 +298,11 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
         sure = near or end.kind == ACTION
         yield _missed_server(seen, end, lost, other, ERROR if sure else WARNING)
     elif listed and end.name.endswith("/change_state"):
-        meant = _node_like(seen, listed)
+        # A node that runs and is called nearly so: a letter wrong, or without the namespace.
+        same = (it for it in seen.nodes if it == f"/{last_word(listed)}")
+        space = listed.rpartition("/")[0]
+        others = [it for it in seen.nodes if it.rpartition("/")[0] == space]
+        meant = next(same, "") or nearest(listed, others, MISTYPED)
         instead = f"; {meant} runs" if meant else ""
         yield server_names_miss.finding(
             f"{lost}: {listed} is in its list, and does not run{instead}",
@@ -335,7 +327,6 @@ def _waits(seen: Index, end: End) -> bool:
     """Is it an own program that calls what nobody serves? Nav2's and MoveIt's nodes, tools and what
     every node serves are left out, and a view in which nodes are missing. What is known by code alone
     is told by ``nothing_known_sends``."""
-    doubt = any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
     # Beside other robots it may be one that is not started yet, if it is not its own.
@@ -344,7 +335,9 @@ def _waits(seen: Index, end: End) -> bool:
     # What all robots call in vain is so by their make; goals that another robot takes are MG322.
     vain, served = _called_by_robots(seen).get((end.kind, seen.plain(end.name)), ((), ()))
     others = others or any(it != own for it in (*vain, *(served if end.kind == ACTION else ())))
-    return not (doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
+    return (
+        not (seen.in_doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
+    )
 
 
 @once
@@ -359,14 +352,6 @@ def _called_by_robots(seen: Index) -> Mapping[tuple[str, str], tuple[list[str], 
             # Two tell whether another than one of them is there.
             robots += [robot] * (len(robots) < 2)
     return dict(found)
-
-
-def _node_like(seen: Index, listed: str) -> str:
-    """A node that runs and is called nearly so: a letter wrong, or without the namespace."""
-    same = (it for it in seen.nodes if it == f"/{last_word(listed)}")
-    space = listed.rpartition("/")[0]
-    others = [it for it in seen.nodes if it.rpartition("/")[0] == space]
-    return next(same, "") or nearest(listed, others, MISTYPED)
 
 
 def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> Finding:
@@ -416,11 +401,7 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
 @once
 def _named_by_robots(seen: Index) -> Mapping[str, Sequence[str]]:
     """The names of robots, by their name without a robot's."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for _, name in seen.by_name:
-        if seen.robot(name):
-            found[seen.plain(name)].append(name)
-    return found
+    return lists_by_key((seen.plain(name), name) for _, name in seen.by_name if seen.robot(name))
 
 
 @system_rule("MG305", "service-of-two-nodes", ERROR, meant=(SERVES,))

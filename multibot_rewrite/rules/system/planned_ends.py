@@ -169,7 +169,11 @@ def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
             wrong = _of_wrong_robot(plan, end, robot)
             if wrong and (node, end.name) not in taken:
                 other = plan.robot(end.name)
-                no_name = f"uses {end.name}, which is not a name of {robot}{_how_many(seen, end)}"
+                # As far as they are there.
+                users = {seen.robot(it.node) for it in ends_of(seen, end.name)} - {""}
+                why = ", and is not in shared_topics: robots that do the same use one topic"
+                why = f": {len(users)} robots use it" if len(users) > 1 else why
+                no_name = f"uses {end.name}, which is not a name of {robot}{why}"
                 of_another = f"{DOES[end.role]} {end.name}, a name of {other}"
                 yield wrong.finding(
                     of_another if other else no_name,
@@ -177,14 +181,6 @@ def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
                     robot=robot, node=node, names=(end.name,),
                 )  # fmt: skip
     yield from _planned_for_several(plan, seen)
-
-
-def _how_many(seen: Index, end: End) -> str:
-    """How many robots use the name, as far as they are there."""
-    robots = {seen.robot(it.node) for it in ends_of(seen, end.name)} - {""}
-    if len(robots) > 1:
-        return f": {len(robots)} robots use it"
-    return ", and is not in shared_topics: robots that do the same use one topic"
 
 
 def _planned_for_several(plan: Index, seen: Index) -> Iterator[Finding]:
@@ -301,8 +297,7 @@ def _used_instead(plan: Index, seen: Index, planned: End) -> str:
 
 
 def _of_its_type(plan: Index, seen: Index, planned: End) -> list[str]:
-    ends = _unplanned(plan, seen, planned)
-    return [it.name for it in ends if it.type == planned.type != ""]
+    return [it.name for it in _unplanned(plan, seen, planned) if it.type == planned.type != ""]
 
 
 def _unplanned(plan: Index, seen: Index, planned: End) -> list[End]:

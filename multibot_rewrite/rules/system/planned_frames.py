@@ -68,7 +68,7 @@ def frame_without_robot_name(plan: Index, seen: Index) -> Iterator[Finding]:
 def _why_bare(plan: Index, tree: Tree, robot: Robot, bare: Sequence[Stray]) -> Cause:
     """The node that sends all of them by the plan, besides the description; else the description."""
     expected = {it.meant for it in bare}
-    sent = next((it for it in sent_by_robot(plan, robot) if expected <= {*it[1:]}), None)
+    sent = next((it for it in sent_by_robot(plan)[robot.name] if expected <= {*it[1:]}), None)
     first = f"expected {bare[0].meant}"
     if sent:
         place = where_set(plan, sent.node)
@@ -202,13 +202,9 @@ def _known(plan: Index) -> Set[str]:
     return {*plan.system.shared_frames}.union(*plan.frames_of.values())
 
 
-def _planned(plan: Index, robot: str) -> Mapping[str, str]:
-    """The robot's frames by their name without the robot's; the same where the layout adds none."""
-    return _planned_frames(plan).get(robot, {})
-
-
 @once
-def _planned_frames(plan: Index) -> Mapping[str, Mapping[str, str]]:
+def _planned(plan: Index) -> Mapping[str, Mapping[str, str]]:
+    """The frames of each robot by name without its own; the same where the layout adds none."""
     found = {}
     for robot in plan.system.robots:
         plain = {plan.of_frames.without_robot(it, robot.name): it for it in robot.frames}
@@ -222,7 +218,7 @@ def _planned_frames(plan: Index) -> Mapping[str, Mapping[str, str]]:
 def _meant_by(plan: Index) -> Mapping[str, Mapping[str, str]]:
     """By name without the robot's: the frame of each robot that has it."""
     found: dict[str, dict[str, str]] = defaultdict(dict)
-    for robot, frames in _planned_frames(plan).items():
+    for robot, frames in _planned(plan).items():
         for plain, frame in frames.items():
             found[plain][robot] = frame
     return found
@@ -239,7 +235,7 @@ def _with_meanings(plan: Index, robot: str, names: Sequence[str]) -> Iterator[St
     of both ends of a transform, and of all that a robot_state_publisher sends."""
     declared, whose = plan.declared[robot], plan.of_frames
     frames, tag = (*declared.frames, *declared.other_frames), whose.tag(robot)
-    plain = {**{whose.without_robot(it, robot): it for it in frames}, **_planned(plan, robot)}
+    plain = {**{whose.without_robot(it, robot): it for it in frames}, **_planned(plan)[robot]}
     prefixes = {name: _in_front(frames, name) for name in names}
     often = Counter(prefixes.values())
     least = min(len(declared.frames), max(2, len(declared.frames) // 2))
@@ -277,7 +273,7 @@ def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
             owner = plan.of_frames.exact.get(name, "")
             (heard[owner].add if owner else nobodys.add)(name)
         for owner in {*home_of(plan, tree), *robots_on(plan, tree)} if nobodys else ():
-            plain = _planned(plan, owner)
+            plain = _planned(plan).get(owner, {})
             heard[owner] |= nobodys & plan.frames_of[owner]
             heard[owner].update(plain[it] for it in plain.keys() & nobodys)
         for owner, found in strays.items():
@@ -293,7 +289,7 @@ def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
 def _left_to_others(plan: Index, seen: Index, robot: Robot) -> Set[str]:
     """The frames that only nodes send which may be missing by the plan, and are. A link without joints
     comes with the odometry, or not at all."""
-    sent = sent_by_robot(plan, robot)
+    sent = sent_by_robot(plan)[robot.name]
     absent = plan.may_miss - seen.nodes.keys()
     left = {name for it in sent if it.node in absent for name in it[1:]}
     links = {it for it in robot.frames if plan.plain_frame(it) not in SENT_FRAMES}
@@ -315,7 +311,7 @@ def _senders(plan: Index) -> Mapping[str, set[str]]:
 def _not_received(seen: Index, plan: Index, robot: Robot, missing: Sequence[str]) -> Finding:
     several = f"{len(missing)} of the {len(robot.frames)} frames of {robot.name} are"
     what = several if len(missing) > 1 else f"frame {missing[0]} of {robot.name} is"
-    described = set(robot.frames).difference(*(it[1:] for it in sent_by_robot(plan, robot)))
+    described = set(robot.frames).difference(*(it[1:] for it in sent_by_robot(plan)[robot.name]))
     # The root comes with the odometry, too.
     described = {it for it in described if plan.plain_frame(it) not in USUAL_FRAMES}
     undescribed = bool(described) and described.issubset(missing)

@@ -5,12 +5,13 @@ of enclaves of SROS2: a robot's node in that of another robot, or in none.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
+from itertools import combinations
 
 from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.rules.declaration import planned_rule, system_rule
 from multibot_rewrite.rules.system.causes import DOES, Cause, caused, plugin_of, why_other_name
@@ -59,9 +60,7 @@ def _groups(plan: Index) -> Iterator[tuple[tuple[str, ...], str]]:
 def _waiting(plan: Index, seen: Index, node: str) -> str:
     """Who calls in vain what the node serves, or reads what it sends."""
     for it in plan.by_node.get(node, ()):
-        ends = seen.by_name.get((it.kind, it.name))
-        if not ends:
-            continue
+        ends = seen.ends_at(it.kind, it.name)
         served = it.role == SERVES and not ends.servers and "lifecycle" not in it.type
         sent = it.role == PUBLISHES and not ends.publishers
         if served and ends.clients:
@@ -104,6 +103,7 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
         return
     meant = set(matches(plan, seen).values())
     planned = {robot.name for robot in plan.system.robots if plan.own[robot.name]}
+    shared = {*plan.system.shared_topics, *EVERYBODYS}
     without_robot = plan.of_names.without_robot
     originals = {without_robot(node, robot): node for node, robot in plan.robot_of.items()}
     for node in unplanned_nodes(plan, seen) if planned else ():
@@ -111,8 +111,11 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
         if node in meant or (robot and robot not in planned):
             continue
         if robot:
-            foreign = _foreign_names(plan, seen, node, robot)
-            message = f"is a node of {robot}, but not in the plan{foreign}"
+            # Those without its robot's name may disturb other robots.
+            names = unique(it.name for it in seen.by_node.get(node, ()) if "/_" not in it.name)
+            foreign = [it for it in names if it not in shared and plan.robot(it) != robot]
+            uses = f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
+            message = f"is a node of {robot}, but not in the plan{uses}"
             cause = "add it to the plan: with --stack or --nodes, or by hand"
         else:
             message = "is of no robot, and not in shared_nodes of the plan"
@@ -122,26 +125,23 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
         yield unplanned_node.finding(message, cause, robot=robot, node=node)
 
 
-def _foreign_names(plan: Index, seen: Index, node: str, robot: str) -> str:
-    """The names of a node that do not hold its robot's name: these may disturb other robots."""
-    shared = {*plan.system.shared_topics, *EVERYBODYS}
-    names = dict.fromkeys(e.name for e in seen.by_node.get(node, ()) if "/_" not in e.name)
-    foreign = [n for n in names if n not in shared and plan.robot(n) != robot]
-    return f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
-
-
 @planned_rule("MG109", "missing-robot", ERROR, absence=True, drawn="missing")
 def missing_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding in place of one for each node."""
     for robot in plan.system.robots:
         if _is_missing(plan, seen, robot):
-            message = (
-                f"none of the {len(plan.own[robot.name])} nodes of {robot.name} is in the graph"
-            )
-            cause = _why_absent(plan, seen, robot)
-            hidden = not _matches(plan, seen, robot) and hidden_from_here(
-                seen.system, _machines(seen)
-            )
+            count = len(plan.own[robot.name])
+            message = f"none of the {count} nodes of {robot.name} is in the graph"
+            # Its nodes that probably run under other names.
+            found = [it for it in plan.own[robot.name] if it in matches(plan, seen)]
+            if found:
+                cause = why_other_name(plan, found[0], matches(plan, seen)[found[0]])
+                more = len(found) - 1
+                same = f"; the same for {more} more of its nodes" if more else ""
+                cause = cause._replace(hint=cause.hint + same)
+            else:
+                cause = Cause(why_not_seen(seen.system, robot.name, _machines(seen)))
+            hidden = not found and hidden_from_here(seen.system, _machines(seen))
             level = INCONCLUSIVE if hidden else ERROR
             yield missing_robot.finding(message, **cause._asdict(), robot=robot.name, level=level)
 
@@ -149,21 +149,6 @@ def missing_robot(plan: Index, seen: Index) -> Iterator[Finding]:
 @once
 def _machines(seen: Index) -> Machines:
     return machines(seen.system)
-
-
-def _matches(plan: Index, seen: Index, robot: Robot) -> list[tuple[str, str]]:
-    """Its nodes, and those that probably run in their place."""
-    found = matches(plan, seen)
-    return [(node, found[node]) for node in plan.own[robot.name] if node in found]
-
-
-def _why_absent(plan: Index, seen: Index, robot: Robot) -> Cause:
-    matches = _matches(plan, seen, robot)
-    if not matches:
-        return Cause(why_not_seen(seen.system, robot.name, _machines(seen)))
-    cause = why_other_name(plan, *matches[0])
-    same = f"; the same for {len(matches) - 1} more of its nodes" if len(matches) > 1 else ""
-    return cause._replace(hint=cause.hint + same)
 
 
 @planned_rule("MG125", "several-alternatives-run", ERROR)
@@ -185,33 +170,25 @@ def enclave_of_another_robot(seen: Index) -> Iterator[Finding]:
     robots = {*seen.robots}
     for name, enclave in dict.fromkeys((it.name, it.enclave) for it in seen.system.nodes):
         robot = seen.robot(name) if enclave else ""
-        if not robot or _is_of(enclave, robot):
+        # A robot's name may have several levels.
+        if not robot or f"/{robot}/" in f"{enclave}/":
             continue
-        if other := min((it for it in _parts(enclave) if it in robots), default=""):
+        # The words of the path one after the other, as many as a robot's name may have.
+        parts = enclave.strip("/").split("/")
+        spans = combinations(range(len(parts) + 1), 2)
+        named = {"/".join(parts[start:end]) for start, end in spans}
+        if other := min(named & robots, default=""):
             message = f"{name} is in the enclave {enclave}, which is of {other}"
             yield enclave_of_another_robot.finding(message, _start(robot), robot=robot, node=name)
-
-
-def _parts(enclave: str) -> Iterator[str]:
-    """The words of a path one after the other, as many as a robot's name may have."""
-    words = enclave.strip("/").split("/")
-    for start in range(len(words)):
-        yield from ("/".join(words[start:end]) for end in range(start + 1, len(words) + 1))
-
-
-def _is_of(enclave: str, robot: str) -> bool:
-    """A robot's name may have several levels."""
-    return f"/{robot}/" in f"{enclave}/"
 
 
 @system_rule("MG113", "without-enclave", WARNING)
 def without_enclave(seen: Index) -> Iterator[Finding]:
     """Of the nodes of robots, of which others are in one; one finding a robot."""
     owned = [it for it in seen.system.nodes if seen.robot(it.name) and not seen.is_tool(it.name)]
-    bare: dict[str, list[str]] = defaultdict(list)
-    for it in owned if any(it.enclave for it in owned) else ():
-        if not it.enclave:
-            bare[seen.robot(it.name)].append(it.name)
+    if not any(it.enclave for it in owned):
+        return
+    bare = lists_by_key((seen.robot(it.name), it.name) for it in owned if not it.enclave)
     for robot, names in bare.items():
         message = f"{shorten(names)}: in no enclave"
         yield without_enclave.finding(message, _start(robot), robot=robot, node=names[0])
@@ -253,8 +230,7 @@ def sender_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
 
 def _publishers(index: Index, name: str) -> list[str]:
     """The node of each publisher of a topic."""
-    ends = index.by_name.get((TOPIC, name))
-    return [it.node for it in ends.publishers] if ends else []
+    return [it.node for it in index.ends_at(TOPIC, name).publishers]
 
 
 def _too_many_recorded(plan: Index, seen: Index) -> Iterator[Finding]:
@@ -278,9 +254,7 @@ def bridged_topic_missing(plan: Index, seen: Index) -> Iterator[Finding]:
         running = not all(is_absent(plan, seen, it.name) for it in plan.system.robots)
         yield from [_not_carried(plan, seen, "", missing, WARNING)] * running
         return
-    by_robot: dict[str, list[tuple[Topic, str]]] = defaultdict(list)
-    for topic, role in missing:
-        by_robot[plan.robot(topic.name)].append((topic, role))
+    by_robot = lists_by_key((plan.robot(topic.name), (topic, role)) for topic, role in missing)
     for robot, own in by_robot.items():
         if not (robot and is_absent(plan, seen, robot)):
             yield _not_carried(plan, seen, robot, own, ERROR)
@@ -299,27 +273,21 @@ def _not_carried(
     topic, role = rows[0]
     more = f"; so it is with {len(rows) - 1} more of the bridge" if len(rows) > 1 else ""
     type_ = f" with the type {topic.type}" if topic.type else ""
-    verb = DOES[role]
-    message = f"nothing {verb} {topic.name}{type_}, which a ros_gz_bridge has to bridge{more}"
-    names = tuple(dict.fromkeys(it.name for it, _ in rows))
-    there = _bridges_there(plan, seen, robot)
-    hint = f"{there}; for real robots write simulator: none in the fleet file"
-    return bridged_topic_missing.finding(message, hint, level=level, robot=robot, names=names)
-
-
-def _bridges_there(plan: Index, seen: Index, robot: str) -> str:
+    message = f"nothing {DOES[role]} {topic.name}{type_}, which a ros_gz_bridge has to bridge{more}"
     bridges = _bridges(plan, seen)
     own = bridges.get(robot) or [it for of_one in bridges.values() for it in of_one]
-    if not own:
-        return "no ros_gz_bridge is in the graph: start one with the robot's bridge.yaml"
-    return f"add the row to the file of {shorten(own)}"
+    there = "no ros_gz_bridge is in the graph: start one with the robot's bridge.yaml"
+    return bridged_topic_missing.finding(
+        message,
+        f"{f'add the row to the file of {shorten(own)}' if own else there}; for real robots write"
+        " simulator: none in the fleet file",
+        level=level, robot=robot, names=unique(it.name for it, _ in rows),
+    )  # fmt: skip
 
 
 @once
 def _bridges(plan: Index, seen: Index) -> Mapping[str, Sequence[str]]:
     """The bridges that run, by their robot."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for it in seen.nodes:
-        if it.rpartition("/")[2].endswith(_BRIDGES):
-            found[plan.robot(it)].append(it)
-    return found
+    return lists_by_key(
+        (plan.robot(it), it) for it in seen.nodes if it.rpartition("/")[2].endswith(_BRIDGES)
+    )

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import FEW, SEVERAL, shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.system.environment import machines
@@ -23,75 +24,50 @@ def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding a node; a parameter that it does not have is not known."""
     told = (it for it in seen.system.parameters if (it.name, it.value) != (SIM_TIME, UNTOLD))
     values = {(it.node, it.name): it.value for it in told}
-    for node, planned in _by_node(plan.system.parameters).items():
-        found = [*_differences(planned, values)]
+    for node, planned in lists_by_key((it.node, it) for it in plan.system.parameters).items():
+        known = [(it, values[node, it.name]) for it in planned if (node, it.name) in values]
+        found = [(it, value) for it, value in known if not _is_same(it.value, value)]
         # What makes it an error comes first.
         found.sort(key=lambda it: not _is_serious(plan, it[0]))
-        if found:
-            yield _differs(plan, node, found)
-
-
-def _by_node(parameters: Iterable[Parameter]) -> dict[str, list[Parameter]]:
-    found: dict[str, list[Parameter]] = defaultdict(list)
-    for it in parameters:
-        found[it.node].append(it)
-    return found
-
-
-def _differences(
-    planned: Iterable[Parameter], values: Mapping[tuple[str, str], str]
-) -> Iterator[Difference]:
-    for it in planned:
-        value = values.get((it.node, it.name))
-        if value is not None and not _is_same(it.value, value):
-            yield it, value
+        if not found:
+            continue
+        places = [f" ({it.place})" if it.place.file else "" for it, _ in found]
+        listed = [
+            f"{it.name} is {value}, planned is {it.value}{at}"
+            for (it, value), at in zip(found, places, strict=True)
+        ]
+        robot, (first, _) = plan.robot_of.get(node, ""), found[0]
+        file = first.place.file
+        start = f"start it with {file}" if file else "change it, or states of the plan"
+        # The robot whose node of that name is planned to have these values.
+        plain, having = (
+            plan.of_names.without_robot(node, plan.robot_of.get(node, "")),
+            _having(plan),
+        )
+        wanted = [having.get((plain, it.name, value), {}) for it, value in found]
+        # What few have first: most have most values.
+        few, *others = sorted(wanted, key=len)
+        other = next((it for it in few if all(it in having for having in others)), "")
+        hint = f"has it the parameters of {other}? {start}" if other else start
+        more = f"; {len(found) - FEW} more" if len(found) > FEW else ""
+        yield parameter_not_planned.finding(
+            "; ".join(listed[:FEW]) + more, hint, level=ERROR if _is_serious(plan, first) else WARNING,
+            robot=robot, node=node, names=tuple(it.name for it, _ in found),
+        )  # fmt: skip
 
 
 def _is_same(planned: str, value: str) -> bool:
     """1 is 1.0: people write either; true is not 1."""
-    if planned == value:
-        return True
-    if "true" in (planned, value) or "false" in (planned, value):
-        return False
+    if planned == value or not {"true", "false"}.isdisjoint((planned, value)):
+        return planned == value
     return bool(parameter_value(planned) == parameter_value(value))
 
 
 def _is_serious(plan: Index, it: Parameter) -> bool:
     """Whether the plan itself says it, or it is a frame of a robot."""
     frames = plan.frames_of.get(plan.robot_of.get(it.node, ""), frozenset())
-    return not it.place.file or parameter_value(it.value) in [
-        *frames,
-        *(f"/{frame}" for frame in frames),
-    ]
-
-
-def _differs(plan: Index, node: str, found: Sequence[Difference]) -> Finding:
-    listed = [f"{it.name} is {value}, planned is {it.value}{_at(it)}" for it, value in found]
-    robot, (first, _) = plan.robot_of.get(node, ""), found[0]
-    file = first.place.file
-    start = f"start it with {file}" if file else "change it, or states of the plan"
-    other = _whose(plan, node, found)
-    hint = f"has it the parameters of {other}? {start}" if other else start
-    serious = _is_serious(plan, first)
-    level = ERROR if serious else WARNING
-    names = tuple(it.name for it, _ in found)
-    message = "; ".join(listed[:FEW]) + (f"; {len(found) - FEW} more" if len(found) > FEW else "")
-    return parameter_not_planned.finding(
-        message, hint, level=level, robot=robot, node=node, names=names
-    )
-
-
-def _at(it: Parameter) -> str:
-    return f" ({it.place})" if it.place.file else ""
-
-
-def _whose(plan: Index, node: str, found: Sequence[Difference]) -> str:
-    """The robot whose node of that name is planned to have these values."""
-    plain, having = plan.of_names.without_robot(node, plan.robot_of.get(node, "")), _having(plan)
-    wanted = [having.get((plain, it.name, value), {}) for it, value in found]
-    # What few have first: most have most values.
-    few, *others = sorted(wanted, key=len)
-    return next((it for it in few if all(it in having for having in others)), "")
+    named = [*frames, *(f"/{frame}" for frame in frames)]
+    return not it.place.file or parameter_value(it.value) in named
 
 
 @once
@@ -109,7 +85,12 @@ def _having(plan: Index) -> Mapping[tuple[str, str, str], Mapping[str, None]]:
 def host_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
     """A snapshot tells machines apart, and has no names: a host is where most of its nodes are."""
     machine_of = {node: it for it, nodes in machines(seen.system).items() for node in nodes}
-    hosts = _hosts(plan, machine_of)
+    # Host of the plan -> machine -> the nodes that run there.
+    hosts: dict[str, dict[str, list[str]]] = {}
+    for it in plan.system.nodes:
+        if it.host and it.name in machine_of:
+            here = hosts.setdefault(it.host, {})
+            here.setdefault(machine_of[it.name], []).append(it.name)
     homes = {
         host: max(sorted(found), key=lambda it: len(found[it])) for host, found in hosts.items()
     }
@@ -124,15 +105,6 @@ def host_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
             message = f"hosts {shorten(own, SEVERAL)} are one machine"
             nodes = hosts[own[1]][machine]
             yield _on_wrong_host(plan, message, nodes, "is this a simulation? Then leave out host")
-
-
-def _hosts(plan: Index, machine_of: Mapping[str, str]) -> Mapping[str, dict[str, list[str]]]:
-    """Host of the plan -> machine -> the nodes that run there."""
-    found: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
-    for it in plan.system.nodes:
-        if it.host and it.name in machine_of:
-            found[it.host][machine_of[it.name]].append(it.name)
-    return found
 
 
 def _on_wrong_host(plan: Index, message: str, nodes: Sequence[str], hint: str) -> Finding:

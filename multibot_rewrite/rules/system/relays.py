@@ -17,6 +17,7 @@ from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.tool_nodes import last_word
 
 _CONTROLLER = "controller_server"
+# What holds several networks, or a simulator, together.
 _BRIDGE = lazy_compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")
 
 
@@ -38,10 +39,8 @@ def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
             yield relayed_to_another_robot.finding(
                 f"reads {source.name} of {owner} and publishes {ends.name} of {other}",
                 f"a name in its topics is wrong: {other} gets what is of {owner}",
-                robot=other,
-                node=node,
-                names=(ends.name,),
-            )
+                robot=other, node=node, names=(ends.name,),
+            )  # fmt: skip
 
 
 @once
@@ -68,11 +67,9 @@ def limits_left_out(seen: Index) -> Iterator[Finding]:
                 yield limits_left_out.finding(
                     f"publishes {ends.name} beside {limits[0]}, which is to limit it",
                     "pass it the rule cmd_vel:=cmd_vel_nav, so that velocity_smoother reads it first",
-                    robot=seen.robot(node),
-                    node=node,
-                    names=(ends.name,),
+                    robot=seen.robot(node), node=node, names=(ends.name,),
                     remaps=(Remap(node, ends.name, f"{ends.name.rpartition('/')[0]}/cmd_vel_nav"),),
-                )
+                )  # fmt: skip
 
 
 def _mux_left_out(seen: Index) -> Iterator[Finding]:
@@ -87,11 +84,9 @@ def _mux_left_out(seen: Index) -> Iterator[Finding]:
                     yield limits_left_out.finding(
                         f"obeys {given.name}, an input of {mux}; no node reads its output {ends.name}",
                         f"pass it the rule {_word(seen, given.name)}:={_word(seen, ends.name)}",
-                        robot=seen.robot(drivers[0]),
-                        node=drivers[0],
-                        names=(given.name, ends.name),
+                        robot=seen.robot(drivers[0]), node=drivers[0], names=(given.name, ends.name),
                         remaps=tuple(Remap(it, given.name, ends.name) for it in drivers),
-                    )
+                    )  # fmt: skip
 
 
 def _word(seen: Index, name: str) -> str:
@@ -137,10 +132,9 @@ def _passing(seen: Index) -> Mapping[str, tuple[list[Ends], list[Ends]]]:
             for at, side in enumerate((ends.subscribers, ends.publishers)):
                 for node in nodes_of(at_work(side)):
                     found[node][at].append(ends)
-    own = {it: both for it, both in found.items() if all(both) and not _is_bridge(seen.plain(it))}
-    return {it: (read, sent) for it, (read, sent) in own.items() if read[0].type == sent[0].type}
-
-
-def _is_bridge(node: str) -> bool:
-    """Does it hold several networks, or a simulator, together?"""
-    return bool(_BRIDGE.search(last_word(node)))
+    own = {it: both for it, both in found.items() if all(both)}
+    return {
+        it: (read, sent)
+        for it, (read, sent) in own.items()
+        if read[0].type == sent[0].type and not _BRIDGE.search(_word(seen, it))
+    }

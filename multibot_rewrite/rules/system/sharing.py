@@ -63,11 +63,6 @@ def outsiders(seen: Index, ends: Iterable[End]) -> list[str]:
 @system_rule("MG320", "topic-of-several-robots", ERROR, drawn="leak", meant=(PUBLISHES, SUBSCRIBES))
 def topic_of_several_robots(seen: Index) -> Iterator[Finding]:
     """Reports and orders of a fleet are none: only what belongs to one robot."""
-    yield from _sent_by_several(seen)
-    yield from _read_by_several(seen)
-
-
-def _sent_by_several(seen: Index) -> Iterator[Finding]:
     for ends in seen.topics:
         if len(ends.publishers) < 2:
             continue
@@ -82,13 +77,30 @@ def _sent_by_several(seen: Index) -> Iterator[Finding]:
             yield topic_of_several_robots.finding(
                 message, **cause, node=nodes[0], names=(ends.name,)
             )
+    # Of a topic without a robot's name; that of a robot is for those who follow it.
+    for ends in seen.topics:
+        if not words.is_of_a_body(ends.type) or seen.robot(ends.name):
+            continue
+        nodes = nodes_of(at_work(ends.subscribers))
+        robots = robots_of(seen, nodes)
+        senders = robots_of(seen, nodes_of(ends.publishers))
+        if len(robots) > 1 and len(senders) < 2:
+            message = f"{and_then(robots)} all read {ends.name}: {shorten(nodes)}"
+            cause = own_names(seen, ends, robots)._asdict()
+            yield topic_of_several_robots.finding(
+                message, **cause, node=nodes[0], names=(ends.name,)
+            )
 
 
 @system_rule("MG321", "data-of-another-robot", ERROR, drawn="cross-talk", meant=(SUBSCRIBES,))
 def data_of_another_robot(seen: Index) -> Iterator[Finding]:
     """A node that reads both robots' topics is meant to: it compares or follows."""
-    read_across = any(_is_read_across(seen, it) for it in seen.topics)
-    own = _topics_by_robot(seen) if read_across else {}
+    # What each robot publishes, by the name without the robot's.
+    own = {
+        (robot, seen.plain(ends.name)): ends
+        for ends in seen.topics
+        if ends.publishers and (robot := seen.robot(ends.name))
+    }
     for (owner, plain), ends in own.items():
         sensors = words.is_of_one_robot(plain, ends.type)
         for end in at_work(ends.subscribers) if sensors else ():
@@ -103,37 +115,6 @@ def data_of_another_robot(seen: Index) -> Iterator[Finding]:
             cause = f"a parameter or remap rule of {robot} names {owner}"
             yield data_of_another_robot.finding(
                 message, cause, robot=robot, node=end.node, names=(ends.name, mine.name)
-            )
-
-
-def _is_read_across(seen: Index, ends: Ends) -> bool:
-    """Does a node of one robot read the topic of another?"""
-    owner = seen.robot(ends.name)
-    return bool(owner) and any(seen.robot(it.node) not in ("", owner) for it in ends.subscribers)
-
-
-def _topics_by_robot(seen: Index) -> dict[tuple[str, str], Ends]:
-    """What each robot publishes, by the name without the robot's."""
-    return {
-        (robot, seen.plain(ends.name)): ends
-        for ends in seen.topics
-        if ends.publishers and (robot := seen.robot(ends.name))
-    }
-
-
-def _read_by_several(seen: Index) -> Iterator[Finding]:
-    """Of a topic without a robot's name; that of a robot is for those who follow it."""
-    for ends in seen.topics:
-        if not words.is_of_a_body(ends.type) or seen.robot(ends.name):
-            continue
-        nodes = nodes_of(at_work(ends.subscribers))
-        robots = robots_of(seen, nodes)
-        senders = robots_of(seen, nodes_of(ends.publishers))
-        if len(robots) > 1 and len(senders) < 2:
-            message = f"{and_then(robots)} all read {ends.name}: {shorten(nodes)}"
-            cause = own_names(seen, ends, robots)._asdict()
-            yield topic_of_several_robots.finding(
-                message, **cause, node=nodes[0], names=(ends.name,)
             )
 
 
@@ -171,7 +152,8 @@ def sensor_twice(seen: Index) -> Iterator[Finding]:
     """A bag that is played is one as well, and so are relays and bridges in both directions: who reads
     what it sends passes it on."""
     for ends in seen.topics:
-        if len(ends.publishers) < 2 or not _is_of_one_sensor(ends):
+        described = last_word(ends.name) == words.DESCRIPTION
+        if len(ends.publishers) < 2 or not (described or words.is_of_one_sensor(ends.type)):
             continue
         nodes = [it for it in nodes_of(at_work(ends.publishers)) if not _passes_on(seen, it, ends)]
         played = any(last_word(node).startswith(words.PLAYER) for node in nodes)
@@ -192,10 +174,6 @@ def _passes_on(seen: Index, node: str, ends: Ends) -> bool:
     read = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES)
     passed = ends.type != words.ODOMETRY
     return any(it.name == ends.name or (passed and it.type == ends.type) for it in read)
-
-
-def _is_of_one_sensor(ends: Ends) -> bool:
-    return words.is_of_one_sensor(ends.type) or last_word(ends.name) == words.DESCRIPTION
 
 
 _ADVICE = {

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.wording import SEVERAL, and_then, shorten
 from multibot_rewrite.rules import declaration
@@ -29,9 +30,7 @@ from multibot_rewrite.system.records import (
     JOINT,
     SERVICE,
     SIM_TIME,
-    Controller,
     Interface,
-    Place,
     clocks,
 )
 from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
@@ -78,18 +77,17 @@ def _active_at_another(seen: Index, node: str) -> str:
 
 def _manager(seen: Index, node: str) -> str:
     """The node that changes the state of another one; empty for none."""
-    ends = seen.by_name.get((SERVICE, f"{node}/change_state"))
-    clients = (end.node for end in ends.clients) if ends else ()
+    clients = (end.node for end in seen.ends_at(SERVICE, f"{node}/change_state").clients)
     return min((it for it in clients if not _asks_for_a_person(seen, it)), default="")
 
 
 @system_rule("MG512", "interface-commanded-twice", ERROR)
 def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
     """A running manager refuses the second of its own controllers."""
-    claims: dict[tuple[str, str], list[Controller]] = defaultdict(list)
-    for it in (one for one in seen.system.controllers if one.state == ACTIVE):
-        for interface in it.claims:
-            claims[seen.robot(it.manager), interface].append(it)
+    active = (it for it in seen.system.controllers if it.state == ACTIVE)
+    claims = lists_by_key(
+        ((seen.robot(it.manager), interface), it) for it in active for interface in it.claims
+    )
     reported = set()
     for (robot, interface), found in claims.items():
         names = tuple((it.manager, it.name) for it in found)
@@ -100,26 +98,19 @@ def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
             cause = "two controller managers for one robot: stop one, or unload its controller"
             if len({it.manager for it in found}) == 1:
                 cause = "spawn one of them with --inactive"
-            places = [it for it in seen.system.interfaces if _is_of(it, interface, found)]
+            wanted, own = (CLAIMS, COMMAND, interface), {it.name for it in found}
+            claimed = (it for it in seen.system.interfaces if (it.role, it.kind, it.name) == wanted)
+            places = [it for it in claimed if last_word(it.node) in own]
             yield interface_commanded_twice.finding(
                 message, cause + see(places),
                 robot=robot, node=found[0].manager, names=(interface,), **where(places),
             )  # fmt: skip
 
 
-def _is_of(claim: Interface, name: str, controllers: Iterable[Controller]) -> bool:
-    """Is it the claim of an interface by one of these controllers?"""
-    if (claim.role, claim.kind, claim.name) != (CLAIMS, COMMAND, name):
-        return False
-    return any(last_word(claim.node) == it.name for it in controllers)
-
-
 @system_rule("MG513", "no-controller-active", WARNING)
 def no_controller_active(seen: Index) -> Iterator[Finding]:
     """Some inactive ones beside active ones are usual."""
-    kept: dict[str, list[Controller]] = defaultdict(list)
-    for it in seen.system.controllers:
-        kept[it.manager].append(it)
+    kept = lists_by_key((it.manager, it) for it in seen.system.controllers)
     for manager, own in kept.items():
         if all(it.state != ACTIVE for it in own):
             listed = shorten((f"{it.name} ({it.state})" for it in own), SEVERAL)
@@ -160,51 +151,46 @@ _CHANGE_STATE = "/change_state"
 def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
     """Many of them are one finding: two robots."""
     times = seen.nodes
-    twins = [name for name, count in times.items() if count > 1 and _counts(seen, name)]
-    by_robot: dict[str, list[str]] = defaultdict(list)
-    for name in twins:
-        by_robot[seen.robot(name)].append(name)
+    # Tools may run twice. Of two containers each gets the components of the other.
+    twins = [
+        name
+        for name, count in times.items()
+        if count > 1 and (not seen.is_tool(name) or name.endswith("_container"))
+    ]
+    by_robot = lists_by_key((seen.robot(name), name) for name in twins)
     for robot, names in by_robot.items():
         if len(names) >= MANY:
-            yield _two_robots(robot, names)
+            cause = f"{robot} was started twice, or another robot was started with its namespace"
+            bare = (
+                "two robots were started without a namespace: give each its own (namespace:=robot1,"
+                " PushRosNamespace in the launch file)"
+            )
+            yield nodes_of_one_name.finding(
+                f"{len(names)} nodes run more than once: {shorten(names, SEVERAL)}",
+                cause if robot else bare, robot=robot, node=names[0], names=tuple(names),
+            )  # fmt: skip
             continue
         for name in names:
-            message = f"{times[name]} nodes have the name {name}"
-            cause = (
+            yield nodes_of_one_name.finding(
+                f"{times[name]} nodes have the name {name}",
                 "started twice, or two robots without a namespace of their own; a node that was"
-                " killed stays visible for 20 s"
-            )
-            yield nodes_of_one_name.finding(message, cause, robot=robot, node=name)
-
-
-def _counts(seen: Index, node: str) -> bool:
-    """Tools may run twice. Of two containers each gets the components of the other."""
-    return not seen.is_tool(node) or node.endswith("_container")
-
-
-def _two_robots(robot: str, names: Sequence[str]) -> Finding:
-    """``names`` are all there more than once."""
-    message = f"{len(names)} nodes run more than once: {shorten(names, SEVERAL)}"
-    if robot:
-        cause = f"{robot} was started twice, or another robot was started with its namespace"
-    else:
-        cause = (
-            "two robots were started without a namespace: give each its own (namespace:=robot1,"
-            " PushRosNamespace in the launch file)"
-        )
-    return nodes_of_one_name.finding(message, cause, robot=robot, node=names[0], names=tuple(names))
+                " killed stays visible for 20 s",
+                robot=robot, node=name,
+            )  # fmt: skip
 
 
 @system_rule("MG302", "managed-twice", ERROR)
 def managed_twice(seen: Index) -> Iterator[Finding]:
     """One finding for all nodes that the same managers have; an operator's tool is none."""
-    managed: dict[tuple[str, ...], list[str]] = defaultdict(list)
-    for (kind, name), ends in seen.by_name.items():
-        if kind == SERVICE and name.endswith(_CHANGE_STATE):
-            clients = nodes_of(
-                end for end in ends.clients if not _asks_for_a_person(seen, end.node)
-            )
-            managed[clients].append(name.removesuffix(_CHANGE_STATE))
+    asked = [it for it in seen.by_name.values() if it.kind == SERVICE]
+    managed = lists_by_key(
+        (
+            nodes_of(it for it in ends.clients if not _asks_for_a_person(seen, it.node)),
+            ends.name.removesuffix(_CHANGE_STATE),
+        )
+        for ends in asked
+        if ends.name.endswith(_CHANGE_STATE)
+    )
     for managers, nodes in managed.items():
         if len(managers) > 1:
             message = f"{and_then(managers)} all manage the life cycle of {shorten(sorted(nodes))}"
@@ -236,17 +222,17 @@ class Missing(NamedTuple):
 
 def _not_exported(seen: Index) -> Iterator[Finding]:
     """Nothing is said where no hardware is known: another description may have it."""
-    for robot, known in _by_robot(seen).items():
+    by_robot = lists_by_key((seen.robot(it.node), it) for it in seen.system.interfaces)
+    for robot, known in by_robot.items():
         for it in missing(known):
             first, *more = it.claims
             does, needed, gives = _WORDS.get(first.kind, _OF_HARDWARE)
             also = f" and {len(more)} more" if more else ""
             near = [it.near] if it.near else []
-            cause = f"name one that is there{see((*near, first))}"
-            if it.meant:
-                cause = f"did you mean {it.meant}{see((*near, first))}"
+            cause = f"did you mean {it.meant}" if it.meant else "name one that is there"
             yield interface_not_exported.finding(
-                f"{does} {first.kind}{needed} {first.name}{also}, which {gives}", cause,
+                f"{does} {first.kind}{needed} {first.name}{also}, which {gives}",
+                cause + see((*near, first)),
                 level=NOTE if first.kind == JOINT else WARNING,
                 robot=robot, node=first.node, names=(first.name,), **where([first]),
             )  # fmt: skip
@@ -255,24 +241,17 @@ def _not_exported(seen: Index) -> Iterator[Finding]:
 interface_not_exported = declaration.NOT_EXPORTED._replace(check=_not_exported)
 
 
-def _by_robot(seen: Index) -> dict[str, list[Interface]]:
-    found: dict[str, list[Interface]] = defaultdict(list)
-    for it in seen.system.interfaces:
-        found[seen.robot(it.node)].append(it)
-    return found
-
-
 def missing(known: Sequence[Interface]) -> Iterator[Missing]:
     """The claims without an export among the interfaces of one robot, by controller and place."""
     exports = {(it.kind, it.name): it for it in known if it.role == EXPORTS}
-    opened: dict[tuple[str, Place], list[Interface]] = defaultdict(list)
-    for it in open_claims(known):
-        opened[it.node, it.place].append(it)
+    opened = lists_by_key(((it.node, it.place), it) for it in open_claims(known))
     hints = Guesses()
     for first, *more in opened.values():
         near = hints.nearest(first.name, [name for kind, name in exports if kind == first.kind])
         meant = exports.get((first.kind, near))
-        yield Missing((first, *more), meant or _beside(first.name, exports.values()), near)
+        owner = first.name.rpartition("/")[0]
+        beside = (it for it in exports.values() if it.name.rpartition("/")[0] == owner)
+        yield Missing((first, *more), meant or next(beside, None), near)
 
 
 def open_claims(known: Sequence[Interface]) -> list[Interface]:
@@ -299,11 +278,6 @@ def claims_any(known: Iterable[Interface]) -> bool:
     for it in known:
         sides[it.role].add((it.kind, it.name))
     return not sides[EXPORTS].isdisjoint(sides[CLAIMS])
-
-
-def _beside(name: str, exports: Iterable[Interface]) -> Interface | None:
-    owner = name.rpartition("/")[0]
-    return next((it for it in exports if it.name.rpartition("/")[0] == owner), None)
 
 
 def _claimed_twice(seen: Index) -> Iterator[Finding]:

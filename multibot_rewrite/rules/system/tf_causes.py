@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.system.causes import Cause, caused
@@ -18,17 +19,10 @@ from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, 
 from multibot_rewrite.system.tf_copies import tree_topic
 
 
-def sent_by_robot(plan: Index, robot: Robot) -> list[Sent]:
-    """What one robot's nodes send by the plan."""
-    return [*_sent_by_robot(plan).get(robot.name, ())]
-
-
 @once
-def _sent_by_robot(plan: Index) -> Mapping[str, Sequence[Sent]]:
-    found: dict[str, list[Sent]] = defaultdict(list)
-    for it in plan.sent:
-        found[plan.robot_of.get(it.node, "")].append(it)
-    return found
+def sent_by_robot(plan: Index) -> dict[str, list[Sent]]:
+    """What each robot's nodes send by the plan; of any other robot nothing."""
+    return lists_by_key((plan.robot_of.get(it.node, ""), it) for it in plan.sent)
 
 
 def state_publisher(plan: Index, robot: Robot) -> str:
@@ -68,7 +62,7 @@ def why_not_received(
         described if undescribed else "",
         *(
             f"by the plan {it.node} sends {it}: has it the parameters of {name}?"
-            for it in sent_by_robot(plan, robot)
+            for it in sent_by_robot(plan)[robot.name]
             if not {it.parent, it.child}.isdisjoint(frames)
         ),
         *(
@@ -85,7 +79,7 @@ def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str
     home = tree_topic(robot.tf_topic)
     edges = [edge for tree in seen.trees if tree.topic == home for edge in tree.edges]
     there = {(it.parent, it.child) for it in edges}
-    unsent = [it for it in sent_by_robot(plan, robot) if it[1:] not in there]
+    unsent = [it for it in sent_by_robot(plan)[robot.name] if it[1:] not in there]
     named = _two_names(plan, robot, roots, edges) or _misspelled(plan, robot, roots, edges)
     if named or unsent:
         return named or _not_sent(plan, seen, robot, unsent[0])
@@ -114,7 +108,7 @@ def _two_names(
         if other:
             right, wrong = (root, other) if root in robot.frames else (other, root)
             said = f"{wrong} and {right} are one frame with two names"
-            sent = (it.node for it in sent_by_robot(plan, robot) if right in it[1:])
+            sent = (it.node for it in sent_by_robot(plan)[robot.name] if right in it[1:])
             node = next(sent, "") or state_publisher(plan, robot)
             if not node:
                 return Cause(f"{said}, the second is the planned one")

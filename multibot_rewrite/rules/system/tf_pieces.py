@@ -10,6 +10,7 @@ from functools import cache
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, differ_in_numbers, nearest
 from multibot_rewrite.base.wording import only, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
@@ -24,7 +25,7 @@ from multibot_rewrite.rules.system.tf_trees import (
     sent_elsewhere,
 )
 from multibot_rewrite.system.index import Index, Tree, robots_of
-from multibot_rewrite.system.records import NOWHERE, OFF, UNKNOWN_NODES, Edge
+from multibot_rewrite.system.records import NOWHERE, OFF, Edge
 from multibot_rewrite.system.tf_copies import tree_topic
 from multibot_rewrite.system.tool_nodes import last_word
 
@@ -52,7 +53,7 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
 def _by_usual_names(seen: Index) -> Iterator[Finding]:
     """Where nodes may run that are not known, one of them may join what is in pieces."""
     yield from told_not_to(seen)
-    if any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats):
+    if seen.in_doubt:
         for tree in seen.trees:
             yield from _senders_apart(seen, tree)
         return
@@ -114,9 +115,7 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
 def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
     """Of some frames the one that another one may be meant for, but for one that it is not: of its
     robot, or of none; of very many frames of a robot the last ones are not held against others."""
-    own: dict[str, set[str]] = defaultdict(set)
-    for it in frames:
-        own[seen.frame_robot(it)].add(it)
+    own = sets_by_key((seen.frame_robot(it), it) for it in frames)
     left: dict[str, int] = defaultdict(lambda: _COMPARED)
 
     @cache

@@ -33,11 +33,11 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     namespace on which only nodes send that send to the robot's tree as well."""
     senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
-    for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
+    for tree in _called_tf(seen):
         ways = ((senders, tree.senders, PUBLISHES), (listeners, tree.listeners, SUBSCRIBES))
         for found, nodes, role in ways:
-            for node in (it for it in nodes if seen.robot(it) and not _looks(seen, it)):
-                if not _is_meant(seen, node, role, tree.topic):
+            for node in (it for it in nodes if seen.robot(it) and it not in seen.relays):
+                if not (is_viewer(node) or _is_meant(seen, node, role, tree.topic)):
                     found[seen.robot(node)].setdefault(tree.topic, []).append(node)
     # Where robots' frames collide, that is the finding.
     mixed = {tree.topic for tree in seen.trees if collide(seen, tree)}
@@ -59,9 +59,13 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     yield from _rviz_hears_nothing(seen)
 
 
+def _called_tf(seen: Index) -> list[Tree]:
+    return [it for it in seen.trees if last_word(seen.plain(it.topic)) == TF]
+
+
 def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
     """RViz on a tf topic on which nothing is, while robots have theirs."""
-    trees = [it for it in seen.trees if last_word(seen.plain(it.topic)) == TF]
+    trees = _called_tf(seen)
     sent = [it.topic for it in trees if it.senders]
     for tree in trees:
         rviz = [it for it in tree.listeners if last_word(it).startswith("rviz")]
@@ -80,7 +84,7 @@ def _frames_of_another(
 ) -> Iterator[Finding]:
     """One robot's frames on another one's topic: whoever sends them, where it is the other's by the
     plan; else where it is not known who does."""
-    for tree in (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF):
+    for tree in _called_tf(seen):
         home = home_of(seen.expected, tree) if seen.expected else ()
         owners = home or [it for it in (seen.robot(tree.topic),) if it]
         found: dict[str, list[Edge]] = defaultdict(list)
@@ -90,22 +94,20 @@ def _frames_of_another(
                 found[robot].append(it)
         for robot, edges in found.items():
             sends = tree.topic in senders.get(robot, ()) or _is_relayed(seen, tree, robot)
-            if not (sends or _has_names_of(seen, tree, owners, robot, edges)):
-                yield _on_anothers(seen, tree, owners[0] if not home else "", robot, edges)
-
-
-def _on_anothers(seen: Index, tree: Tree, owner: str, robot: str, edges: Sequence[Edge]) -> Finding:
-    frames, home = unique(it.child for it in edges), seen.home.get(robot, "")
-    verb = "is" if len(frames) == 1 else "are"
-    expected = f"{verb} on {tree.topic}, expected on {home}"
-    where = f"on {tree.topic}, which is of {owner}" if owner else expected
-    known = [it for it in tree.senders if it in seen.nodes and not owner]
-    wrong = f"; or {shorten(known)} has its description or parameters" if known else ""
-    return tf_on_two_topics.finding(
-        f"{shorten(frames)} of {robot} {where}",
-        f"start its nodes in its own namespace, with the rules {_REMAP}{wrong}",
-        robot=robot, names=(*frames, tree.topic, *filter(None, [home])),
-    )  # fmt: skip
+            if sends or _has_names_of(seen, tree, owners, robot, edges):
+                continue
+            frames, expected = unique(it.child for it in edges), seen.home.get(robot, "")
+            verb = "is" if len(frames) == 1 else "are"
+            where, wrong = f"on {tree.topic}, which is of {owners[0]}", ""
+            if home:
+                where = f"{verb} on {tree.topic}, expected on {expected}"
+                known = [it for it in tree.senders if it in seen.nodes]
+                wrong = f"; or {shorten(known)} has its description or parameters" if known else ""
+            yield tf_on_two_topics.finding(
+                f"{shorten(frames)} of {robot} {where}",
+                f"start its nodes in its own namespace, with the rules {_REMAP}{wrong}",
+                robot=robot, names=(*frames, tree.topic, *filter(None, [expected])),
+            )  # fmt: skip
 
 
 def _is_of_its_tree(seen: Index, _: Tree, edge: Edge) -> bool:
@@ -158,8 +160,7 @@ def _frames_beside(
     level = WARNING if incomplete(seen.system) else ERROR
     trees = {it.topic: it for it in seen.trees}
     elsewhere = taken_elsewhere(seen.expected) if seen.expected else ()
-    called_tf = (it for it in seen.trees if last_word(seen.plain(it.topic)) == TF)
-    for tree in (it for it in called_tf if it.topic not in elsewhere):
+    for tree in (it for it in _called_tf(seen) if it.topic not in elsewhere):
         found: dict[str, list[Edge]] = defaultdict(list)
         for it in tree.edges if not seen.robot(tree.topic) else ():
             for robot in _whose(seen, it):
@@ -208,12 +209,9 @@ def _is_beside(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], top
     """Is it in the robot's namespace, and do only nodes send there that send to its tree as well, or
     bridges of a simulator? A row of these names the topic, so it is meant."""
     at_home = topics.get(_home(seen, robot, topics), ())
-    others = (it for it in topics[topic] if it not in at_home)
-    return seen.robot(topic) == robot and all(_is_bridge(seen, it) for it in others)
-
-
-def _is_bridge(seen: Index, node: str) -> bool:
-    return _BRIDGE in last_word(node) or seen.node[node].known == f"ros_gz{_BRIDGE}"
+    others = (it for it in topics[topic] if it not in at_home and _BRIDGE not in last_word(it))
+    bridge = f"ros_gz{_BRIDGE}"
+    return seen.robot(topic) == robot and all(seen.node[it].known == bridge for it in others)
 
 
 def _is_meant(seen: Index, node: str, role: str, topic: str) -> bool:
@@ -221,10 +219,6 @@ def _is_meant(seen: Index, node: str, role: str, topic: str) -> bool:
     keys = ((node, TOPIC, role, it) for it in (topic, static_topic(topic)))
     known = seen.expected.by_key if seen.expected else ()
     return topic != seen.home.get(seen.robot(node)) and any(it in known for it in keys)
-
-
-def _looks(seen: Index, node: str) -> bool:
-    return is_viewer(node) or node in seen.relays
 
 
 def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:

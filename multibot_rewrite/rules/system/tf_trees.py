@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.chains import chain_ends
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.records import OFF, PUBLISHES, Edge, Robot
@@ -16,10 +17,7 @@ from multibot_rewrite.system.tf_copies import tree_topic
 @once
 def homes(plan: Index) -> Mapping[str, Sequence[str]]:
     """By tf topic: the robots whose it is by the layout."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for robot in plan.system.robots:
-        found[tree_topic(robot.tf_topic)].append(robot.name)
-    return found
+    return lists_by_key((tree_topic(robot.tf_topic), robot.name) for robot in plan.system.robots)
 
 
 def home_of(plan: Index, tree: Tree) -> Sequence[str]:
@@ -51,16 +49,13 @@ def roots_by_robot(plan: Index, seen: Index) -> Iterator[tuple[Robot, Sequence[s
         # A frame with two parents is a finding of its own.
         is_one_each = all(above[it.child] == it.parent for it in tree.edges)
         for edge in tree.edges if is_one_each else ():
-            for robot in _robots_at_home(plan, tree, edge):
+            for frame in (edge.child, edge.parent):
+                robot = _robot_at_home(plan, tree, frame)
                 roots_of[robot].add(roots_above.get(edge.parent, edge.parent))
         for robot, found in roots_of.items():
             roots = sorted(found - {""})
-            if len(roots) > 1:
+            if robot and len(roots) > 1:
                 yield plan.declared[robot], roots
-
-
-def _robots_at_home(plan: Index, tree: Tree, edge: Edge) -> Set[str]:
-    return {_robot_at_home(plan, tree, frame) for frame in (edge.child, edge.parent)} - {""}
 
 
 def _robot_at_home(plan: Index, tree: Tree, frame: str) -> str:

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Remap
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import Cause
@@ -19,7 +20,7 @@ from multibot_rewrite.system.records import SUBSCRIBES, Edge
 from multibot_rewrite.system.tf_copies import static_topic
 from multibot_rewrite.system.tool_nodes import last_word
 
-_STATIC = "static_transform_publisher"
+_STATE_PUBLISHER, _STATIC = "robot_state_publisher", "static_transform_publisher"
 
 
 @system_rule("MG401", "two-parents", ERROR)
@@ -43,17 +44,11 @@ def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
 
 
 def _by_child(tree: Tree) -> dict[str, list[Edge]]:
-    found: dict[str, list[Edge]] = defaultdict(list)
-    for edge in tree.edges:
-        found[edge.child].append(edge)
-    return found
+    return lists_by_key((edge.child, edge) for edge in tree.edges)
 
 
 def _parents(tree: Tree) -> dict[str, set[str]]:
-    found: dict[str, set[str]] = defaultdict(set)
-    for edge in tree.edges:
-        found[edge.child].add(edge.parent)
-    return found
+    return sets_by_key((edge.child, edge.parent) for edge in tree.edges)
 
 
 def _senders(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
@@ -105,9 +100,9 @@ def collide(seen: Index, tree: Tree) -> str:
     robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
     if bare and not seen.robot(tree.topic) and _may_meet(seen, tree):
-        named: dict[str, set[str]] = defaultdict(set)
-        for it in tree.edges:
-            named[seen.frame_robot(it.child)].add(seen.plain_frame(it.child))
+        named = sets_by_key(
+            (seen.frame_robot(it.child), seen.plain_frame(it.child)) for it in tree.edges
+        )
         nameless = [it for it in robots if len(named.get(it, bare - bare) & bare) < len(bare)]
         of_all = {seen.plain_frame(it) for it in _named_frames(seen, tree)}
         without = {robot for robot in robots if robot not in named}
@@ -116,7 +111,9 @@ def collide(seen: Index, tree: Tree) -> str:
         if who and (len(without) > 1 or (not without and of_all & bare)):
             send = "sends" if len(who) == 1 else "send"
             return f"{and_then(who)} {send} frames without a robot's name"
-    if bare and _twice(seen, senders):
+    # As where two robots have no namespace.
+    several = (it for it in senders if seen.nodes.get(it, 0) > 1)
+    if bare and any("robot_state" in last_word(it) for it in several):
         return "two nodes of one name send the same frames"
     return ""
 
@@ -130,12 +127,6 @@ def _may_meet(seen: Index, tree: Tree) -> bool:
     known = {node for edge in tree.edges for node in edge.publishers}
     plain = [it for it in owners if not seen.frame_robot(it) and it not in WORLD_FRAMES]
     return not known.issuperset(tree.senders) or any(len(owners[it]) != 1 for it in plain)
-
-
-def _twice(seen: Index, senders: Iterable[str]) -> list[str]:
-    """Senders of which two run, as where two robots have no namespace."""
-    several = (it for it in senders if seen.nodes.get(it, 0) > 1)
-    return [it for it in several if "robot_state" in last_word(it)]
 
 
 def _bare_frames(seen: Index, tree: Tree) -> list[str]:
@@ -198,10 +189,7 @@ def tf_cycle(seen: Index) -> Iterator[Finding]:
 def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
     """Circles that have no frame in common, each from the parent to the child."""
     left = {child: set(above) & parents.keys() for child, above in parents.items()}
-    below: dict[str, list[str]] = {}
-    for child, above in left.items():
-        for parent in above:
-            below.setdefault(parent, []).append(child)
+    below = lists_by_key((parent, child) for child, above in left.items() for parent in above)
     _take_away(left, below, [child for child, above in left.items() if not above])
     for start in sorted(left):
         while start in left:
@@ -255,10 +243,10 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
     for tree in seen.trees:
         if collide(seen, tree):
             continue
-        edges = _sent_twice(tree)
-        by_robot: dict[str, list[Edge]] = defaultdict(list)
-        for it in edges:
-            by_robot[seen.frame_robot(it.child)].append(it)
+        known = sets_by_key(((it.parent, it.child, it.topic), it.publishers) for it in tree.edges)
+        several = {it for it, senders in known.items() if len(senders) > 1}
+        edges = (it for it in tree.edges if it.several or (*it[1::-1], it.topic) in several)
+        by_robot = lists_by_key((seen.frame_robot(it.child), it) for it in edges)
         for robot, own in by_robot.items():
             listed = shorten(unique(f"{it.parent} -> {it.child}" for it in own))
             message = f"several nodes send {listed} on {tree.topic}"
@@ -274,23 +262,12 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             others = [it for it in others if it not in nodes]
             if others:
                 cause += f"; or {shorten(others)} with the description or parameters of {who}"
+            # Static and of one value: where senders differ none is known.
+            is_fixed = all(it.static and it.transform for it in own)
             yield transform_of_two_senders.finding(
-                message, cause + see(own), level=NOTE if all(map(_is_fixed, own)) else ERROR,
+                message, cause + see(own), level=NOTE if is_fixed else ERROR,
                 robot=who, names=unique(it.child for it in own), **where(own),
             )  # fmt: skip
-
-
-def _is_fixed(edge: Edge) -> bool:
-    """Is it static and of one value? Where senders differ none is known."""
-    return edge.static and bool(edge.transform)
-
-
-def _sent_twice(tree: Tree) -> list[Edge]:
-    """The transforms of which several senders are heard, or known."""
-    known: dict[tuple[str, ...], set[tuple[str, ...]]] = defaultdict(set)
-    for it in tree.edges:
-        known[it.parent, it.child, it.topic].add(it.publishers)
-    return [it for it in tree.edges if it.several or len(known[it.parent, it.child, it.topic]) > 1]
 
 
 @system_rule("MG407", "robots-name-twice", ERROR)
@@ -321,15 +298,10 @@ def robots_name_twice(seen: Index) -> Iterator[Finding]:
             yield robots_name_twice.finding(message, cause, robot=robot, names=tuple(frames))
 
 
-_STATE_PUBLISHER, _STATIC = "robot_state_publisher", "static_transform_publisher"
-# Of one transform.
-_TWO = 2
-
-
 def who_can_send(seen: Index, nodes: Sequence[str], edges: Sequence[Edge]) -> Sequence[str]:
     """The nodes that can send one of these; all, where fewer than two would be left."""
     found = [node for node in nodes if any(_can_send(seen, node, it) for it in edges)]
-    return found if len(found) >= _TWO else nodes
+    return found if len(found) > 1 else nodes
 
 
 def _can_send(seen: Index, node: str, edge: Edge) -> bool:

@@ -6,10 +6,11 @@ transform that nodes ask tf for, and nothing sends.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.conventions import USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import system_rule, where
@@ -28,7 +29,6 @@ from multibot_rewrite.system.records import (
     SERVES,
     SUBSCRIBES,
     TOPIC,
-    UNKNOWN_NODES,
     Edge,
     End,
     Lookup,
@@ -45,34 +45,27 @@ _MISSES = (topic_names_miss, server_names_miss)
 def nothing_known_sends(seen: Index) -> Iterator[Finding]:
     """All names of a robot are one finding; without those that others have under another name."""
     left = [it for it in open_ends(seen) if not meant(seen, it)]
-    left = _without_missed(seen, left) if left else left
-    by_robot: dict[str, set[str]] = defaultdict(set)
-    for it in left:
-        by_robot[seen.robot(it.node)].add(it.name)
+    rules = [it for it in _MISSES if it.check] if left else ()
+    missed = {found.names[0] for it in rules if it.check for found in it.check(seen)}
+    left = [it for it in left if it.name not in missed]
+    by_robot = sets_by_key((seen.robot(it.node), it.name) for it in left)
     for robot, names in by_robot.items():
-        yield from _told(seen, robot, sorted(names))
-
-
-def _told(seen: Index, robot: str, names: Sequence[str]) -> Iterator[Finding]:
-    """That another robot has it from a node of the same system is not for a driver outside of it."""
-    elsewhere: dict[str, str] = {}
-    for plain in map(seen.plain, names) if robot else ():
-        given = (it for it in _given(seen).get(plain, ()) if _of_its_kind(seen, it, robot))
-        if other := next(given, ""):
-            elsewhere[plain] = other
-    lacked = tuple(it for it in names if seen.plain(it) in elsewhere)
-    rest = tuple(it for it in names if it not in lacked)
-    if lacked:
-        others = shorten([elsewhere[seen.plain(it)] for it in lacked], _LISTED)
-        message = f"no node sends {shorten(lacked, _LISTED)}, and one sends {others}"
-        hint = "start what sends it for the other robot"
-        yield nothing_known_sends.finding(
-            message, hint, level=ERROR, robot=robot, names=tuple(lacked)
-        )
-    if rest:
-        hint = "name a stack or nodes that do, if no driver of its own does"
-        message = f"no known node sends {shorten(rest, _LISTED)}"
-        yield nothing_known_sends.finding(message, hint, robot=robot, names=tuple(rest))
+        # That another robot has it from a node of the same system is not for a driver outside of it.
+        elsewhere: dict[str, str] = {}
+        for name in sorted(names) if robot else ():
+            given = _given(seen).get(seen.plain(name), ())
+            if other := next((it for it in given if _of_its_kind(seen, it, robot)), ""):
+                elsewhere[name] = other
+        if lacked := tuple(elsewhere):
+            others = shorten(elsewhere.values(), _LISTED)
+            yield nothing_known_sends.finding(
+                f"no node sends {shorten(lacked, _LISTED)}, and one sends {others}",
+                "start what sends it for the other robot", level=ERROR, robot=robot, names=lacked,
+            )  # fmt: skip
+        if rest := tuple(it for it in sorted(names) if it not in elsewhere):
+            hint = "name a stack or nodes that do, if no driver of its own does"
+            message = f"no known node sends {shorten(rest, _LISTED)}"
+            yield nothing_known_sends.finding(message, hint, robot=robot, names=rest)
 
 
 def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
@@ -99,17 +92,11 @@ def _frames(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
 @once
 def _given(seen: Index) -> Mapping[str, Sequence[str]]:
     """What is sent or served by its name without a robot's, the last one first."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for (_, name), ends in reversed([*seen.by_name.items()]):
-        if ends.publishers or ends.servers:
-            found[seen.plain(name)].append(name)
-    return found
-
-
-def _without_missed(seen: Index, ends: Iterable[End]) -> list[End]:
-    """The ends without those that are a finding with the other side's name."""
-    missed = {it.names[0] for rule in _MISSES if rule.check for it in rule.check(seen)}
-    return [it for it in ends if it.name not in missed]
+    return lists_by_key(
+        (seen.plain(name), name)
+        for (_, name), ends in reversed([*seen.by_name.items()])
+        if ends.publishers or ends.servers
+    )
 
 
 def no_longer_sent(end: End) -> Finding:
@@ -133,8 +120,8 @@ def open_ends(seen: Index) -> list[End]:
 
 
 def _is_status(seen: Index, kind: str, name: str) -> bool:
-    served = seen.by_name.get((ACTION, name.removesuffix(_STATUS)))
-    return kind == TOPIC and name.endswith(_STATUS) and served is not None and bool(served.servers)
+    served = seen.ends_at(ACTION, name.removesuffix(_STATUS)).servers
+    return kind == TOPIC and name.endswith(_STATUS) and bool(served)
 
 
 _MAP = "map"
@@ -168,7 +155,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     # Without a robot's name before it, it is sent.
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
     sender = _sender(seen, it.node, edges) if usual else None
-    if sender is None and usual and edges and not _in_doubt(seen) and _listens(seen, it.node):
+    if sender is None and usual and edges and not seen.in_doubt and _listens(seen, it.node):
         message = f"reads frame {it.frame}, but no known node sends it"
         return _finding(seen, it, message, "name the node or stack that sends it", NOTE)
     if sender is None:
@@ -194,9 +181,15 @@ def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
 def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
     """A transform that a node sends by its file, of the robot of ``node`` if there is one. Nothing is
     known where only nodes without one send any, and others may run."""
-    own = [it for it in edges if not is_of_description(seen, it) or _is_of_a_node(seen, it)]
+    # Of all that send on one topic nobody can tell them apart: a description has no odometry.
+    own = [
+        it
+        for it in edges
+        if not is_of_description(seen, it)
+        or (len(it.publishers) > 1 and seen.plain_frame(it.parent) in (_MAP, _ODOM))
+    ]
     placed = [it for it in own if it.place != NOWHERE]
-    found, robot = placed if placed or _in_doubt(seen) else own, seen.robot(node)
+    found, robot = placed if placed or seen.in_doubt else own, seen.robot(node)
     return min(found, key=lambda it: robot not in map(seen.robot, it.publishers), default=None)
 
 
@@ -205,19 +198,16 @@ def _listens(seen: Index, node: str) -> bool:
     return any(it.type == TF and it.role == SUBSCRIBES for it in seen.by_node.get(node, ()))
 
 
-def _in_doubt(seen: Index) -> bool:
-    return any(it.code == UNKNOWN_NODES for it in seen.system.environment.caveats)
-
-
-def _is_of_a_node(seen: Index, edge: Edge) -> bool:
-    """Of all that send on one topic nobody can tell them apart: a description has no odometry."""
-    return len(edge.publishers) > 1 and seen.plain_frame(edge.parent) in (_MAP, _ODOM)
-
-
 def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     above = {edge.child: edge.parent for edge in edges}
+    if it.frame in above and it.parent in {*above, *above.values()}:
+        return None
     if it.frame in above:
-        return _not_joined(seen, it, above)
+        # What it is looked up from is nowhere.
+        root = root_of(it.frame, above)
+        message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.parent}"
+        hint = f"start what sends {it.parent} -> {root}: localization, or odometry"
+        return _finding(seen, it, f"{message}: the tree begins with {root}", hint, WARNING)
     frames = frames_in(edges)
     if near := "" if it.frame in frames else nearest(it.frame, sorted(frames), MISTYPED):
         message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.frame}"
@@ -227,17 +217,6 @@ def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     )
     hint = "name the node that sends it, or make the virtual joint fixed"
     return _finding(seen, it, message, hint, NOTE)
-
-
-def _not_joined(seen: Index, it: Lookup, above: Mapping[str, str]) -> Finding | None:
-    """The frame is there, and what it is looked up from is nowhere."""
-    if it.parent in {*above, *above.values()}:
-        return None
-    root = root_of(it.frame, above)
-    return _finding(
-        seen, it, f"reads {it.parent} -> {it.frame}, and nothing sends {it.parent}: the tree begins"
-        f" with {root}", f"start what sends {it.parent} -> {root}: localization, or odometry", WARNING,
-    )  # fmt: skip
 
 
 def _finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:

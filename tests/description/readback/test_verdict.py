@@ -62,6 +62,7 @@ SAID = {
     "MB426": "2 remap rules of the whole process",
     "MB143": "2 frames that an argument of the xacro misses",
     "MB422": "2 prefix parameters that no postfix reaches",
+    "MB430": "2 topics below each robot's namespace that all should share",
     "MB428": "2 names fixed in a plugin's code",
     "MB429": "2 model namespaces that not every Gazebo reads",
 }

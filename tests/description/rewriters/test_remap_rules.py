@@ -146,6 +146,25 @@ def test_a_namespace_in_a_rule_is_that_of_the_node() -> None:
         assert name_in_graph(made.text, "gazebo_ros_force") == wanted
 
 
+@pytest.mark.parametrize(
+    ("given", "hint"),
+    [
+        (("/gazebo_ros_force:=push",), "write /push"),
+        ((), "write the rule gazebo_ros_force:=/gazebo_ros_force"),
+    ],
+)
+def test_a_relative_name_below_a_namespace_is_not_shared(given: list[str], hint: str) -> None:
+    """It is said, and what the hint says shares it."""
+    name = "push" if given else "gazebo_ros_force"
+    shared = {"layout": "tf-per-robot", "shared_topics": [f"/{name}"]}
+    made = rewrite(plugin("force", rules(*given)), "robot1", **shared)
+    assert [(it.code, it.hint) for it in made.findings if it.code == "MB430"] == [("MB430", hint)]
+    mended = rules(f"gazebo_ros_force:=/{name}")
+    healthy = rewrite(plugin("force", mended), "robot1", **shared)
+    assert "MB430" not in {it.code for it in healthy.findings}
+    assert name_in_graph(healthy.text, "gazebo_ros_force") == f"/{name}"
+
+
 def test_a_rule_of_an_unknown_plugin_moves_and_nothing_is_proved() -> None:
     source = plugin("of_nobody", rules("/go:=cmd_vel", "/tf:=tf", "/diagnostics:=diagnostics"))
     made = rewrite(source, "robot1", layout="both")

@@ -91,6 +91,25 @@ def test_a_home_is_no_robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, hom
     assert "is outside of the folders" in including(folder / "robot" / "r.xacro", "../part.xacro")
 
 
+def test_who_works_above_a_file_reads_what_is_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """But for a home, and for a file that is elsewhere."""
+    file, other = tmp_path / "work/a/b.launch.py", tmp_path / "work/c.urdf"
+    file.parent.mkdir(parents=True)
+    other.write_text("text")
+    monkeypatch.chdir(tmp_path / "work")
+    assert Access(str(file), Reach(), None).read(str(other)) == b"text"
+    monkeypatch.setenv("HOME", str(tmp_path / "work"))
+    with pytest.raises(NotAllowedError):
+        Access(str(file), Reach(), None).read(str(other))
+    (tmp_path / "else").mkdir()
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.chdir(tmp_path / "else")
+    with pytest.raises(NotAllowedError):
+        Access(str(file), Reach(), None).read(str(other))
+
+
 @pytest.mark.parametrize("hidden", [".part.xacro", ".config/part.xacro"])
 def test_what_is_hidden_is_not_read(repository: Path, hidden: str) -> None:
     path = repository / "arm" / hidden

@@ -97,3 +97,18 @@ def test_without_a_winner_one_is_named(package: Path, capsys: Any) -> None:
     launched = made(package, "rover.urdf", launched=True)
     assert launched["launch"] == "nav.launch.py" and "companions" not in launched
     assert made(package, "rover.urdf", "husky.yaml")["companions"]["params"] == ["husky.yaml"]
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_files_go_with_the_description_that_is_named_before_them(
+    tmp_path: Path, turned: bool
+) -> None:
+    """Where their own names do not say it: both fit both robots."""
+    first, second = ("two", "one") if turned else ("one", "two")
+    for name in ("red", "blue"):
+        (tmp_path / f"{name}.urdf").write_text(URDF.replace('"rover"', f'"{name}"'))
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.yaml").write_text(AMCL.format("base_link", "scan"))
+    rows = made(tmp_path, "red.urdf", f"{first}.yaml", "blue.urdf", f"{second}.yaml")["robots"]
+    found = {row["description"]: row["companions"]["params"] for row in rows}
+    assert found == {"red.urdf": [f"{first}.yaml"], "blue.urdf": [f"{second}.yaml"]}

@@ -37,7 +37,16 @@ def as_junit(findings: Sequence[Finding], report: Report) -> str:
             etree.SubElement(etree.SubElement(suite, "properties"), "property", about)
         if not found:
             etree.SubElement(suite, "testcase", {"name": _PASSED, **home})
-        for it, name in zip(found, _names(found), strict=True):
+        # Jenkins follows a case from build to build by its name: no lines, and no two are equal.
+        seen: Counter[str] = Counter()
+        names = []
+        for it in found:
+            name = one_line(
+                f"{it.code} {it.place}: {it.message}" if it.node else f"{it.code} {it.message}"
+            )
+            seen[name] += 1
+            names.append(name if seen[name] == 1 else f"{name} #{seen[name]}")
+        for it, name in zip(found, names, strict=True):
             case = etree.SubElement(suite, "testcase", {"name": name, **home})
             whole = "\n".join(lines_of(it))
             if it.level == NOTE:
@@ -58,16 +67,3 @@ def _totals(findings: Sequence[Finding], report: Report) -> dict[str, str]:
     tests = len(findings) + len(clean)
     numbers = {"tests": tests, "failures": failures, "errors": 0, "skipped": skipped, "time": 0}
     return {name: str(number) for name, number in numbers.items()}
-
-
-def _names(findings: Sequence[Finding]) -> list[str]:
-    """Jenkins follows a case from build to build by its name: no lines, and no two are equal."""
-    seen: Counter[str] = Counter()
-    names = []
-    for it in findings:
-        name = one_line(
-            f"{it.code} {it.place}: {it.message}" if it.node else f"{it.code} {it.message}"
-        )
-        seen[name] += 1
-        names.append(name if seen[name] == 1 else f"{name} #{seen[name]}")
-    return names

@@ -39,7 +39,8 @@ def _get_logger(name: str | None = None) -> Any:
     return logging.getLogger(name)
 
 
-def contents() -> dict[str, dict[str, Any]]:
+@cache
+def contents() -> Mapping[str, dict[str, Any]]:
     """The modules, each with what it has."""
     known = {key: it for room in _ROOMS for key, it in vars(room).items()}
     known["get_logger"] = _get_logger

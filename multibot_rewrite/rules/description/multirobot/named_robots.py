@@ -22,6 +22,9 @@ from multibot_rewrite.rules.subject import Subject
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
 
+# A layout with namespaces, and a topic that is not of everybody by itself.
+SHARED_SCAN = make_naming("tf-per-robot", shared_topics=["scan"])
+
 Hazard = Callable[[Inventory, "RenameMap"], Iterable[Problem]]
 ByNaming = Callable[[Inventory, Naming], Iterable[Problem]]
 
@@ -74,6 +77,10 @@ prefix_only = rule("MB422", "prefix-only", WARNING, formats=(URDF, PARAMS, MOVEI
 off_the_shared_tf = rule(
     "MB423", "off-the-shared-tf", WARNING, options={"robots": TWO, "naming": ONE_TF}
 )(partial(_if_robots, _by_naming(hazards.moved_tf)))
+
+shared_below_namespace = rule(
+    "MB430", "shared-below-namespace", WARNING, options={"robots": TWO, "naming": SHARED_SCAN}
+)(partial(_if_robots, _by_naming(hazards.shared_below)))
 
 
 @rule("MB424", "collision-number-unstable", ERROR, options=OF_TWO)

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values gathered by a key."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Hashable, Iterable
+from typing import TypeVar
+
+_Key = TypeVar("_Key", bound=Hashable)
+_Name = TypeVar("_Name", bound=Hashable)
+_Value = TypeVar("_Value")
+_Member = TypeVar("_Member", bound=Hashable)
+
+
+def lists_by_key(pairs: Iterable[tuple[_Key, _Value]]) -> dict[_Key, list[_Value]]:
+    """Return the values of each key, in the order of the pairs; of any other key an empty list."""
+    found: dict[_Key, list[_Value]] = defaultdict(list)
+    for key, value in pairs:
+        found[key].append(value)
+    return found
+
+
+def sets_by_key(pairs: Iterable[tuple[_Key, _Member]]) -> dict[_Key, set[_Member]]:
+    """Return the values of each key, each once; of any other key an empty set."""
+    found: dict[_Key, set[_Member]] = defaultdict(set)
+    for key, value in pairs:
+        found[key].add(value)
+    return found
+
+
+def dicts_by_key(
+    triples: Iterable[tuple[_Key, _Name, _Value]],
+) -> dict[_Key, dict[_Name, _Value]]:
+    """Return for each key the values by name, the last one of a name; of any other key none."""
+    found: dict[_Key, dict[_Name, _Value]] = defaultdict(dict)
+    for key, name, value in triples:
+        found[key][name] = value
+    return found
