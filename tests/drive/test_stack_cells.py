@@ -51,7 +51,7 @@ def with_controllers(cell: Cell, folder: Path) -> str:
     return f"{text}companions: {{params: config/controllers.yaml}}\n"
 
 
-@pytest.mark.sample(53)
+@pytest.mark.sample(106)
 @pytest.mark.parametrize("row", ROWS, ids=["-".join(name) for name, _ in ROWS])
 def test_a_stack_alone_drives(
     row: tuple[tuple[str, ...], tuple[Cell, ...]],

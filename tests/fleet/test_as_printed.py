@@ -143,6 +143,7 @@ def test_what_is_printed_is_what_is_planned(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("starts", [ALL, LAUNCHED])
 def test_whatever_is_changed_is_noticed(starts: FleetStarts, tmp_path: Path) -> None:
     assert unnoticed(starts, to_python(starts), tmp_path / "out") == []

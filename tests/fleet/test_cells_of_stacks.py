@@ -21,7 +21,7 @@ ROWS = [
 
 
 @pytest.mark.slow
-@pytest.mark.sample(37)
+@pytest.mark.sample(74)
 @pytest.mark.parametrize("row", ROWS, ids=["-".join(name) for name, _ in ROWS])
 def test_nothing_that_the_build_adds_refuses_a_robot(
     row: tuple[tuple[str, ...], tuple[Cell, ...]], tmp_path: Path

@@ -160,7 +160,7 @@ PARAMS = {
 }  # fmt: skip
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(8)
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
 @pytest.mark.parametrize("code", PARAMS)

@@ -78,7 +78,7 @@ def test_what_is_not_damaged_is_read(
     assert done.code in (0, 1, 3), done.err
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(6)
 @pytest.mark.parametrize(("place", "words"), READ, ids=NAMES)
 def test_a_damaged_file(place: Place, words: tuple[str, ...], here: Path, whole: Path) -> None:
     names = [name for name, _ in damages(place, MANY)]

@@ -112,6 +112,7 @@ def test_cost_of_a_fleet_grows_with_the_links_in_a_chain(tmp_path: Path) -> None
 
 
 @pytest.mark.slow
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("name", "bound"), [("robot{}", 1.015), ("robot_{}", 1.06)])
 def test_each_further_robot_costs_the_same(name: str, bound: float, tmp_path: Path) -> None:
     """The nodes, topics and bridges of all robots were looked through once for each of them. Of names

@@ -134,7 +134,7 @@ def test_files_of_another_robot_of_the_package_are_its_own(tmp_path: Path) -> No
 
 
 @pytest.mark.more
-@pytest.mark.sample(1)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     "name", ["launch_tutorial/rover.urdf", "two_robots_postfix/scout.urdf.xacro"]
 )
