@@ -90,8 +90,8 @@ def run_alone(command: Command, arguments: Sequence[str] | None) -> int:
 def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     """The exit code of ``run``; its errors are reported in the name of ``program``.
 
-    With ``own_process`` SIGTERM ends it as Ctrl-C does, and this does not return: nothing else runs in
-    this process.
+    With ``own_process`` SIGTERM and SIGHUP end it as Ctrl-C does, and this does not return: nothing
+    else runs in this process.
     """
     if own_process:
         # A short one: nothing it makes needs the collector of cycles.
@@ -118,6 +118,8 @@ def _guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
         if own_process:
             sys.unraisablehook = _not_lost
             signal.signal(signal.SIGTERM, signal.default_int_handler)
+            if signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:  # under nohup it is ignored
+                signal.signal(signal.SIGHUP, signal.default_int_handler)
         return run()
     except ProofError as error:
         fault = "the proof failed, nothing was written; this is a fault of the tool"

@@ -48,7 +48,6 @@ from multibot_rewrite.description.steps.document import (
 )
 from multibot_rewrite.description.steps.inserted import end_of
 
-LAST_PORT = 65535
 # So many robots are named in the note.
 _NAMED = 4
 _MARK = "<!-- multibot {} numbered from {} -->"
@@ -143,11 +142,7 @@ def _written(
     slot = text_slot(source, start, text) if text.isdecimal() and int(text) else None
     if slot:
         name = grammar.split_step(grammar.split_path(opened.path)[0][-1])[2] or opened.path
-        yield Port(name, int(text), *_range(opened), element, start, *slot, "{}")
-
-
-def _range(opened: grammar.Opened) -> tuple[int, int]:
-    return int(opened.step), int(opened.last or LAST_PORT)
+        yield Port(name, int(text), *opened.numbers, element, start, *slot, "{}")
 
 
 def _default(
@@ -163,7 +158,7 @@ def _default(
         named = f' {attribute}="{value}"' if attribute else ""
         text = f"<{tag}{named}>{{}}</{tag}>"
         number = int(opened.default)
-        yield Port(value or opened.path, number, *_range(opened), inside, at, at, at, text)
+        yield Port(value or opened.path, number, *opened.numbers, inside, at, at, at, text)
 
 
 def _edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:

@@ -400,7 +400,9 @@ def test_an_error_at_robot_seven_of_ten_leaves_nothing(folder: Path) -> None:
     assert temporaries(folder) == []
 
 
-@pytest.mark.parametrize("signal_", [signal.SIGINT, signal.SIGTERM], ids=lambda s: s.name)
+@pytest.mark.parametrize(
+    "signal_", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda s: s.name
+)
 def test_an_interrupt_leaves_nothing(folder: Path, signal_: signal.Signals) -> None:
     """The last target is a pipe no node reads, so the command waits there with nine files staged."""
     out = folder / "out"

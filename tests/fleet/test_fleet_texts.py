@@ -232,6 +232,24 @@ def test_topics_of_a_model_of_sdf_follow_it_too(
     assert {name.split("/")[2] for name in found} == {"r1", "second"}
 
 
+LISTENS = """<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/>
+<plugin filename="gz-sim-triggered-publisher-system" name="gz::sim::systems::TriggeredPublisher">
+<input type="a" topic="/model/{}/{}"/><output type="b" topic="/tripped"/></plugin></gazebo>"""
+
+
+@pytest.mark.parametrize(
+    ("model", "topic", "told"),
+    [("rover", "odometry", True), ("rover", "other", False), ("other", "odometry", False)],
+)
+@pytest.mark.parametrize("layout", ["L1", "L5"])
+def test_a_topic_of_the_own_model_by_another_name_is_reported(
+    fleet: Any, layout: str, model: str, topic: str, told: bool
+) -> None:
+    """DiffDrive.cc makes /model/NAME/odometry of the name that the model is spawned with."""
+    _, findings = spawn.spawns(fleet(layout, body=LISTENS.format(model, topic)))
+    assert [it.code for it in findings if it.code == "MF707"] == ["MF707"] * 2 * told
+
+
 OLD = '<gazebo><plugin name="p" filename="lib{}.so">{}</plugin></gazebo>'
 
 

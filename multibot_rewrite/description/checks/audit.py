@@ -17,6 +17,7 @@ from multibot_rewrite.base.releases import releases_with
 from multibot_rewrite.description.checks import references
 from multibot_rewrite.description.checks.hazards import hazards, ignored_namespaces, used_namespaces
 from multibot_rewrite.description.checks.problem import Problem, to_findings
+from multibot_rewrite.description.checks.twice import rewritten_before
 from multibot_rewrite.description.checks.unknown import ANOTHER_RELEASE, not_here, unknown_parts
 from multibot_rewrite.description.readback.xml import elements_at
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -37,6 +38,7 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
         undeclared(inventory, renames.naming),
         references.ambiguous(inventory),
         unknown_parts(inventory, tree),
+        rewritten_before(inventory),
         ignored_namespaces(inventory, tree),
         used_namespaces(inventory, tree),
         hazards(inventory, renames),

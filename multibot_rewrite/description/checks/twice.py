@@ -71,6 +71,14 @@ def already_rewritten(
             yield _problem(inventory, robot, found, robot in marked)
 
 
+def rewritten_before(inventory: Inventory) -> Iterator[Problem]:
+    """The robots for which a rewrite inserted something: what is made of it keeps their names."""
+    for robot in dict.fromkeys(it.robot for it in markers(inventory.document)):
+        message = f"it was rewritten for {robot}, and its names stay in it"
+        hint = "rewrite the source file, or undo that with --undo"
+        yield Problem(inventory.document.root, message, None, hint, (), "MB106")
+
+
 def _names(inventory: Inventory, kinds: Collection[str]) -> list[UsedName]:
     """Every name of these kinds that some rewrite changes, once."""
     found: dict[tuple[str, str], UsedName] = {}

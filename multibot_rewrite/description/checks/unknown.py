@@ -65,10 +65,9 @@ def _by_ros(parts: Iterable[ActivePart], vocabulary: Vocabulary) -> dict[str, li
     """Return the plugins that ROS 1 and ROS 2 both have, by the ROS as whose they are read; none where
     the document's is known."""
     found: dict[str, list[ActivePart]] = {}
-    known = (it for it in parts if it.kind == PLUGIN and it.section and it.section.ros)
-    for part in known:
-        if part.section and len(vocabulary.find("plugin", library_key(part.name))) > 1:
-            found.setdefault(part.section.ros, []).append(part)
+    for it in parts:
+        if it.section and len(vocabulary.find(PLUGIN, library_key(it.name))) > 1:
+            found.setdefault(it.section.ros, []).append(it)
     return found
 
 

@@ -135,20 +135,14 @@ class ActivePart(NamedTuple):
     @property
     def opens_something(self) -> bool:
         """False only where it is known to open nothing but what a value says, which is compared."""
-        if self.section is None or not self.section.opens:
-            return True
-        return self._other_words not in ((), (NOTHING,)) or _opens_by_rows(self.section)
+        words = self.section.opens if self.section else ()
+        return not words or any(it != NOTHING and not split_opens(it).path for it in words)
 
     @property
     def is_apart(self) -> bool:
-        """Does a namespace keep apart what it opens?"""
-        return self.section is not None and self._other_words == (NAMESPACE,)
-
-    @property
-    def _other_words(self) -> tuple[str, ...]:
-        """What it opens whatever its values are."""
+        """Does a namespace keep apart what it opens, values aside?"""
         words = self.section.opens if self.section else ()
-        return tuple(it for it in words if not split_opens(it).path)
+        return {NAMESPACE} == {it for it in words if not split_opens(it).path}
 
 
 def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
@@ -204,10 +198,6 @@ def says_what_it_opens(section: VocabularySection) -> bool:
     """Does a section say it by fields?"""
     if section.opens:
         return UNKNOWN not in section.opens
-    return _opens_by_rows(section)
-
-
-def _opens_by_rows(section: VocabularySection) -> bool:
     own = (it for it in section.sites if it.role != "keep" and it.section[:9] != "block ros")
     return bool(section.wired) or any(not _OPENED.isdisjoint(it.kinds) for it in own)
 

@@ -15,15 +15,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.naming import NAMESPACE, Naming, is_keyword, is_of_world
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.description.readback.active import (
-    ADDRESS,
-    DEVICE,
-    FILE,
-    NUMBER,
-    PORT,
-    RELATIVE,
-    TRANSFORMS_ON,
-)
+from multibot_rewrite.description.readback import active
 from multibot_rewrite.description.readback.nodes import (
     ACTION,
     BELOW,
@@ -40,7 +32,7 @@ TWO_NODES, TWO_SERVERS, COMMAND, DATA = "MG301", "MG305", "MG310", "MG320"
 FRAMES, LOOKUP, NOT_TAKEN = "MG402", "MB425", "MR105"
 OPENED = "MB412"
 # What two robots may both have on computers of their own.
-OF_COMPUTER = frozenset({DEVICE, PORT})
+OF_COMPUTER = frozenset({active.DEVICE, active.PORT})
 # What is said of a number that each further robot got in the place of such a one.
 NUMBERED = "MF845"
 SHARED_CODES = frozenset({TWO_NODES, TWO_SERVERS, COMMAND, DATA, FRAMES, LOOKUP, NOT_TAKEN, OPENED})
@@ -59,19 +51,21 @@ _ADVICE = {
     FRAMES: f"set the frame for each robot, or {_OF_FRAME}",
 }
 _OF_KIND = {
-    TRANSFORMS_ON: "no rule moves it: use --layout frames-per-robot",
-    RELATIVE: "give each robot a namespace: use --layout tf-per-robot or both",
+    active.TRANSFORMS_ON: "no rule moves it: use --layout frames-per-robot",
+    active.RELATIVE: "give each robot a namespace: use --layout tf-per-robot or both",
 }
 CAMERA_INFO = "camera_info"
 # The element of a name, its parameter, and the how manieth it is there.
 Place = tuple[str, int, str, str, int]
 # The rule that is about a kind of shared name.
 _CODES = {
-    TRANSFORMS_ON: DATA,
+    active.TRANSFORMS_ON: DATA,
     NODE: TWO_NODES,
-    RELATIVE: TWO_NODES,
+    active.RELATIVE: TWO_NODES,
     FRAME: FRAMES,
-    **dict.fromkeys((ADDRESS, DEVICE, FILE, NUMBER, PORT), OPENED),
+    **dict.fromkeys(
+        (active.ADDRESS, active.DEVICE, active.FILE, active.NUMBER, active.PORT), OPENED
+    ),
 }
 
 
@@ -120,10 +114,10 @@ def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
         elif it.kind in (TOPIC, BELOW, SERVICE, ACTION):
             # __default_topic__ is no topic: the simulator makes one from the model's name.
             shared = bare in naming.shared_topics or is_keyword(bare) or is_of_world(it.name)
-        elif it.kind == TRANSFORMS_ON:
+        elif it.kind == active.TRANSFORMS_ON:
             shared = naming.layout.frames
         else:
-            shared = it.kind == RELATIVE and naming.topics == NAMESPACE
+            shared = it.kind == active.RELATIVE and naming.topics == NAMESPACE
         if not shared:
             yield it
 
@@ -157,7 +151,7 @@ def advice(name: RuntimeName, together: bool = False) -> str:
     rewritten in one call, so that each has a number of its own where it can have one."""
     if name.kind in _OF_KIND:
         return _OF_KIND[name.kind]
-    if name.kind == NUMBER and not together:
+    if name.kind == active.NUMBER and not together:
         return "name all robots in one call, or in a fleet file: each gets a number of its own"
     if name.kind in OF_COMPUTER:
         return f"{_ADVICE[OPENED]}; it is right where each robot has a computer of its own"

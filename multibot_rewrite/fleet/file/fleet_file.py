@@ -71,10 +71,7 @@ class FleetFile(NamedTuple):
 
 
 def read_fleet(
-    source: FleetSource,
-    distro: str,
-    environment: Mapping[str, str],
-    choice: Choice = ALL,
+    source: FleetSource, distro: str, environment: Mapping[str, str], choice: Choice = ALL
 ) -> FleetFile:
     """Read a fleet file and those it includes, or the same as a dict or a text; raises InputError with
     file and line.

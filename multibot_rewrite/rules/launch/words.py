@@ -20,7 +20,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.lazy import IN_SUBSTITUTION, lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
-from multibot_rewrite.companions.params.sections import RawSection, meant_for, raw_sections
+from multibot_rewrite.companions.params.sections import meant_for, raw_sections
 from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
@@ -137,21 +137,21 @@ def not_there(launched: Launched) -> Iterator[Finding]:
 def _of_no_node(launched: Launched) -> Iterator[Finding]:
     """By the nodes that run. What a launch makes of a file is no file of the user."""
     nodes = {it.full_name for it in launched.nodes} | {it.name for it in launched.system.nodes}
-    readers: dict[tuple[Place, str], list[str]] = defaultdict(list)
-    for run in launched.nodes:
-        readers[run.place, run.program].append(run.full_name)
-    found: dict[tuple[str, str], tuple[RawSection, list[str]]] = {}
+    found: dict[Place, tuple[str, list[str]]] = {}
     for node in (it for it in launched.graph.nodes if not it.container):
-        names = readers[node.place, f"{node.package}/{node.executable}"]
-        for text in (it for it in node.parameters if it.file):
+        by_place = (it for it in launched.nodes if it.place == node.place)
+        names = [
+            it.full_name for it in by_place if it.program == f"{node.package}/{node.executable}"
+        ]
+        for text in (it for it in node.parameters if it.file and names):
             with suppress(InputError):
                 sections = raw_sections(document_of(text.file, text.text))
                 for reader in names:
                     if section := meant_for(sections, reader, nodes):
-                        key = text.file, section.path
-                        found.setdefault(key, (section, []))[1].append(reader)
-    for (file, path), (section, names) in found.items():
-        yield at(of_no_node, Place(file, line_of(section.keys[0])), *said_of_section(path, names))
+                        place = Place(text.file, line_of(section.keys[0]))
+                        found.setdefault(place, (section.path, []))[1].append(reader)
+    for place, (path, readers) in found.items():
+        yield at(of_no_node, place, *said_of_section(path, readers))
 
 
 of_no_node = OF_NO_NODE._replace(check=_of_no_node)

@@ -238,3 +238,12 @@ def test_a_link_that_is_a_slash_is_rewritten_once() -> None:
     once = rewrite(slash, "robot1").text
     assert 'name="//robot1"' in once
     assert outcome(once, "robot1", {}) == "MB106"
+
+
+def test_a_file_of_one_robot_is_reported_where_it_is_rewritten_for_another() -> None:
+    drive = '<plugin name="p" filename="libgazebo_ros_diff_drive.so"><ros/></plugin>'
+    text = f'<robot name="r"><link name="base"/><gazebo>{drive}</gazebo></robot>'
+    assert "MB106" not in {it.code for it in rewrite(text, "robot1").findings}
+    one = rewrite(text, "robot1").text
+    said = [it.message for it in rewrite(one, "robot2").findings if it.code == "MB106"]
+    assert len(said) == 1 and "robot1" in said[0]

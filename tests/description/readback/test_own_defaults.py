@@ -109,3 +109,17 @@ def test_the_second_reading_sees_a_camera_that_all_robots_share(
     monkeypatch.setattr(insert, "default_of", lambda *_: "")
     found = rewrite(CAMERA, "robot1", layout="L1", topics="postfix").findings
     assert "MG320" in {it.code for it in found if "eye" in it.message}
+
+
+ACKERMANN = """<robot name="r"><link name="hull"/><gazebo>
+<plugin filename="gz-sim-ackermann-steering-system" name="gz::sim::systems::AckermannSteering">
+<steering_only>true</steering_only><use_actuator_msg>true</use_actuator_msg></plugin></gazebo></robot>"""
+
+
+@pytest.mark.parametrize(("release", "topic"), [("humble", ""), ("jazzy", "/actuators/robot1")])
+def test_a_default_is_that_of_the_release(release: str, topic: str) -> None:
+    """AckermannSteering.cc of gz-sim8 makes it of three parameters, ignition-gazebo6 reads none."""
+    made = rewrite(ACKERMANN, "robot1", distro=release)
+    assert made.not_proved == ()
+    assert [it.new for it in made.changes if it.old == "/actuators"] == ([topic] if topic else [])
+    assert ("<frame_id>" in made.text) == (release == "humble")

@@ -46,8 +46,8 @@ def load_vocabulary(
     extra: tuple[str, ...], release: str, *, packages: bool = True, ros: str = ""
 ) -> Vocabulary:
     """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``, as far
-    as they hold in a ``release``; with an empty one all of it, which no document can be read with. Of
-    plugins that ROS 1 and ROS 2 both have it has those of ``ros``, of both where that is empty.
+    as they hold in a ``release``; with an empty one all of it, which no document can be read with;
+    ``ros`` as for ``Vocabulary``.
 
     Raises VocabularyError, naming file and line, for a mistake: at once in what is not built in,
     else in a section that is used.

@@ -332,6 +332,11 @@ class Opened(NamedTuple):
     path: str = ""
     default: str = ""
 
+    @property
+    def numbers(self) -> tuple[int, int]:
+        """The step and the last number."""
+        return int(self.step), int(self.last or 65535)
+
 
 def split_opens(word: str) -> Opened:
     """Return the parts of a word of ``opens:``."""

@@ -30,8 +30,7 @@ class Vocabulary:
     """The sections of several files, parsed on demand; build with ``load_vocabulary``.
 
     ``extended`` tells that some of them are not built in. It is of one ``release``, or has what all of
-    them have, where that is empty. Of plugins that ROS 1 and ROS 2 both have it has those of ``ros``,
-    of both where that is empty.
+    them have, where that is empty; ``ros`` says whose plugins count where ROS 1 and ROS 2 have them.
     """
 
     def __init__(

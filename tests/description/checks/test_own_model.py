@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The robot's own model in values, frames that code makes, and plugins that nothing loads."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite import rewrite, rewrite_all
+from multibot_rewrite.base.naming import LAYOUTS
+
+BODY = """<link name="base"/><link name="w"/><joint name="j" type="continuous">
+<parent link="base"/><child link="w"/></joint>"""
+JOINT = """<gazebo><plugin filename="gz-sim-detachable-joint-system"
+ name="gz::sim::systems::DetachableJoint"><parent_link>base</parent_link><child_model>{}</child_model>
+<child_link>w</child_link><detach_topic>d</detach_topic></plugin></gazebo>"""
+
+
+def robot(inside: str, body: str = BODY) -> str:
+    return f'<robot name="r">{body}{inside}</robot>'
+
+
+@pytest.mark.parametrize("layout", ["postfix", "frames-per-robot", "both"])
+@pytest.mark.parametrize(("model", "is_own"), [("r", True), ("__model__", True), ("box", False)])
+def test_a_link_of_the_own_model_is_renamed_with_it(model: str, is_own: bool, layout: str) -> None:
+    """DetachableJoint.cc:275: a link of that name in child_model."""
+    text = rewrite(robot(JOINT.format(model)), "robot1", layout=layout).text
+    assert ("<child_link>w</child_link>" not in text) == is_own
+
+
+CONTAIN = """<gazebo><plugin name="c" filename="libContainPlugin.so"><entity>{}</entity>
+<namespace>c</namespace></plugin></gazebo>"""
+
+
+@pytest.mark.parametrize(
+    ("entity", "layout", "is_shared"),
+    [
+        ("r::base", "tf-per-robot", True),
+        ("r::base", "postfix", False),
+        ("other::base", "tf-per-robot", False),
+        ("base", "tf-per-robot", False),
+    ],
+)
+def test_the_own_model_in_front_of_a_link_is_another_one_for_each_robot(
+    entity: str, layout: str, is_shared: bool
+) -> None:
+    """ContainPlugin.cc:100 looks it up in the world, where each robot has a name of its own."""
+    made = rewrite(robot(CONTAIN.format(entity)), "robot1", layout=layout)
+    assert ("1 name looked up in the whole world" in made.not_proved) == is_shared
+
+
+HAND = """<gazebo><plugin name="h" filename="libgazebo_ros_hand_of_god.so"><ros/>
+<link_name>base</link_name>{}</plugin></gazebo>"""
+
+
+@pytest.mark.parametrize("layout", [it.name for it in LAYOUTS])
+@pytest.mark.parametrize("frame", ["", "world", "hand"])
+def test_frames_that_code_makes_of_a_parameter(frame: str, layout: str) -> None:
+    """gazebo_ros_hand_of_god.cpp:109 <value>_desired and <value>_actual, of world by default; :136 its
+    listener is a node of its own on /tf."""
+    given = f"<frame_id>{frame}</frame_id>" if frame else ""
+    made = rewrite(robot(HAND.format(given)), "robot1", layout=layout)
+    apart = frame == "hand" and layout != "tf-per-robot"
+    assert (made.not_proved == ()) == apart
+
+
+PLUGIN = """<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+<left_joint>j</left_joint></plugin>"""
+CONTROL = """<ros2_control name="a" type="system"><hardware>
+<plugin>mock_components/GenericSystem</plugin></hardware>{}</ros2_control>"""
+
+
+@pytest.mark.parametrize("layout", [it.name for it in LAYOUTS])
+@pytest.mark.parametrize(
+    "text",
+    [
+        robot(PLUGIN),
+        robot("", BODY.replace('<link name="w"/>', f'<link name="w">{PLUGIN}</link>')),
+        robot(CONTROL.format(PLUGIN)),
+    ],
+    ids=["robot", "link", "ros2_control"],
+)
+def test_a_plugin_outside_of_gazebo_is_reported(text: str, layout: str) -> None:
+    (one, _) = rewrite_all(text, ["robot1", "robot2"], layout=layout)
+    found = [it for it in one.findings if it.code == "MB112"]
+    assert len(found) == 1 and "<gazebo>" in found[0].hint
+    assert "multibot robot1" not in one.text
+    inside = rewrite(robot(f"<gazebo>{PLUGIN}</gazebo>"), "robot1", layout=layout)
+    assert "MB112" not in {it.code for it in inside.findings}
