@@ -108,7 +108,10 @@ RELATIVE = "relative names of"
 NOWHERE = frozenset(
     (
         *("", '""', "R", "-1", "0", "none", "None", "INADDR_ANY", "0.0.0.0"),
-        *("127.0.0.1", "R127.0.0.1", "localhost", "lo"),
+        "127.0.0.1",
+        "R127.0.0.1",
+        "localhost",
+        "lo",
     )
 )
 # Kinds of names that something runs by: a section with one of them says what it opens.

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.rules.settings import Settings

@@ -14,6 +14,7 @@ import yaml
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.checks.described import as_known
 from multibot_rewrite.fleet.fleet_plan import FleetPlan

@@ -48,7 +48,15 @@ _WORD = re.compile(r"[a-z0-9]+")
 _TRIALS = frozenset(("demo", "test", "example", "fake", "mock", "dummy", "multi"))
 _SIMULATIONS = frozenset(
     (
-        *("sim", "simulation", "simulator", "gazebo", "gz", "ign", "ignition", "mujoco", "isaac"),
+        "sim",
+        "simulation",
+        "simulator",
+        "gazebo",
+        "gz",
+        "ign",
+        "ignition",
+        "mujoco",
+        "isaac",
         "webots",
     )
 )

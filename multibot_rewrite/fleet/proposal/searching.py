@@ -41,7 +41,16 @@ _BUILT = frozenset((MANIFEST, PLAN))
 # Files that are shown where nothing says which is meant.
 MOST_SHOWN = 6
 _ENDS = (
-    *(".urdf", ".sdf", ".model", ".world", ".xacro", ".srdf", ".yaml", ".yml", ".rviz", ".xml"),
+    ".urdf",
+    ".sdf",
+    ".model",
+    ".world",
+    ".xacro",
+    ".srdf",
+    ".yaml",
+    ".yml",
+    ".rviz",
+    ".xml",
     ".py",
 )
 # Files that go with a description, never one themselves.
@@ -58,7 +67,11 @@ _LAUNCH = re.compile(rb"^def generate_launch_description|^[^\S\n]*<launch\b", re
 # MoveIt's own files, by the names that its setup assistant gives them.
 _MOVEIT = frozenset(
     (
-        *("kinematics", "joint_limits", "ompl_planning", "moveit_controllers", "sensors_3d"),
+        "kinematics",
+        "joint_limits",
+        "ompl_planning",
+        "moveit_controllers",
+        "sensors_3d",
         "moveit_servo",
     )
 )

@@ -57,7 +57,11 @@ def _differing(top: str, base: str) -> tuple[frozenset[str], frozenset[str]]:
     """What differs from a commit, in submodules as well, and what git does not have. A submodule is
     asked by itself: git would run its filters."""
     diff = [
-        *("diff", "--name-only", "-z", "--no-renames", "--no-ext-diff"),
+        "diff",
+        "--name-only",
+        "-z",
+        "--no-renames",
+        "--no-ext-diff",
         "--ignore-submodules=dirty",
     ]
     changed = _names(_git(top, *diff, base, "--"))
