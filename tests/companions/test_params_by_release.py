@@ -178,9 +178,9 @@ def test_the_default_of_a_release_is_inserted(release: str, frame: str) -> None:
         # nav2_behaviors: costmap_topic until Humble, local_costmap_topic since Iron.
         ("behavior_server", "costmap_topic: local_costmap/costmap_raw", "jazzy", "humble"),
         ("behavior_server", "local_costmap_topic: x", "humble", "jazzy, kilted, lyrical, rolling"),
-        # nav2_collision_monitor: the transport of a source is main's.
-        ("collision_monitor", "scan.transport_type: raw", "lyrical", "rolling"),
-        ("collision_monitor", "scan: {transport_type: raw}", "lyrical", "rolling"),
+        # nav2_collision_monitor: the transport of a source is new in 1.5.
+        ("collision_monitor", "scan.transport_type: raw", "kilted", "lyrical, rolling"),
+        ("collision_monitor", "scan: {transport_type: raw}", "kilted", "lyrical, rolling"),
     ],
 )
 def test_a_parameter_that_only_other_releases_have(

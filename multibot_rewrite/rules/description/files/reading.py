@@ -86,7 +86,7 @@ def argument_not_read(subject: Subject) -> Iterator[Problem]:
         yield from unread_arguments(subject.document.root, lacking, known.names)
 
 
-@rule("MB246", "default-of-another-file", WARNING)
+@rule("MB147", "default-of-another-file", WARNING)
 def default_of_another_file(subject: Subject) -> Iterator[Problem]:
     """Of two files of which none includes the other: a file may set what those in it have."""
     if len(subject.sources) < 3:
