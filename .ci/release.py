@@ -1,7 +1,7 @@
 """Prepares a release, and says what is new in it.
 
-    python .ci/release.py prepare 0.2.0     writes the version and its date wherever they are said
-    python .ci/release.py notes v0.2.0      prints the release notes, in Markdown
+    python .ci/release.py prepare 0.3.0     writes the version and its date wherever they are said
+    python .ci/release.py notes v0.3.0      prints the release notes, in Markdown
 
 ``notes`` ends with 1 where a file says another version than the tag. catkin_prepare_release changes
 package.xml and a literal in setup.py alone: it cannot be used here.
@@ -34,7 +34,7 @@ PLACES = {
 def prepare(version: str, root: Path, day: str) -> None:
     """Give the version to all files, and to what is new a heading; ValueError where it cannot be."""
     if not re.fullmatch(VERSION, version):
-        raise ValueError(f"{version}: a version is three numbers, as 0.2.0")
+        raise ValueError(f"{version}: a version is three numbers, as 0.3.0")
     texts = {name: (root / name).read_text() for name in (*PLACES, CHANGES)}
     for name, pattern in PLACES.items():
         texts[name], count = re.subn(pattern, rf"\g<1>{version}\g<2>", texts[name])

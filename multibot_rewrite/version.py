@@ -1,4 +1,4 @@
 # SPDX-License-Identifier: Apache-2.0
 """The version of this package."""
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"

@@ -64,7 +64,7 @@ def test_a_command_of_the_readme_runs(line: str, tmp_path: Path) -> None:
 def test_every_command_with_a_prompt_is_a_transcript() -> None:
     found = [it.command for commands in TRANSCRIPTS.values() for it in commands]
     assert found == re.findall(r"^\$ (.*)$", README + REMAP, re.MULTILINE)
-    assert {it.split()[0] for it in found} == {"urdf-lint", "multibot"}
+    assert {it.split()[0] for it in found} == {"urdf-lint", "multibot", "cp", "grep"}
 
 
 @pytest.mark.slow
@@ -107,7 +107,12 @@ def test_the_readme_diff_is_what_the_command_prints(tmp_path: Path) -> None:
     assert missing == []
 
 
-def test_the_readme_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
-    code, _, _ = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    exec(compile(code, "README.md", "exec"), {})
+    page = ROOT / "docs" / "api.md"
+    code, *_ = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
+    exec(compile(code, page, "exec"), {})
+
+
+def test_the_readme_is_short() -> None:
+    assert len(README.split()) < 900

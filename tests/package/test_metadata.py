@@ -49,19 +49,41 @@ def test_the_citation_says_what_the_package_says() -> None:
     assert [it["name"] for it in citation["authors"]] == [it["name"] for it in PROJECT["authors"]]
 
 
+CHANGES = (ROOT / "CHANGELOG.rst").read_text()
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_the_change_log_is_what_bloom_takes() -> None:
-    """A release gives the section Forthcoming a version and a date; then it has to be read."""
+    """The newest version is that of the package, and each of its entries is read."""
+    changelog = pytest.importorskip("catkin_pkg.changelog", reason="no catkin_pkg")
+    found = changelog.populate_changelog_from_rst(changelog.Changelog(PROJECT["name"]), CHANGES)
+    version, _, _ = next(iter(found.foreach_version(reverse=True)))
+    assert version == PROJECT["version"]
+    lists = [it for it in found.get_content_of_version(version) if hasattr(it, "bullets")]
+    (_, text, *_) = re.split(r"\n\S+ \([\d-]+\)\n-+\n", CHANGES)
+    assert sum(len(it.bullets) for it in lists) == text.count("\n* ") > 0
+    assert f"Changelog for package {PROJECT['name']}\n" in CHANGES
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_bloom_finds_what_is_not_released() -> None:
+    """A release gives the section Forthcoming a version and a date."""
     version = pytest.importorskip("catkin_pkg.package_version", reason="no catkin_pkg")
-    changelog = pytest.importorskip("catkin_pkg.changelog")
-    text = (ROOT / "CHANGELOG.rst").read_text()
-    assert version.get_forthcoming_label(text) == "Forthcoming"
-    released = text.replace("Forthcoming\n-----------", "7.8.9 (2030-01-01)\n------------------")
-    found = changelog.populate_changelog_from_rst(changelog.Changelog(PROJECT["name"]), released)
-    (entries,) = found.get_content_of_version("7.8.9")
-    assert len(list(entries)) == text.partition("\n0.2.0 (")[0].count("\n* ") > 0
-    assert f"Changelog for package {PROJECT['name']}\n" in text
+    newest = f"\n{PROJECT['version']} ("
+    text = CHANGES.replace(newest, f"\nForthcoming\n-----------\n* New\n{newest}", 1)
+    assert version.get_forthcoming_label(text if "\nForthcoming\n" not in CHANGES else CHANGES)
+
+
+def test_the_newest_changes_are_one_line_each_in_groups() -> None:
+    _, text, *_ = re.split(r"\n\S+(?: \([\d-]+\))?\n-+\n", CHANGES)
+    lines = [it for it in text.splitlines() if it]
+    groups = [it.strip("*") for it in lines if it.startswith("**")]
+    assert groups == [it for it in ("Added", "Changed", "Fixed") if it in groups] != []
+    assert [it for it in lines if not it.startswith(("* ", "**"))] == []
+    assert [it for it in lines if len(it) > 150] == []
+    assert len(lines) <= 120
 
 
 @pytest.mark.more

@@ -230,19 +230,24 @@ def test_the_tests_that_are_run_are_those_of_the_readme() -> None:
 
 @pytest.fixture
 def repository(tmp_path: Path) -> Path:
-    """What says the version, in a folder of its own."""
+    """What says the version, in a folder of its own, and a change that is not released."""
     for name in (*TOOL["PLACES"], "CHANGELOG.rst"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)
+    changes = tmp_path / "CHANGELOG.rst"
+    if not re.search(r"(?m)^Forthcoming$", changes.read_text()):
+        now = f"\n{__version__} ("
+        new = f"\nForthcoming\n{'-' * 11}\n**Added**\n\n* New\n{now}"
+        changes.write_text(changes.read_text().replace(now, new, 1))
     return tmp_path
 
 
 def test_a_prepared_release_says_one_version_and_what_is_new(repository: Path) -> None:
     TOOL["prepare"]("7.8.9", repository, "2030-01-02")
     notes = TOOL["notes"]("v7.8.9", repository)
-    assert notes.startswith("* ") and "``" not in notes
+    assert notes.startswith("**") and "\n* " in notes and "``" not in notes
     changes = (repository / "CHANGELOG.rst").read_text()
-    assert "\n7.8.9 (2030-01-02)\n------------------\n* " in changes
+    assert "\n7.8.9 (2030-01-02)\n------------------\n**" in changes
     for name in TOOL["PLACES"]:
         assert "7.8.9" in (repository / name).read_text()
     assert f'version = "{__version__}"' not in (repository / "pyproject.toml").read_text()
@@ -292,4 +297,4 @@ def test_all_files_say_the_same_version_now() -> None:
         for place in re.finditer(pattern, (ROOT / name).read_text())
         for number in re.findall(TOOL["VERSION"], place[0])
     }
-    assert len(found) == 1
+    assert found == {__version__}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The launch snippets of the README: by hand with nav2_common, and with a fleet file."""
+"""The first snippets of the page on launch files: by hand with nav2_common, and with a fleet file."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from paths import FIXTURES, ROOT
 
 from multibot_rewrite import launch
 
-README = (ROOT / "README.md").read_text()
-_, BY_HAND, OURS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+PAGE = (ROOT / "docs" / "launch.md").read_text()
+BY_HAND, OURS = re.findall(r"```python\n(def bt_navigator.*?)```", PAGE, re.DOTALL)
 FLEET = """\
 distro: jazzy
 layout: LAYOUT
