@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -96,9 +95,10 @@ def _trees(forest: _Forest, states: States) -> Iterator[tuple[FrameRow, ...]]:
     for root in (*sorted(set(forest.children) - below), *sorted(forest.children)):
         if root in seen:
             continue
-        parts: dict[str, list[str]] = defaultdict(list)
-        for child in forest.children[root]:
-            parts[forest.robots[child] if not forest.robots[root] else ""].append(child)
+        shared = not forest.robots[root]
+        parts = lists_by_key(
+            (forest.robots[it] if shared else "", it) for it in forest.children[root]
+        )
         for part in parts.values():
             seen.discard(root)
             yield tuple(_rows(forest, states, root, part, seen))

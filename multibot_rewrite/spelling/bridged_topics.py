@@ -10,6 +10,7 @@ from typing import NamedTuple, cast
 
 from lxml import etree
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, make_naming, spelled
 from multibot_rewrite.description.readback.model_namespaces import scoped_namespace
@@ -118,9 +119,7 @@ def bridged_topics(
             if isinstance(item, BridgedTopic) and item.ros == tf:
                 continue
             (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
-    ends: dict[str, list[tuple[Endpoint, str]]] = defaultdict(list)
-    for run in runs:
-        ends[run.robot] += (it for it in run.names if not it[0].when)
+    ends = lists_by_key((run.robot, it) for run in runs for it in run.names if not it[0].when)
     fitting = [_fitting(it, ends[it.robot]) for it in dict.fromkeys(bridged)]
     return fitting, list(dict.fromkeys(left))
 

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.base.rosnames import check_node_name, check_topic_name, propose_token
 from multibot_rewrite.knowledge.conditions import AND, OPEN_KIND, OR, SOURCE, joined
@@ -319,11 +320,11 @@ def _sends(
 ) -> tuple[tuple[SentTransform, ...], tuple[FrameParameter, ...]]:
     """The transforms that it sends: of a message that it sends, the two frames that are written into
     it. A frame of the code has no parameter: it stands for itself, in quotes."""
-    written: dict[tuple[object, str], list[Looked]] = {}
-    for it in events:
-        if isinstance(it, Looked) and it.role != LOOKED_UP:
-            message = it.variable.removesuffix(it.role).rstrip(".")
-            written.setdefault((_where(it.spot), f"{message} {it.role}"), []).append(it)
+    frames_of = (it for it in events if isinstance(it, Looked) and it.role != LOOKED_UP)
+    messages = ((it.variable.removesuffix(it.role).rstrip("."), it) for it in frames_of)
+    written = lists_by_key(
+        ((_where(it.spot), f"{message} {it.role}"), it) for message, it in messages
+    )
     sends, frames = [], []
     for sent in (it for it in events if isinstance(it, Sent)):
         pair = [written.get((_where(sent.spot), f"{sent.variable} {it}"), []) for it in _ENDS]

@@ -22,7 +22,9 @@ from multibot_rewrite.producers.sources.records import (
     Place,
     Source,
     Value,
+    braced,
     joined,
+    negated,
 )
 
 # What is given a type and a name, by the names of their parameters.
@@ -217,7 +219,7 @@ def _under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
         return part
     return part._replace(
         condition=f"not ({text})" if wrong else text,
-        asked=_and(part.asked, _not(asked) if wrong else asked),
+        asked=_and(part.asked, negated(asked) if wrong else asked),
     )
 
 
@@ -246,13 +248,9 @@ def _may_leave(node: ast.AST) -> bool:
 
 def _asked(node: ast.expr) -> str:
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        return _not(_asked(node.operand))
+        return negated(_asked(node.operand))
     is_plain = isinstance(node, (ast.Name, ast.Attribute, ast.Call))
     return _text(node) if is_plain and _text(node) != ANY else OTHERWISE
-
-
-def _not(text: str) -> str:
-    return OTHERWISE if text == OTHERWISE else text[1:] if text[:1] == "!" else f"!{text}"
 
 
 def _and(one: str, other: str) -> str:
@@ -307,11 +305,6 @@ def _parameters(node: ast.Call, owner: str, function: str, place: Place) -> Iter
             key, default = row.elts[:2]
             at = place._replace(line=row.lineno)
             yield Value(owner, function, f"@{braced(_text(key))}", _text(default), at)
-
-
-def braced(text: str) -> str:
-    """The text inside another name in <>."""
-    return text.replace("<", "{").replace(">", "}")
 
 
 def _called_name(node: ast.Call) -> str:

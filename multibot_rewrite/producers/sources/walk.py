@@ -140,22 +140,17 @@ def events_of(names: Names, starts: Sequence[Spot | Class]) -> Iterator[Event]:
     # What no name has called: callbacks, threads.
     for made in [one for every in [*walk.objects.values()] for one in every]:
         yield from _rest(walk, made)
-    yield from _never_reached(walk)
+    # What would declare an endpoint, in a part that no call was followed to. A node of its own that
+    # this program does not make is none of its parts.
+    for (owner, function), rows in names.calls.items():
+        left = (it for it in rows if it.name in OF_ANY and it.place not in walk.seen)
+        if (first_left := next(left, None)) and not _is_new_node(names, f"<new {owner}>"):
+            what = f"{owner or function}, which nothing is seen to call,"
+            yield Unread(what, first_left.place)
     if walk.budget[0] <= 0:
         first = starts[0]
         path = first.place.path if isinstance(first, Class) else first.path
         yield Unread("more than is followed", Place("", "", path, 1))
-
-
-def _never_reached(walk: _Walk) -> Iterator[Unread]:
-    """What would declare an endpoint, in a part that no call was followed to. A node of its own that
-    this program does not make is none of its parts."""
-    names = walk.names
-    for (owner, function), rows in names.calls.items():
-        for it in (it for it in rows if it.name in OF_ANY and it.place not in walk.seen):
-            if not _is_new_node(names, f"<new {owner}>"):
-                yield Unread(f"{owner or function}, which nothing is seen to call,", it.place)
-                break
 
 
 def _rest(walk: _Walk, made: Made) -> Iterator[Event]:

@@ -11,7 +11,7 @@ first, and the hash, which is ``TypeHashNotSupported`` in Humble. Neither is tak
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from math import inf
 from typing import NamedTuple
@@ -171,12 +171,9 @@ def nodes(tokens: Iterable[Token]) -> list[Node]:
 def endpoints(tokens: Iterable[Token]) -> list[End]:
     """The endpoints in order, with the actions that topics of theirs belong to."""
     ends = [it.end for it in tokens if it.end]
-    return sorted([*ends, *_actions(ends)], key=repr)
-
-
-def _actions(ends: Iterable[End]) -> Iterator[End]:
-    for end in ends:
-        if end.kind == TOPIC and end.name.endswith(_FEEDBACK) and end.type.endswith(_FEEDBACK_TYPE):
+    for end in [it for it in ends if it.kind == TOPIC]:
+        if end.name.endswith(_FEEDBACK) and end.type.endswith(_FEEDBACK_TYPE):
             role, name = _ACTION_ROLES[end.role], end.name.removesuffix(_FEEDBACK)
             type_ = end.type.removesuffix(_FEEDBACK_TYPE)
-            yield End(ACTION, role, name, type_, "", end.node, None, end.process)
+            ends.append(End(ACTION, role, name, type_, "", end.node, None, end.process))
+    return sorted(ends, key=repr)

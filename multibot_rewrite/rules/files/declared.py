@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import dicts_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
 from multibot_rewrite.base.releases import RELEASES
@@ -75,10 +75,8 @@ def _meant_by(
     said = {it.name for it in section.given}
     free = [it for it in there if it not in said]
     # Group -> last word -> parameter.
-    groups: dict[str, dict[str, str]] = defaultdict(dict)
-    for name in free:
-        group, _, last = name.rpartition(".")
-        groups[group][last] = name
+    parts = ((name.rpartition("."), name) for name in free)
+    groups = dicts_by_key((group, last, name) for (group, _, last), name in parts)
     guesses = Guesses()
     for it in unknown:
         yield it, "" if _renamed(it.name) in said else _meant(it.name, free, groups, guesses)

@@ -13,11 +13,12 @@ parameter_bridge.cpp.
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import check_node_name, expand, resolve_bound
 from multibot_rewrite.description.checks.numbers import number
@@ -252,10 +253,8 @@ def read_by_joints(launched: Launched) -> Iterator[tuple[Run, str]]:
 @launch_rule("MG716", "joints-of-itself", level=WARNING)
 def of_itself(launched: Launched) -> Iterator[Finding]:
     """Where all nodes are known."""
-    senders: dict[str, set[str]] = defaultdict(set)
-    for end in launched.system.ends:
-        if end.role == PUBLISHES:
-            senders[end.name].add(end.node)
+    sent = (it for it in launched.system.ends if it.role == PUBLISHES)
+    senders = sets_by_key((it.name, it.node) for it in sent)
     for node, topic in read_by_joints(launched) if launched.whole else ():
         if senders[topic] == {node.full_name}:
             message = f"{node.full_name} reads {topic}, which it sends itself"

@@ -21,7 +21,7 @@ from multibot_rewrite.description.sources.packages import in_sources
 from multibot_rewrite.description.sources.read import XACRO
 from multibot_rewrite.description.sources.trace import alike
 from multibot_rewrite.description.steps.document import Document
-from multibot_rewrite.rules.description.structure.mimic import mimic_of_none
+from multibot_rewrite.rules.description.structure.mimic import controlled_joints, mimic_of_none
 from multibot_rewrite.rules.facts.elements import COMMAND, OWNERS, STANDARD, STATE, name_of
 from multibot_rewrite.rules.facts.memo import driven_joints, level_of_absence, since_jazzy
 from multibot_rewrite.rules.facts.simulators import (
@@ -55,9 +55,8 @@ def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
 @rule("MB224", "driven-fixed-joint", ERROR)
 def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     """Joints that ros2_control is to move and that cannot."""
-    for it in _components(subject.document.root):
-        joint = subject.robot.joint.get(it.get("name", ""))
-        if joint is not None and joint.type == "fixed":
+    for it, joint in controlled_joints(subject):
+        if joint.type == "fixed":
             message = f"joint {joint.name!r} is fixed"
             yield Problem(it, message, "name", "remove it", level=since_jazzy(subject))
 
@@ -125,17 +124,10 @@ def _needs_a_drive(joint: Joint) -> bool:
 
 def _mimicking(subject: Subject) -> Iterator[tuple[_Element, str]]:
     """Joints in <ros2_control> that follow another one, and which."""
-    for it in _components(subject.document.root):
-        joint = subject.robot.joint.get(it.get("name", ""))
-        mimic = None if joint is None else joint.element.find("mimic")
+    for it, joint in controlled_joints(subject):
+        mimic = joint.element.find("mimic")
         if mimic is not None and it.get("mimic", "").strip().lower() not in ("false", "0"):
             yield it, mimic.get("joint", "")
-
-
-def _components(root: _Element) -> Iterator[_Element]:
-    """The joints in <ros2_control>."""
-    for system in root.iterchildren("ros2_control"):
-        yield from system.iterchildren("joint")
 
 
 @rule("MB231", "repeated-interface", ERROR)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, locate, rule
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import ambiguous, repeated
@@ -39,10 +40,8 @@ def duplicate_name(subject: Subject) -> Iterator[Problem]:
 
 def declared_twice(subject: Subject) -> Iterator[Problem]:
     """Links and joints; one finding for all that one macro call repeats."""
-    calls: dict[object, list[tuple[Claim, Claim]]] = {}
-    for claim, first in repeated(subject.inventory):
-        cause = _cause(subject, claim, first) or claim
-        calls.setdefault(cause, []).append((claim, first))
+    pairs = repeated(subject.inventory)
+    calls = lists_by_key((_cause(subject, *pair) or pair[0], pair) for pair in pairs)
     for (claim, first), *more in calls.values():
         text = f"{claim.site.kinds[0]} {claim.value!r} is declared twice"
         are = "are" if len(more) > 1 else "is"
