@@ -31,12 +31,7 @@ from multibot_rewrite.system.tool_nodes import is_tool
 
 def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
     """Look, report, sum up; returns the exit code. Several ``domains`` are looked at side by side."""
-    live.check_source(options)
-    check_report(options, printed=False)
-    pictures.check(options)
-    if options.output:
-        check_target(options.output, options.snapshot)
-    _check_folders(options, domains)
+    _check_use(options, domains)
     if options.watch:
         return _watch(options, domains)
     if options.bag:
@@ -63,6 +58,15 @@ def _report_on_domains(options: argparse.Namespace, views: Mapping[int, System])
         note(options, f"domain {domain}: {next(survey(one))}")
     empty = [f"domain {at}: {it}" for at, one in each.items() for it in _nothing_seen(one)]
     return _report(options, diagnose_domains(each), empty, each)
+
+
+def _check_use(options: argparse.Namespace, domains: Sequence[int] = ()) -> None:
+    live.check_source(options)
+    check_report(options, printed=False)
+    pictures.check(options)
+    if options.output:
+        check_target(options.output, options.snapshot)
+    _check_folders(options, domains)
 
 
 def _check_folders(options: argparse.Namespace, domains: Collection[int]) -> None:

@@ -18,20 +18,25 @@ from multibot_rewrite.description.reports.explain import Explanation
 
 def run(options: argparse.Namespace) -> int:
     """Print an explanation of every value on the line."""
-    path, _, line = options.why.rpartition(":")
-    if not line.isdigit() or not path:
-        raise UsageError(f"--why {options.why}: write FILE:LINE, for example rover.urdf:34")
+    path, line = _place(options.why)
     if is_beside(path):
         raise UsageError(f"--why is for descriptions, {path} is none; --diff shows what changes")
     # The file is in the option: what stands first is a robot or a xacro argument.
     options.words[:0] = [options.input] if options.input else []
     robot = next(iter(robots(options)), "robot1")
     options.vocabulary = [*configured_vocabulary(path), *options.vocabulary]
-    found = explain(path, int(line), robot, **rewriting(options))
+    found = explain(path, line, robot, **rewriting(options))
     if not found:
         raise UsageError(f"{options.why}: no value starts on this line")
     deliver_report(options, (line for it in found for line in _lines(it, path, robot)))
     return DONE
+
+
+def _place(text: str) -> tuple[str, int]:
+    path, colon, line = text.rpartition(":")
+    if not colon or not line.isdigit() or not path:
+        raise UsageError(f"--why {text}: write FILE:LINE, for example rover.urdf:34")
+    return path, int(line)
 
 
 def _lines(item: Explanation, path: str, robot: str) -> Iterator[str]:

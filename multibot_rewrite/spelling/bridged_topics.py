@@ -289,7 +289,9 @@ def _plugin(
             hint = OF_ANOTHER if name else GIVE_TOPIC
             yield UnbridgedTopic(robot, "plugin", _line(plugin), what, why, hint, type=row.gz_type)
             continue
-        ros = _ros_of(row, name, rest, robot, naming)
+        # The robot's own, of what stands below its model, or that of the file.
+        ros = _robot_name(rest, robot, naming) if rest else _ros_name(name)
+        ros = _tf_name(robot, naming) if row.element == TF_ELEMENT else ros
         # A shared /tf is bridged once, or each transform would arrive once for every robot.
         whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
         is_free = bool(rest) and row.element != TF_ELEMENT
@@ -308,13 +310,6 @@ def _of_unknown_type(
             what = f"{name} of {plugin.get('filename')}"
             why = f"the type of <{site.path}> is not known"
             yield UnbridgedTopic(robot, "plugin", _line(plugin), what, why, OWN_ROW, name)
-
-
-def _ros_of(row: BridgeRow, name: str, rest: str, robot: str, naming: Naming) -> str:
-    """Return the ROS name: the robot's own, of what stands below its model, or that of the file."""
-    if row.element == TF_ELEMENT:
-        return _tf_name(robot, naming)
-    return _robot_name(rest, robot, naming) if rest else _ros_name(name)
 
 
 def _line(element: etree._Element) -> int:
@@ -341,16 +336,14 @@ def _robot_name(name: str, robot: str, naming: Naming) -> str:
 
 def as_yaml(bridged: Iterable[BridgedTopic]) -> str:
     """The configuration file of ``ros_gz_bridge parameter_bridge``."""
-    rows = []
-    for item in bridged:
-        rows += [
-            f'- ros_topic_name: "{item.ros}"\n',
-            f'  gz_topic_name: "{_ros_name(item.gz)}"\n',
-            f'  ros_type_name: "{item.ros_type}"\n',
-            f'  gz_type_name: "{item.gz_type}"\n',
-            f"  direction: {item.direction}\n",
-        ]
-    return "".join(rows)
+    return "".join(
+        f'- ros_topic_name: "{it.ros}"\n'
+        f'  gz_topic_name: "{_ros_name(it.gz)}"\n'
+        f'  ros_type_name: "{it.ros_type}"\n'
+        f'  gz_type_name: "{it.gz_type}"\n'
+        f"  direction: {it.direction}\n"
+        for it in bridged
+    )
 
 
 # With nothing said, a row goes both ways.

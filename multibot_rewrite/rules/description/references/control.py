@@ -22,7 +22,6 @@ from multibot_rewrite.description.sources.read import XACRO
 from multibot_rewrite.description.sources.trace import alike
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.rules.description.structure.mimic import controlled_joints, mimic_of_none
-from multibot_rewrite.rules.facts.elements import COMMAND, OWNERS, STANDARD, STATE, name_of
 from multibot_rewrite.rules.facts.memo import driven_joints, level_of_absence, since_jazzy
 from multibot_rewrite.rules.facts.simulators import (
     GAZEBO,
@@ -34,7 +33,7 @@ from multibot_rewrite.rules.facts.simulators import (
     simulator_of,
 )
 from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
-from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.rules.subject import COMMAND, OWNERS, STANDARD, STATE, Subject, name_of
 
 # Types that a motor cannot move.
 UNDRIVEN = ("fixed", "floating", "planar", "")

@@ -19,10 +19,9 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import ambiguous, repeated
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.rules.facts.elements import name_of
 from multibot_rewrite.rules.facts.memo import since_jazzy
 from multibot_rewrite.rules.schema.faults import canonical
-from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.rules.subject import Subject, name_of
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.sources.trace import WrittenAt
