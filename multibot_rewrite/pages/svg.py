@@ -47,7 +47,6 @@ NODE_HIGH, NAME_HIGH = 26, 19
 # The width of a letter in the 12 px fixed-width font is 7.3 px at most.
 LETTER, MARGIN = 7.3, 18
 COLUMN_TITLES = ("publishes, serves", "topics, services, actions", "subscribes, calls")
-BADGES = {SERVICE: "srv", ACTION: "act"}
 TREE_ROW, INDENT = 26, 20
 
 
@@ -134,7 +133,7 @@ def _id_attributes(id_: str | None, ids: Ids, prefix: str) -> str:
 
 def _name(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     x, wide = MIDDLE
-    badge = BADGES.get(name.kind, "")
+    badge = {SERVICE: "srv", ACTION: "act"}.get(name.kind, "")
     many = plural(len(name.merged), name.kind)
     label = (
         safe(f"{many} without a client")

@@ -44,7 +44,6 @@ TF_TYPE = "tf2_msgs/msg/TFMessage"
 # The element of a system whose transforms are those of tf.
 TF_ELEMENT = "tf_topic"
 IMAGE = "gz.msgs.Image"
-_MODELS = "model/"
 # What sdformat writes where a sensor of contacts has none (sdf/1.12/contact.sdf, Contact.cc:116).
 _DEFAULT = "__default_topic__"
 # Cameras whose info is below their topic, and no name that they are given.
@@ -181,7 +180,7 @@ def _robot_topics(inventory: Inventory, robot: str, model: str, naming: Naming) 
         if topic.gz not in row_of or topic.ros == _tf_name(robot, naming):
             row_of[topic.gz] = topic
     for topic in row_of.values():
-        below = topic.gz.lstrip("/").removeprefix(_MODELS)
+        below = topic.gz.lstrip("/").removeprefix("model/")
         is_default = topic.ros not in (_ros_name(topic.gz), _tf_name(robot, naming))
         # Only a system's namespace in Gazebo tells it from another one of the robot.
         if is_default and not below.startswith(f"{model}/") and len(gz_of[topic.ros]) > 1:

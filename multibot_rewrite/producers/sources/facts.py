@@ -28,6 +28,7 @@ from multibot_rewrite.producers.sources.programs import Start, start_of
 from multibot_rewrite.producers.sources.records import OTHERWISE, Place, Value
 from multibot_rewrite.producers.sources.resolve import (
     EACH,
+    FRAMES,
     LIST,
     NOBODY,
     Names,
@@ -327,7 +328,7 @@ def _sends(
     )
     sends, frames = [], []
     for sent in (it for it in events if isinstance(it, Sent)):
-        pair = [written.get((_where(sent.spot), f"{sent.variable} {it}"), []) for it in _ENDS]
+        pair = [written.get((_where(sent.spot), f"{sent.variable} {it}"), []) for it in FRAMES]
         if not all(len({it.text for it in rows}) == 1 for rows in pair):
             continue
         words = []
@@ -344,9 +345,6 @@ def _sends(
                 own = word.strip("'") if in_code else default_of(names, it.spot, word) or ""
                 frames.append(FrameParameter(word, own, "", (_at(it.place),), in_code, in_code))
     return tuple(dict.fromkeys(sends)), tuple(frames)
-
-
-_ENDS = ("header.frame_id", "child_frame_id")
 
 
 def _where(spot: Spot) -> object:

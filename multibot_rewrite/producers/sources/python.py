@@ -37,10 +37,8 @@ TYPE_AT = {
     **dict.fromkeys(("ActionServer", "ActionClient", "Subscriber"), 1),
     "service_caller": 2,
 }
-_PARAMETERS = ("get_parameter", "declare_parameter", "get_parameter_or")
 # They give back what they are asked of, if that is a parameter.
 _SAME = ("get_parameter_value", "as_string", "as_bool")
-_VALUES = ("value", "string_value", "bool_value")
 ENUMERATED = "<new enumerate>"
 MOST_ROUNDS = 32
 _PLACE = re.compile(r"\{\}|%s")
@@ -324,7 +322,7 @@ def _constant(node: ast.Constant) -> str:
 
 def _attribute(node: ast.Attribute) -> str:
     text = _text(node.value)
-    if node.attr in _VALUES and text != "<this>":
+    if node.attr in ("value", "string_value", "bool_value") and text != "<this>":
         return text
     inner = "self" if text == "<this>" else text[1:-1]
     is_name = text[:1] == "<" and text[-1:] == ">" and inner.replace(".", "").isidentifier()
@@ -350,7 +348,7 @@ def _put_in(text: str, words: list[ast.expr]) -> str:
 
 def _called(node: ast.Call) -> str:
     name = _called_name(node)
-    if name in _PARAMETERS:
+    if name in ("get_parameter", "declare_parameter", "get_parameter_or"):
         named = (it.value for it in node.keywords if it.arg == "name")
         key = node.args[0] if node.args else next(named, None)
         return f"<@{braced(_text(key))}>" if key is not None else ANY

@@ -53,7 +53,6 @@ OF_PYTHON = {
 }
 OF_ANY = {"create_publisher", "create_subscription", "create_service", "create_client"}
 OF_ROS_1 = {"advertise", "advertiseCamera"}
-_IMAGES = {"create_publisher", "create_subscription"}
 IMAGE = "sensor_msgs/msg/Image"
 
 
@@ -423,7 +422,7 @@ def _declared(
     for api in apis()[name]:
         if (api.node == OWN and not nodes) or (ARGUMENT in api.name and not others):
             continue
-        if not own and not types and nodes and name in _IMAGES:
+        if not own and not types and nodes and name in {"create_publisher", "create_subscription"}:
             # That of image_transport; those of rclcpp have a type.
             api = api._replace(function="advertise", type=IMAGE)  # noqa: PLW2901
         text = api.name.replace(ARGUMENT, others[0] if others else "")

@@ -39,7 +39,6 @@ _ENDS = {
     "SC": (SERVICE, CALLS),
 }
 _NODE_PARTS, _END_PARTS = 9, 13
-_HASH = "RIHS"
 # qos.cpp.
 _DEFAULT_DEPTH = 42
 # RMW_DURATION_INFINITE: the seconds and nanoseconds of the largest int64.
@@ -92,7 +91,7 @@ def _end(kind: str, node: str, session: str, rest: Sequence[str]) -> End:
     if not name.startswith("/"):
         raise _Malformed
     role = _ENDS[kind]
-    known = hash_ if hash_.startswith(_HASH) else ""
+    known = hash_ if hash_.startswith("RIHS") else ""
     return End(*role, name, ros_type(type_), known, node, read_qos(rest[3]), session)
 
 

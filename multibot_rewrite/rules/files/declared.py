@@ -33,8 +33,6 @@ _ARRAY = lazy_compile(r"(\w+?)_array(?:_fixed_\d+)?")
 _WORD = lazy_compile(r"\w+")
 _CAPITALS = lazy_compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
 ID = "<id>."
-_NUMBERS = frozenset(("double", "int", "bool"))
-_SURE = frozenset((YAML, DEMANDED))
 _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
@@ -159,7 +157,7 @@ def _wrong_type(it: Setting, known: Sequence[Declared]) -> str:
         return ""
     (type_,) = types
     # What code gives as a default may be a variable of any type.
-    sure = all(fact.how in _SURE for fact in facts) or type_ in _NUMBERS
+    sure = all(fact.how in (YAML, DEMANDED) for fact in facts) or type_ in ("double", "int", "bool")
     return type_ if sure and _expected(type_) not in ("", _type_of(it.value)) else ""
 
 

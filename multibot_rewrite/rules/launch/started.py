@@ -262,9 +262,6 @@ def of_itself(launched: Launched) -> Iterator[Finding]:
             yield at(of_itself, node.place, message, hint, names=(topic,))
 
 
-_NUMBERS = frozenset({"-x", "-y", "-z", "-R", "-P", "-Y"})
-
-
 @launch_rule("MG729", "program-ends-at-once")
 def ends(launched: Launched) -> Iterator[Finding]:
     """Where all that a node gets is known."""
@@ -278,7 +275,7 @@ def ends(launched: Launched) -> Iterator[Finding]:
             yield at(ends, it.place, message, "write it with letters, digits and underscores")
         if f"{it.package}/{it.executable}" in programs().spawners:
             for flag, word in pairwise(it.arguments):
-                if flag in _NUMBERS and number(word) is None:
+                if flag in {"-x", "-y", "-z", "-R", "-P", "-Y"} and number(word) is None:
                     message = f"{it.executable}: {flag} {word} is no number"
                     yield at(ends, it.place, message, "write a number")
     for node in launched.nodes:
