@@ -119,11 +119,8 @@ def _anywhere(nodes: Iterable[NodeParameters], guessing: re.Pattern[str]) -> Ite
         # What is [position] in a known controller may be [elbow/position] in another one.
         if kind == "keep" and guessed and guessed.lastgroup == "interface":
             continue
-        if (
-            kind not in OWN_KINDS
-            and len({it.kind for it in params}) == 1
-            and (sure or (guessed and guessed.lastgroup == kind))
-        ):
+        alike = kind not in OWN_KINDS and len({it.kind for it in params}) == 1
+        if alike and (sure or (guessed and guessed.lastgroup == kind)):
             yield params[0]._replace(default="", absolute="")
 
 

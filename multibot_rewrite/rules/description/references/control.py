@@ -109,12 +109,8 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
     if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
         names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
         message = f"nothing drives the joint{'s' * (len(left) > 1)} {names}"
-        yield Problem(
-            left[0].element,
-            message,
-            "name",
-            "add to <ros2_control> what moves; publish the state of a passive joint",
-        )
+        hint = "add to <ros2_control> what moves; publish the state of a passive joint"
+        yield Problem(left[0].element, message, "name", hint)
 
 
 def _needs_a_drive(joint: Joint) -> bool:
@@ -230,13 +226,8 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
             if is_here and not is_there(path) and not in_sources(path):
                 # A whole folder may be made by the build.
                 level = "" if is_folder(os.path.dirname(path)) else WARNING
-                yield Problem(
-                    it,
-                    f"there is no file {alike(path, os.curdir)}",
-                    "",
-                    "correct the path",
-                    level=level,
-                )
+                message = f"there is no file {alike(path, os.curdir)}"
+                yield Problem(it, message, "", "correct the path", level=level)
 
 
 def _is_told(subject: Subject, plugin: _Element) -> bool:
