@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.file_kinds import SNAPSHOT, recognised
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.base.findings.selection import fails
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import live, pictures
@@ -106,10 +106,7 @@ def _with_files(options: argparse.Namespace, plan: System) -> System:
 
 def _parameters(plan: System) -> dict[str, list[str]]:
     """What the nodes of the plan are asked for."""
-    found: dict[str, list[str]] = defaultdict(list)
-    for it in plan.parameters:
-        found[it.node].append(it.name)
-    return found
+    return lists_by_key((it.node, it.name) for it in plan.parameters)
 
 
 def _check_use(options: argparse.Namespace) -> None:

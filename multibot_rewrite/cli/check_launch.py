@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 import shlex
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import islice
@@ -70,15 +70,12 @@ def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchO
 
 
 def _with_remedies(
-    found: Iterable[Finding], orders: Sequence[LaunchOrder], read: _Read
+    found: Sequence[Finding], orders: Sequence[LaunchOrder], read: _Read
 ) -> list[Finding]:
     """Return the findings; those of a controller manager that spawners wait for and nothing starts say
     the argument with which one is, tried out. ``read`` reads launch files with other arguments."""
-    every = list(found)
-    if not any(_is_open(it) for it in every):
-        return every
-    remedy = _argument(orders, read)
-    return [it._replace(hint=remedy) if remedy and _is_open(it) else it for it in every]
+    remedy = _argument(orders, read) if any(map(_is_open, found)) else ""
+    return [it._replace(hint=remedy) if remedy and _is_open(it) else it for it in found]
 
 
 def _is_missing(it: Finding) -> bool:

@@ -53,15 +53,13 @@ from multibot_rewrite.lint.catalogue import rules
 # A word that ends so is a file, there or not.
 _FILES = (".urdf", ".sdf", ".srdf", ".xacro", ".xml")
 
-_FLEETS = (".yaml", ".yml")
-
 
 def run(options: argparse.Namespace) -> int:
     """Look up a code or name, try a xacro's arguments, or draft what is missing; returns the code."""
     if options.suggest is not None:
         return draft(options)
     words = plain_words(options)
-    if len(words) == 1 and words[0].endswith(_FLEETS) and os.path.isfile(words[0]):
+    if len(words) == 1 and words[0].endswith((".yaml", ".yml")) and os.path.isfile(words[0]):
         from multibot_rewrite.cli import launched  # only a fleet needs it
 
         return launched.run(options, words[0])

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Iterator
 
 from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
 from multibot_rewrite.base.model import UsageError
@@ -23,7 +22,6 @@ from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
 from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.plan import to_yaml
-from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
 from multibot_rewrite.system.coverage import Coverage, coverage, in_words
 from multibot_rewrite.system.json import to_json
@@ -107,7 +105,15 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         note(options, f"no node of {', '.join(nothing)} is known, so no rule is for it; {hint}")
     if options.form == TABLE:
-        deliver_report(options, _parts(made.table))
+        rows = [
+            (robot, it.node.node, it.node.full_name, text, given_to(it))
+            for robot, given in standing_by_robot(made.table)
+            for it in given
+            for text in ([f"{source} -> {target}" for source, target in it.rules] or ["no rule"])
+        ]
+        head = f"layout {made.table.layout}{facts_of_release(made.table.release)}"
+        grid = Grid(("robot", "node", "runs as", "rule", "given to"), rows)
+        deliver_report(options, (head, grid))
     elif options.form == BRIDGE:
         deliver(options, _bridge(options, made).encode())
     else:
@@ -125,14 +131,3 @@ def _bridge(options: argparse.Namespace, made: Fleet) -> str:
         note(options, "no robot has a topic in Gazebo to bridge")
         return ""
     return as_yaml(carried)
-
-
-def _parts(table: Table) -> Iterator[str | Grid]:
-    yield f"layout {table.layout}{facts_of_release(table.release)}"
-    rows = [
-        (robot, it.node.node, it.node.full_name, text, given_to(it))
-        for robot, given in standing_by_robot(table)
-        for it in given
-        for text in ([f"{source} -> {target}" for source, target in it.rules] or ["no rule"])
-    ]
-    yield Grid(("robot", "node", "runs as", "rule", "given to"), rows)

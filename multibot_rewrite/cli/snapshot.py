@@ -46,7 +46,6 @@ from multibot_rewrite.system.records import (
     incomplete,
 )
 
-ROSGRAPH = "rosgraph"
 COLUMNS = (
     ("publishes", TOPIC, PUBLISHES),
     ("subscribes", TOPIC, SUBSCRIBES),
@@ -66,7 +65,7 @@ def run(options: argparse.Namespace) -> int:
     if options.output is None and options.form is None:
         deliver_report(options, report(snapshot))
     else:
-        deliver(options, to_yaml(snapshot) if options.form == ROSGRAPH else to_json(snapshot))
+        deliver(options, to_yaml(snapshot) if options.form == "rosgraph" else to_json(snapshot))
         note(options, _headline(snapshot))
     for caveat in snapshot.environment.caveats:
         _remark(options, caveat)

@@ -48,10 +48,7 @@ GRAPH_WORDS = (
     "shared", "note", "when", "fixed", "apart", "programs", "component", "prefix_switch",
     "unmanaged",
 )  # fmt: skip
-SENT_KEYS = ("child", "if", "static")
-_LIFE_CYCLE = "lifecycle"
 CLAIM_KINDS = ("command", "state")
-CLAIM_KEYS = (*CLAIM_KINDS, "if", "releases")
 NODE_KEYS = ("package", *GRAPH_KEYS, *GRAPH_WORDS, *FACT_KEYS)
 
 
@@ -123,7 +120,7 @@ def _sends(
             child = item.value if "<" in item.value else known_word(item, "frame", known)
             yield SentTransform(parent, child)
             continue
-        sent = table(item, f"sends {parent}", SENT_KEYS)
+        sent = table(item, f"sends {parent}", ("child", "if", "static"))
         if "child" not in sent:
             wrong(item, f"sends {parent} has no child; write {{child: ..., if: ...}}")
         child = word(sent["child"], "frame")
@@ -134,7 +131,7 @@ def _sends(
 def read_claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:
     """The interfaces under ``claims``: ``{command: TEMPLATE}`` or ``{state: TEMPLATE}``."""
     for item in entries_of(keys, "claims"):
-        claim = table(item, "a claim", CLAIM_KEYS)
+        claim = table(item, "a claim", (*CLAIM_KINDS, "if", "releases"))
         kinds = [it for it in CLAIM_KINDS if it in claim]
         if len(kinds) != 1:
             wrong(item, "a claim is of one kind; write {command: ...} or {state: ...}")
@@ -151,7 +148,7 @@ def taken_over(
         yield from known_word(entry, "part", parts)
     if "unmanaged" in keys:
         releases = releases_of(keys, "unmanaged")
-        yield from (it._replace(releases=releases) for it in parts.get(_LIFE_CYCLE, ()))
+        yield from (it._replace(releases=releases) for it in parts.get("lifecycle", ()))
 
 
 def check_name(item: YamlItem, name: str) -> None:

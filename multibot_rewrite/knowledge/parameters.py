@@ -9,6 +9,7 @@ from fnmatch import translate
 from functools import lru_cache
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, has_default
@@ -108,11 +109,9 @@ def _node(facts: NodeParameters, release: str) -> NodeParameters:
 def _anywhere(nodes: Iterable[NodeParameters], guessing: re.Pattern[str]) -> Iterator[Param]:
     """Parameters that likely mean the same in an unknown node: several nodes have them with one
     meaning, or their name suggests it."""
-    found: dict[str, list[Param]] = {}
-    for node in nodes:
-        for param in node.params.values():
-            if "*" not in param.path and "<" not in param.path.replace(_INDEX, ""):
-                found.setdefault(param.path, []).append(param)
+    every = (param for node in nodes for param in node.params.values())
+    plain = (it for it in every if "*" not in it.path and "<" not in it.path.replace(_INDEX, ""))
+    found = lists_by_key((it.path, it) for it in plain)
     for path, params in found.items():
         kind = params[0].kind
         sure = len(params) > 1 or kind in SAFE_KINDS or path.endswith(_INDEX)
@@ -120,11 +119,8 @@ def _anywhere(nodes: Iterable[NodeParameters], guessing: re.Pattern[str]) -> Ite
         # What is [position] in a known controller may be [elbow/position] in another one.
         if kind == "keep" and guessed and guessed.lastgroup == "interface":
             continue
-        if (
-            kind not in OWN_KINDS
-            and len({it.kind for it in params}) == 1
-            and (sure or (guessed and guessed.lastgroup == kind))
-        ):
+        alike = kind not in OWN_KINDS and len({it.kind for it in params}) == 1
+        if alike and (sure or (guessed and guessed.lastgroup == kind)):
             yield params[0]._replace(default="", absolute="")
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -72,7 +72,12 @@ def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosi
     sent = (it for it in surely(graph).ends if (it.kind, it.role) == (TOPIC, PUBLISHES))
     nodes = sets_by_key((tree_topic(it.name), it.node) for it in sent if it.type == TF)
     tf = tuple((topic, tuple(sorted(nodes[topic]))) for topic in sorted(nodes))
-    return Diagnosis(graph, robots, seen, _layout(robots, seen, tf), tf, tuple(found))
+    own_frames = any(robot.before or robot.behind for robot in robots)
+    namespaces = any(robot.namespace for robot in robots)
+    wanted = (own_frames, any(seen.robot(topic) for topic, _ in tf), namespaces)
+    fitting = (it for it in LAYOUTS if wanted == (it.frames, it.tf_per_robot, it.namespaced))
+    layout = next(fitting, None) if robots else None
+    return Diagnosis(graph, robots, seen, layout, tf, tuple(found))
 
 
 def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
@@ -137,19 +142,6 @@ def _sent_elsewhere(
             hint = f"{sender} of domain {other} has it: start both in one domain, or bridge it"
             return it._replace(hint=hint)
     return it
-
-
-def _layout(
-    robots: Sequence[GuessedRobot], seen: Index, tf: Sequence[tuple[str, tuple[str, ...]]]
-) -> Layout | None:
-    if not robots:
-        return None
-    own_tf = any(seen.robot(topic) for topic, _ in tf)
-    own_frames = any(robot.before or robot.behind for robot in robots)
-    namespaces = any(robot.namespace for robot in robots)
-    wanted = (own_frames, own_tf, namespaces)
-    fitting = (it for it in LAYOUTS if wanted == (it.frames, it.tf_per_robot, it.namespaced))
-    return next(fitting, None)
 
 
 def survey(seen: Diagnosis) -> Iterator[str]:

@@ -49,7 +49,6 @@ from multibot_rewrite.system.records import (
 TF, EMPTY = "tf2_msgs/msg/TFMessage", "std_msgs/msg/Empty"
 # The types used in place of one that is not installed; an action's is seen by its feedback.
 SUBSTITUTE_TYPES = {TOPIC: EMPTY, SERVICE: "std_srvs/srv/Empty", ACTION: EMPTY}
-TF_SUBSTITUTE = "geometry_msgs/msg/TransformStamped"
 # Types of an action's parts that are the same for every action.
 PART_TYPES = {
     "_action/cancel_goal": "action_msgs/srv/CancelGoal",
@@ -207,7 +206,7 @@ def action_parts(action: Endpoint) -> Iterator[Endpoint]:
 
 def substitute_type(kind: str, type_: str) -> str:
     """The type that is used in place of one that is not installed."""
-    return TF_SUBSTITUTE if type_ == TF else SUBSTITUTE_TYPES[kind]
+    return "geometry_msgs/msg/TransformStamped" if type_ == TF else SUBSTITUTE_TYPES[kind]
 
 
 def to_order(nodes: Iterable[Stub]) -> tuple[Any, ...]:

@@ -40,7 +40,12 @@ HEAD = """\
 def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
     """The files by name."""
     robot, *_ = robots_to_plan(seen)
-    nodes = _nodes(seen, robot)
+    # The nodes of the first robot, as far as their names show the code's: not behind a word.
+    mine, above = "" if robot is NAMELESS else robot.name, f"{robot.namespace}/"
+    times = Counter(node.name for node in seen.graph.nodes)
+    own = (it for it in times if times[it] == 1 and seen.whose.robot(it) == mine)
+    shown = sorted(it for it in own if it.startswith(above) and not is_tool(it))
+    nodes = shown if robot.namespace or not mine else []
     learned = [it for it in nodes if not it.endswith(f"/{STATE_PUBLISHER}")]
     files = {
         FLEET_FILE: HEAD + "".join(f"{it}\n" for it in _fleet(seen, nodes, bool(learned))),
@@ -51,18 +56,6 @@ def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
         found = learn(seen.graph, learned, robot.namespace or "/", library)
         files[NODES_FILE] = nodes_to_yaml(found, STACK, library)
     return files
-
-
-def _nodes(seen: Diagnosis, robot: GuessedRobot) -> list[str]:
-    """The nodes of the first robot, as far as their names show the code's: not behind a word."""
-    mine = "" if robot is NAMELESS else robot.name
-    if mine and not robot.namespace:
-        return []
-    times = Counter(node.name for node in seen.graph.nodes)
-    own = (
-        it for it in times if seen.whose.robot(it) == mine and not is_tool(it) and times[it] == 1
-    )
-    return sorted(it for it in own if it.startswith(f"{robot.namespace}/"))
 
 
 def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str]:

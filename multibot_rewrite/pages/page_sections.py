@@ -4,7 +4,7 @@ link of each finding."""
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
@@ -184,10 +184,10 @@ def _with_edges(group: DrawnGroup, edges: Iterable[DrawnEdge]) -> DrawnGroup:
 def _merge_unused_services(group: DrawnGroup) -> DrawnGroup:
     """Draw a node's services without a client as one name, where there are several."""
     ends = lists_by_key(((edge.kind, edge.name), edge) for edge in group.edges)
-    unused: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
-    for edge, *others in ends.values():
-        if not others and edge.role == SERVES and edge.state not in FAULTY:
-            unused[edge.node, edge.kind].append(edge)
+    alone = (own[0] for own in ends.values() if len(own) == 1)
+    unused = lists_by_key(
+        ((it.node, it.kind), it) for it in alone if it.role == SERVES and it.state not in FAULTY
+    )
     merged = {key: own for key, own in unused.items() if len(own) >= MERGE_FROM}
     dropped = {(edge.kind, edge.name) for own in merged.values() for edge in own}
     names = [name for name in group.names if (name.kind, name.name) not in dropped]
@@ -216,13 +216,11 @@ def robot_cards(
 ) -> Iterator[str]:
     """The robots with findings first, then those without; what is of no robot is last."""
     rows = concerns_of(scene)
-    same: dict[tuple[tuple[int, ...], bool], list[PageSection]] = {}
-    for section in sections:
-        robot = section.group.robot
-        own = rows.get(robot, ())
-        if robot or own:
-            same.setdefault((own, not robot), []).append(section)
-    found = (_Card(members, own) for (own, _), members in same.items())
+    own = ((rows.get(it.group.robot, ()), not it.group.robot, it) for it in sections)
+    same = lists_by_key(
+        ((numbers, shared), it) for numbers, shared, it in own if numbers or not shared
+    )
+    found = (_Card(members, numbers) for (numbers, _), members in same.items())
     cards = sorted(found, key=lambda card: not card.rows)
     order = {robot: at for at, robot in enumerate(scene.robots)}
     yield '<div class="cards" role="list" aria-label="robots">\n'

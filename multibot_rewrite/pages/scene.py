@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.selection import with_members
-from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.live.watching import Outcome, judge, verdict_words
 from multibot_rewrite.pages.states import (
     FAULTY,
@@ -247,15 +247,11 @@ def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) 
 
 
 def _nodes(
-    plan: Index, seen: Index, states: States, edges: Iterable[DrawnEdge], robot_of: _RobotOf
+    plan: Index, seen: Index, states: States, edges: Sequence[DrawnEdge], robot_of: _RobotOf
 ) -> dict[str, DrawnNode]:
     planned = {*plan.robot_of, *plan.own[""]}
-    edge_states: dict[str, set[str]] = defaultdict(set)
-    own_states: dict[str, set[str]] = defaultdict(set)
-    for edge in edges:
-        edge_states[edge.node].add(edge.state)
-        if not edge.common:
-            own_states[edge.node].add(edge.state)
+    edge_states = sets_by_key((it.node, it.state) for it in edges)
+    own_states = sets_by_key((it.node, it.state) for it in edges if not it.common)
     # Planned nodes under another name, which the same node of each robot would have.
     misnamed = set(matches(plan, seen).values())
     result = {}

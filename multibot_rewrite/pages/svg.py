@@ -47,7 +47,6 @@ NODE_HIGH, NAME_HIGH = 26, 19
 # The width of a letter in the 12 px fixed-width font is 7.3 px at most.
 LETTER, MARGIN = 7.3, 18
 COLUMN_TITLES = ("publishes, serves", "topics, services, actions", "subscribes, calls")
-BADGES = {SERVICE: "srv", ACTION: "act"}
 TREE_ROW, INDENT = 26, 20
 
 
@@ -108,13 +107,19 @@ def _edges(group: DrawnGroup, place: GroupLayout, ids: Ids) -> Iterator[str]:
 
 def _boxes(group: DrawnGroup, place: GroupLayout, ids: Ids, prefix: str) -> Iterator[str]:
     drawn = set()
-    for column, things in ((LEFT, place.left), (RIGHT, place.right)):
-        for node, y in things:
-            anchors = prefix if node.name not in drawn else ""
-            drawn.add(node.name)
-            yield _node(
-                node, group.robot, column, y, _id_attributes(ids.nodes.get(node.name), ids, anchors)
-            )
+    sides = ((LEFT, place.left), (RIGHT, place.right))
+    for (x, wide), node, y in ((column, *it) for column, things in sides for it in things):
+        anchors = prefix if node.name not in drawn else ""
+        drawn.add(node.name)
+        foreign = " foreign" if node.robot != group.robot else ""
+        own = _id_attributes(ids.nodes.get(node.name), ids, anchors)
+        label = _label(node.name, group.robot, wide - MARGIN)
+        yield (
+            f'<g class="n {node.state}{foreign}"{own}>'
+            f'<rect x="{x}" y="{y - NODE_HIGH / 2:g}" width="{wide}" height="{NODE_HIGH}" rx="5"/>'
+            f'<text x="{x + 9}" y="{y + 4:g}">{label}</text>'
+            f"{tooltip(node.name, _meaning(node.state))}</g>"
+        )
     for name, y in place.names:
         yield _name(name, group.robot, y, _id_attributes(ids.names.get(name.name), ids, prefix))
 
@@ -126,22 +131,9 @@ def _id_attributes(id_: str | None, ids: Ids, prefix: str) -> str:
     return f' data-id="{id_}"{anchor}'
 
 
-def _node(
-    node: DrawnNode, robot: str, column: tuple[int, int], y: float, id_attributes: str
-) -> str:
-    x, wide = column
-    foreign = " foreign" if node.robot != robot else ""
-    return (
-        f'<g class="n {node.state}{foreign}"{id_attributes}>'
-        f'<rect x="{x}" y="{y - NODE_HIGH / 2:g}" width="{wide}" height="{NODE_HIGH}" rx="5"/>'
-        f'<text x="{x + 9}" y="{y + 4:g}">{_label(node.name, robot, wide - MARGIN)}</text>'
-        f"{tooltip(node.name, _meaning(node.state))}</g>"
-    )
-
-
 def _name(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     x, wide = MIDDLE
-    badge = BADGES.get(name.kind, "")
+    badge = {SERVICE: "srv", ACTION: "act"}.get(name.kind, "")
     many = plural(len(name.merged), name.kind)
     label = (
         safe(f"{many} without a client")

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -11,7 +10,6 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.pages.states import CLASH, MISSING, OK, States
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.records import Edge, Robot
 from multibot_rewrite.system.tf_copies import tree_topic
 
 
@@ -53,7 +51,11 @@ def make_frame_trees(plan: Index, seen: Index, states: States) -> tuple[FrameTre
     home_topics = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
     for topic in dict.fromkeys((*home_topics, *sorted(edges))):
         home = [robot for robot in plan.system.robots if tree_topic(robot.tf_topic) == topic]
-        forest = _forest(plan, topic, edges.get(topic, ()), home)
+        static = {(edge.parent, edge.child): edge.static for edge in edges.get(topic, ())}
+        only = home[0].name if len(home) == 1 else ""
+        frames = sorted({frame for edge in static for frame in edge})
+        robot_of = {frame: plan.frame_robot(frame) or only for frame in frames}
+        forest = _Forest(topic, static, lists_by_key(sorted(static)), robot_of)
         trees = []
         for rows in _trees(forest, states):
             first = next((row.robot for row in rows if row.robot), "")
@@ -79,15 +81,6 @@ class _Forest(NamedTuple):
     robots: Mapping[str, str]
 
 
-def _forest(plan: Index, topic: str, edges: Sequence[Edge], home: Sequence[Robot]) -> _Forest:
-    static = {(edge.parent, edge.child): edge.static for edge in edges}
-    children = lists_by_key((parent, child) for parent, child in sorted(static))
-    only = home[0].name if len(home) == 1 else ""
-    frames = sorted({frame for edge in static for frame in edge})
-    robots = {frame: plan.frame_robot(frame) or only for frame in frames}
-    return _Forest(topic, static, children, robots)
-
-
 def _trees(forest: _Forest, states: States) -> Iterator[tuple[FrameRow, ...]]:
     """One tree from each root; below a root of no robot one for each robot."""
     below = {child for _, child in forest.static}
@@ -96,9 +89,10 @@ def _trees(forest: _Forest, states: States) -> Iterator[tuple[FrameRow, ...]]:
     for root in (*sorted(set(forest.children) - below), *sorted(forest.children)):
         if root in seen:
             continue
-        parts: dict[str, list[str]] = defaultdict(list)
-        for child in forest.children[root]:
-            parts[forest.robots[child] if not forest.robots[root] else ""].append(child)
+        shared = not forest.robots[root]
+        parts = lists_by_key(
+            (forest.robots[it] if shared else "", it) for it in forest.children[root]
+        )
         for part in parts.values():
             seen.discard(root)
             yield tuple(_rows(forest, states, root, part, seen))

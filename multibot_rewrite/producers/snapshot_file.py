@@ -8,6 +8,7 @@ from typing import Any, cast
 
 from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.file_kinds import KINDS, PLAN
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.read import read_file
@@ -50,11 +51,9 @@ def read_snapshots(paths: Sequence[str]) -> System:
 
 def read_by_domain(paths: Sequence[str]) -> dict[int, System]:
     """The same of files of several domains, each on its own; raises as ``read_snapshots``."""
-    looks: dict[int, list[Look]] = {}
-    for path in paths:
-        seen = read_snapshot(path)
-        looks.setdefault(seen.environment.domain, []).append(Look(path, seen))
-    return {it: merged(looks[it]) for it in sorted(looks)}
+    looks = (Look(path, read_snapshot(path)) for path in paths)
+    by_domain = lists_by_key((it.snapshot.environment.domain, it) for it in looks)
+    return {it: merged(by_domain[it]) for it in sorted(by_domain)}
 
 
 def _text(data: bytes, path: str) -> str:

@@ -60,22 +60,19 @@ def end_tag_of(text: Spanned, element: _Element) -> int:
 
 def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -> Edit | None:
     """The edit that gives an attribute another name and value; None where it is not found."""
-    slot = _slot(text, element, name)
-    if slot is None:
-        return None
-    begin = text.source.rindex(name.encode(), 0, slot[0])
-    quote = text.source[slot[0] - 1 : slot[0]].decode()
-    return Edit(begin, slot[1], f"{new}={quote}{value}".encode(), None)
+    if slot := _slot(text, element, name):
+        quote = text.source[slot[0] - 1 : slot[0]].decode()
+        begin = text.source.rindex(name.encode(), 0, slot[0])
+        return Edit(begin, slot[1], f"{new}={quote}{value}".encode(), None)
+    return None
 
 
 def removed(text: Spanned, element: _Element, name: str) -> Edit | None:
     """The edit that takes an attribute out, with the white space before it."""
-    slot = _slot(text, element, name)
-    if slot is None:
-        return None
-    begin = text.source.rindex(name.encode(), 0, slot[0])
-    before = len(text.source[:begin].rstrip())
-    return Edit(before, slot[1] + 1, b"", None)
+    if slot := _slot(text, element, name):
+        before = len(text.source[: text.source.rindex(name.encode(), 0, slot[0])].rstrip())
+        return Edit(before, slot[1] + 1, b"", None)
+    return None
 
 
 def revalued(text: Spanned, element: _Element, name: str, value: str) -> Edit | None:

@@ -20,7 +20,6 @@ from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.system.index import TF, Index, ends_of
 from multibot_rewrite.system.records import PUBLISHES, SERVES
 
-_CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 # Does the first finding explain the second?
 _Explains = Callable[[Index, Finding, Finding], bool]
 
@@ -216,7 +215,7 @@ def _makers(seen: Index, it: Finding) -> Sequence[str]:
 def is_about_a_clock(seen: Index, it: Finding) -> bool:
     """Is it about the time that nodes get?"""
     ends = (end for name in it.names for end in ends_of(seen, name))
-    return any(end.type == _CLOCK_TYPE for end in ends)
+    return any(end.type == "rosgraph_msgs/msg/Clock" for end in ends)
 
 
 def in_order(seen: Index, found: Iterable[Finding]) -> list[Finding]:

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 ALL = ("M",)
 TARGETS = ("mjcf",)
-TIME_LIMIT = 60.0
 EVERY_FILE = "*"
 # A system that Gazebo does not find, and links and joints that sdformat leaves out: in a simulator
 # these do not run, whatever the level of the lint.
@@ -70,7 +69,7 @@ class Settings(NamedTuple):
     urdf: str = ""
     urdfs: tuple[tuple[str, str], ...] = ()
     included: frozenset[str] = frozenset()
-    seconds: float = TIME_LIMIT
+    seconds: float = 60.0
     trust: bool = False
     readable: tuple[str, ...] = ()
     elsewhere: KnownArguments | None = None

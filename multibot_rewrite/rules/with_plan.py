@@ -27,7 +27,6 @@ from multibot_rewrite.system.tf_copies import tree_topic
 
 # A node, or a name and whose it is: a node's or robot's, or beside which other name; empty for all.
 _About = tuple[str, str]
-_TWO = 2
 
 
 def one_for_a_cause(
@@ -79,7 +78,7 @@ def _abouts(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
     # What is missing at one robot is no cause of what another one lacks.
     whose = {it.node, it.robot} if _is_absence(it, rules) else {it.node, it.robot, ""}
     yield from ((one, name) for name in it.names for one in whose)
-    if len(it.names) == _TWO:
+    if len(it.names) == 2:
         yield from ((f"beside {it.names[1 - at]}", name) for at, name in enumerate(it.names))
 
 

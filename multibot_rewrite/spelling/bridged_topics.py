@@ -10,6 +10,7 @@ from typing import NamedTuple, cast
 
 from lxml import etree
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, make_naming, spelled
 from multibot_rewrite.description.readback.model_namespaces import scoped_namespace
@@ -43,7 +44,6 @@ TF_TYPE = "tf2_msgs/msg/TFMessage"
 # The element of a system whose transforms are those of tf.
 TF_ELEMENT = "tf_topic"
 IMAGE = "gz.msgs.Image"
-_MODELS = "model/"
 # What sdformat writes where a sensor of contacts has none (sdf/1.12/contact.sdf, Contact.cc:116).
 _DEFAULT = "__default_topic__"
 # Cameras whose info is below their topic, and no name that they are given.
@@ -118,9 +118,7 @@ def bridged_topics(
             if isinstance(item, BridgedTopic) and item.ros == tf:
                 continue
             (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
-    ends: dict[str, list[tuple[Endpoint, str]]] = defaultdict(list)
-    for run in runs:
-        ends[run.robot] += (it for it in run.names if not it[0].when)
+    ends = lists_by_key((run.robot, it) for run in runs for it in run.names if not it[0].when)
     fitting = [_fitting(it, ends[it.robot]) for it in dict.fromkeys(bridged)]
     return fitting, list(dict.fromkeys(left))
 
@@ -182,7 +180,7 @@ def _robot_topics(inventory: Inventory, robot: str, model: str, naming: Naming) 
         if topic.gz not in row_of or topic.ros == _tf_name(robot, naming):
             row_of[topic.gz] = topic
     for topic in row_of.values():
-        below = topic.gz.lstrip("/").removeprefix(_MODELS)
+        below = topic.gz.lstrip("/").removeprefix("model/")
         is_default = topic.ros not in (_ros_name(topic.gz), _tf_name(robot, naming))
         # Only a system's namespace in Gazebo tells it from another one of the robot.
         if is_default and not below.startswith(f"{model}/") and len(gz_of[topic.ros]) > 1:
@@ -291,7 +289,9 @@ def _plugin(
             hint = OF_ANOTHER if name else GIVE_TOPIC
             yield UnbridgedTopic(robot, "plugin", _line(plugin), what, why, hint, type=row.gz_type)
             continue
-        ros = _ros_of(row, name, rest, robot, naming)
+        # The robot's own, of what stands below its model, or that of the file.
+        ros = _robot_name(rest, robot, naming) if rest else _ros_name(name)
+        ros = _tf_name(robot, naming) if row.element == TF_ELEMENT else ros
         # A shared /tf is bridged once, or each transform would arrive once for every robot.
         whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
         is_free = bool(rest) and row.element != TF_ELEMENT
@@ -310,13 +310,6 @@ def _of_unknown_type(
             what = f"{name} of {plugin.get('filename')}"
             why = f"the type of <{site.path}> is not known"
             yield UnbridgedTopic(robot, "plugin", _line(plugin), what, why, OWN_ROW, name)
-
-
-def _ros_of(row: BridgeRow, name: str, rest: str, robot: str, naming: Naming) -> str:
-    """Return the ROS name: the robot's own, of what stands below its model, or that of the file."""
-    if row.element == TF_ELEMENT:
-        return _tf_name(robot, naming)
-    return _robot_name(rest, robot, naming) if rest else _ros_name(name)
 
 
 def _line(element: etree._Element) -> int:
@@ -347,16 +340,14 @@ def _robot_name(name: str, robot: str, naming: Naming) -> str:
 
 def as_yaml(bridged: Iterable[BridgedTopic]) -> str:
     """The configuration file of ``ros_gz_bridge parameter_bridge``."""
-    rows = []
-    for item in bridged:
-        rows += [
-            f'- ros_topic_name: "{item.ros}"\n',
-            f'  gz_topic_name: "/{item.gz.lstrip("/")}"\n',
-            f'  ros_type_name: "{item.ros_type}"\n',
-            f'  gz_type_name: "{item.gz_type}"\n',
-            f"  direction: {item.direction}\n",
-        ]
-    return "".join(rows)
+    return "".join(
+        f'- ros_topic_name: "{it.ros}"\n'
+        f'  gz_topic_name: "/{it.gz.lstrip("/")}"\n'
+        f'  ros_type_name: "{it.ros_type}"\n'
+        f'  gz_type_name: "{it.gz_type}"\n'
+        f"  direction: {it.direction}\n"
+        for it in bridged
+    )
 
 
 # With nothing said, a row goes both ways.

@@ -8,7 +8,7 @@ its hidden topics and services) and ``test/policies/common/node.xml`` (what ever
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import READ_BY_EVERY_NODE, SENT_BY_EVERY_NODE, tool_patterns
@@ -72,11 +72,23 @@ def enclave_of(robot: str) -> str:
 def to_policy(plan: System, more: Iterable[End] = ()) -> str:
     """The policy file of a fleet. ``more`` are endpoints that nodes may have besides those of the plan,
     by parameter: a policy that lacks them would stop these nodes."""
-    enclaves = profiles(plan, more)
-    lines = [line for path, found in enclaves.items() for line in _enclave(path, found)]
-    head = _HEAD.format(shared=SHARED, tools=TOOLS)
-    body = [f'<policy version="{VERSION}">', "  <enclaves>", *lines, "  </enclaves>", "</policy>"]
-    return head + "\n".join(body) + "\n"
+    from xml.sax.saxutils import escape, quoteattr  # takes half as long to import as a check does
+
+    lines = [f'<policy version="{VERSION}">', "  <enclaves>"]
+    for path, found in profiles(plan, more).items():
+        lines += [f"    <enclave path={quoteattr(path)}>", "      <profiles>"]
+        for profile in found:
+            space, _, node = profile.node.rpartition("/")
+            lines.append(f"        <profile ns={quoteattr(space or '/')} node={quoteattr(node)}>")
+            for key, (plural, attribute, single) in _ELEMENTS.items():
+                names = [name for kind, role, name in profile.allowed if (kind, role) == key]
+                rows = [f"            <{single}>{escape(it)}</{single}>" for it in names]
+                ends = f'          <{plural} {attribute}="ALLOW">', f"          </{plural}>"
+                lines += [ends[0], *rows, ends[1]] if names else []
+            lines.append("        </profile>")
+        lines += ["      </profiles>", "    </enclave>"]
+    lines += ["  </enclaves>", "</policy>"]
+    return _HEAD.format(shared=SHARED, tools=TOOLS) + "\n".join(lines) + "\n"
 
 
 def profiles(plan: System, more: Iterable[End] = ()) -> Mapping[str, tuple[Profile, ...]]:
@@ -101,22 +113,3 @@ def profiles(plan: System, more: Iterable[End] = ()) -> Mapping[str, tuple[Profi
 
 def _profile(node: str, own: Iterable[Allowed]) -> Profile:
     return Profile(node, tuple(sorted({*_OF_EVERY_NODE, *own})))
-
-
-def _enclave(path: str, found: Iterable[Profile]) -> Iterator[str]:
-    from xml.sax.saxutils import escape, quoteattr  # takes half as long to import as a check does
-
-    yield f"    <enclave path={quoteattr(path)}>"
-    yield "      <profiles>"
-    for profile in found:
-        space, _, node = profile.node.rpartition("/")
-        yield f"        <profile ns={quoteattr(space or '/')} node={quoteattr(node)}>"
-        for key, (plural, attribute, single) in _ELEMENTS.items():
-            names = [name for kind, role, name in profile.allowed if (kind, role) == key]
-            if names:
-                yield f'          <{plural} {attribute}="ALLOW">'
-                yield from (f"            <{single}>{escape(it)}</{single}>" for it in names)
-                yield f"          </{plural}>"
-        yield "        </profile>"
-    yield "      </profiles>"
-    yield "    </enclave>"

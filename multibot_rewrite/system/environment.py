@@ -37,7 +37,6 @@ from multibot_rewrite.system.tool_nodes import is_hidden
 MAX_DOMAIN = 232
 LOCALHOST = "LOCALHOST"
 RANGES = ("OFF", LOCALHOST, "SUBNET", "SYSTEM_DEFAULT")
-DEFAULT_RANGE = "SUBNET"
 KNOWN_RMW = (
     "rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp", "rmw_cyclonedds_cpp", "rmw_connextdds",
     "rmw_zenoh_cpp", "rmw_gurumdds_cpp",
@@ -76,7 +75,7 @@ def settings(environ: Mapping[str, str]) -> DiscoverySettings:
         if _NOT_IN_PEER.search(peer):
             hint = "give host names or IPv4 addresses with only ; between them"
             raise UsageError(f"ROS_STATIC_PEERS={text!r}: {peer!r} is not a host, {hint}")
-    range_ = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "") or DEFAULT_RANGE
+    range_ = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "") or "SUBNET"
     return DiscoverySettings(
         domain,
         range_ if range_ in RANGES and not _localhost_only(environ) else LOCALHOST,
@@ -263,7 +262,6 @@ def _processes(endpoints: Iterable[End]) -> set[str]:
     return {endpoint.process for endpoint in endpoints} - {""}
 
 
-MERGED = "looks-merged"
 # The nodes of each machine.
 Machines = Mapping[str, Sequence[str]]
 
@@ -282,7 +280,7 @@ def hidden_from_here(graph: System, seen: Machines) -> bool:
     """
     around = graph.environment
     asked_for_all = around.range not in (LOCALHOST, "OFF") or bool(around.static_peers)
-    one_look = not any(it.code == MERGED for it in around.caveats)
+    one_look = not any(it.code == "looks-merged" for it in around.caveats)
     return asked_for_all and one_look and not around.discovery_server and len(seen) == 1
 
 

@@ -22,7 +22,6 @@ from multibot_rewrite.system.ownership import SEPARATORS, Whose
 from multibot_rewrite.system.records import TOPIC, Edge, System
 from multibot_rewrite.system.tool_nodes import is_tool
 
-_TF = frozenset(("tf", "tf_static"))
 # Topics that a whole robot has; a lidar alone has a scan, and a camera sends tf.
 _WHOLE = frozenset(("cmd_vel", "odom", "joint_states", "robot_description"))
 # Namespaces with topics like a robot's that are only a part of one; two_finger_arm is an arm.
@@ -91,17 +90,16 @@ def _name(namespace: str, all_of_them: Iterable[str]) -> str:
 def _namespaces(graph: System) -> list[str]:
     """The namespaces of robots, in order."""
     nodes = {node.name for node in graph.nodes}
-    found: dict[str, set[str]] = defaultdict(set)
-    for end in graph.ends:
-        space, _, word = end.name.rpartition("/")
-        # Below a node's own name are its private names.
-        if end.kind == TOPIC and word in OF_A_ROBOT and space and space not in nodes:
-            found[space].add(word)
+    parts = (end.name.rpartition("/") for end in graph.ends if end.kind == TOPIC)
+    shown = ((space, word) for space, _, word in parts if space and word in OF_A_ROBOT)
+    # Below a node's own name are its private names.
+    found = sets_by_key((space, word) for space, word in shown if space not in nodes)
     lived_in = [node.name for node in graph.nodes if not is_tool(node.name)]
     bodies = [
         space
         for space, words in found.items()
-        if (len(words) > 1 or words & _TF) and _may_be_a_robot(space, lived_in)
+        if (len(words) > 1 or not words.isdisjoint(("tf", "tf_static")))
+        and _may_be_a_robot(space, lived_in)
     ]
     # What is above a robot's namespace is a group of robots.
     bodies += [

@@ -42,7 +42,6 @@ ROW = ("role", "kind", "name", "type", "code_name")
 WHEN = "when"
 # Between the types of a row.
 OR = " | "
-_TEXTS = {str}
 _NOTHING_MORE = ("", None, "", NOWHERE)
 _ROLES, _KINDS = frozenset(ROLES), frozenset(KINDS)
 
@@ -158,7 +157,7 @@ def _read_end(node: str, value: object) -> Any:
     """Return the end that a row or an object is; raises WrongValue."""
     if type(value) is not list:
         return reader(End)({"node": node, **value} if isinstance(value, dict) else value)
-    if len(value) - len(ROW) not in (0, 1) or {*map(type, value)} != _TEXTS:
+    if len(value) - len(ROW) not in (0, 1) or {*map(type, value)} != {str}:
         raise unexpected("[role, kind, name, type, name in the node's code]", value)
     # Many nodes have the same names, types and words.
     role, kind, name, types, code_name, *when = map(intern, value)

@@ -36,8 +36,6 @@ MaybeFullName = Annotated[str, "^(/|$)"]
 Transform = Annotated[tuple[float, ...], 7]
 ADDRESSES = (DEVICE, CALIBRATION, COMPUTER, OWN)
 SURE_WORDS = ("runs", "may", "unknown", "off")
-SETTLED = (EXPECTED, QUIET, TIMEOUT, CHANGING)
-RELEASE_WORDS = ("", *RELEASES)
 
 
 class Place(NamedTuple):
@@ -348,7 +346,7 @@ class Environment(NamedTuple):
     discovery_server: str = ""
     super_client: bool = False
     participants: int = 0
-    settled: Annotated[str, SETTLED] = EXPECTED
+    settled: Annotated[str, (EXPECTED, QUIET, TIMEOUT, CHANGING)] = EXPECTED
     seconds: float = 0.0
     caveats: tuple[Caveat, ...] = ()
 
@@ -385,7 +383,7 @@ class System(NamedTuple):
     robots: tuple[Robot, ...] = ()
     topics: tuple[Topic, ...] = ()
     layout: str = ""
-    release: Annotated[str, RELEASE_WORDS] = ""
+    release: Annotated[str, ("", *RELEASES)] = ""
     shared_topics: tuple[str, ...] = ()
     shared_frames: tuple[str, ...] = ()
     ignored_nodes: tuple[str, ...] = ()

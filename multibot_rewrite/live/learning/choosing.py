@@ -120,7 +120,6 @@ def _nodes_by_process(
 
 IMAGE = "sensor_msgs/msg/Image"
 _HIDDEN = "/_action/"
-_SEND_GOAL = "_SendGoal"
 
 
 class EndpointId(NamedTuple):
@@ -146,7 +145,7 @@ def fold_actions(seen: Seen) -> dict[EndpointId, tuple[str, ...]]:
         if _HIDDEN in key.name:
             kinds[_action_of(key)].add(key.kind)
         if key.kind == SERVICE and key.name.endswith(f"{_HIDDEN}send_goal") and types:
-            goal = tuple(type_.removesuffix(_SEND_GOAL) for type_ in types)
+            goal = tuple(type_.removesuffix("_SendGoal") for type_ in types)
             found[EndpointId(ACTION, *_action_of(key))] = goal
     listed = {key: types for key, types in seen.items() if key.kind == ACTION and types}
     # rcl lists every subscriber of the feedback as a client.

@@ -46,7 +46,6 @@ from multibot_rewrite.system.records import (
 
 FROM_HELPER = "asked for by transform_listener_impl_<address>"
 SHARED_PROCESS = "its process has several nodes, each gets the endpoints of the helper nodes there"
-NO_ENDPOINTS = "only its name is seen, no endpoints"
 EVERY_NODE, SIM_TIME = "every_node", "run: simulated"
 # On every node since Jazzy, besides the endpoints of the part every_node.
 SINCE_JAZZY = (SERVES, "~/get_type_description")
@@ -122,7 +121,7 @@ def _learn_node(
     # That its code places it cannot be seen.
     apart = known is not None and known.apart
     facts = NodeFacts(node, "", (*own, *taken), note=f"seen as {name}", apart=apart)
-    remarks = [] if ends.get(name) else [NO_ENDPOINTS]
+    remarks = [] if ends.get(name) else ["only its name is seen, no endpoints"]
     remarks += [] if helpers.sure else [f"{SHARED_PROCESS}: {', '.join(helpers.names)}"]
     remarks += [_compare(facts, known, usual)] if known else []
     return LearnedNode(name, facts, tuple(own), parts, tuple(remarks))

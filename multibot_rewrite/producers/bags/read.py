@@ -9,8 +9,7 @@ from __future__ import annotations
 import errno
 import os
 import re
-from collections import defaultdict
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import partial
 from itertools import chain, islice
 from math import inf
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.bounded import load_yaml, read_text
 from multibot_rewrite.base.file_kinds import BAG, refuse_others
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError, Unusable
 from multibot_rewrite.base.wording import SEVERAL, one_line, shorten
 from multibot_rewrite.base.workers import limit_files, worker_pool
@@ -114,10 +114,8 @@ def _read(folder: str, most: int, path: str) -> Recording | InputError:
 
 
 def _recording(reader: Reader) -> Recording:
-    by_topic: dict[str, list[Connection]] = defaultdict(list)
-    for connection in reader.connections:
-        name = str(connection.topic)
-        by_topic[name if name.startswith("/") else f"/{name}"].append(connection)
+    every: Iterable[Connection] = reader.connections
+    by_topic = lists_by_key((f"/{str(it.topic).removeprefix('/')}", it) for it in every)
     topics = tuple(_topic(reader, name, by_topic[name]) for name in sorted(by_topic))
     transforms: list[Edge] = []
     caveats: list[Caveat] = []

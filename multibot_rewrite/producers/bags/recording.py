@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import dicts_by_key
 from multibot_rewrite.system.records import (
     PUBLISHES,
     QUIET,
@@ -63,10 +63,8 @@ def as_snapshot(found: Recording, plan: System | None = None) -> System:
     """The recording as a snapshot. A transform does not say who sent it:
     those that publish its topic by the plan."""
     seconds = round(found.seconds, 2)
-    senders: dict[str, dict[str, None]] = defaultdict(dict)
-    for end in surely(plan).ends if plan else ():
-        if end.role == PUBLISHES:
-            senders[end.name][end.node] = None
+    sent = [it for it in surely(plan).ends if it.role == PUBLISHES] if plan else []
+    senders = dicts_by_key((it.name, it.node, None) for it in sent)
     frames = tuple(
         it._replace(publishers=tuple(senders.get(it.topic, it.publishers)))
         for it in found.transforms

@@ -243,9 +243,6 @@ def alternatives(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> dict[s
     return found
 
 
-_TF = ("/tf", "/tf_static")
-
-
 def remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:
     """The node with the remap rules of its launch file, started in a namespace; those of tf belong to
     the layout."""
@@ -254,7 +251,7 @@ def remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) 
     home = above.removesuffix(f"/{below}") if below else above
     targets = {
         expand(old, above, name): _target(new, above, home)
-        for old, new in reversed([it for it in rules if it[0] not in _TF])
+        for old, new in reversed([it for it in rules if it[0] not in ("/tf", "/tf_static")])
     }
     ends = []
     for it in node.endpoints:

@@ -19,7 +19,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.companions.moveit.file_kind import NAMES, SIMPLE
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
-from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
+from multibot_rewrite.description.checks.links_and_joints import read_robot
 from multibot_rewrite.description.checks.planning_groups import groups_of, joints_of, text_of
 from multibot_rewrite.knowledge.records import MOVE_GROUP
 from multibot_rewrite.system.records import CLAIMS, EXPORTS, JOINT, Interface, Place, System
@@ -61,19 +61,17 @@ def semantics(srdf: _Element, urdf: _Element, file: str) -> Semantics:
         parent, child = text_of(it, "parent_frame"), text_of(it, "child_link")
         own = text_of(it), text_of(it, "type"), parent, child
         virtual.append(VirtualJoint(*own, _place(it, file)))
-    return Semantics(tuple(_groups(srdf, read_robot(urdf), file)), tuple(virtual))
-
-
-def _groups(srdf: _Element, robot: Robot, file: str) -> Iterator[PlanningGroup]:
-    groups = groups_of(srdf)
+    robot, groups = read_robot(urdf), groups_of(srdf)
     passive = {text_of(it) for it in srdf.iter("passive_joint")}
+    planned = []
     for name, element in groups.items():
         joints = joints_of(name, groups, robot)
         active = (it.name for it in robot.joints if it.name in joints and it.name not in passive)
         joined = ((it, robot.joint[it]) for it in dict.fromkeys(active))
         # Those that are variables of their own.
         moved = tuple(it for it, own in joined if own.type != FIXED and "mimic" not in own.parts)
-        yield PlanningGroup(name, moved, _place(element, file))
+        planned.append(PlanningGroup(name, moved, _place(element, file)))
+    return Semantics(tuple(planned), tuple(virtual))
 
 
 def _place(element: _Element, file: str) -> Place:

@@ -7,13 +7,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import partial
 
+from multibot_rewrite.producers.ros.headers import Subscribe
 from multibot_rewrite.producers.ros.tf_subscriptions import Mark
 from multibot_rewrite.producers.zenoh.cdr import read_text
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Description, End
 from multibot_rewrite.system.words import is_description
 
-Receive = Callable[[bytes, Mark], None]
-Subscribe = Callable[[str, str, bool, Receive], "Callable[[], None] | None"]
 # A subscription costs a few milliseconds.
 MOST_TOPICS = 200
 

@@ -15,6 +15,7 @@ from functools import partial
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import CLOCK, LISTENER
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.producers.ros.assemble import age_of, numbers_of
 from multibot_rewrite.producers.ros.tf_subscriptions import Mark, Pace
 from multibot_rewrite.producers.zenoh.cdr import (
@@ -108,12 +109,12 @@ class _Span(NamedTuple):
 
 def sensor_topics(endpoints: Iterable[End]) -> Iterator[SensorTopic]:
     """The topics worth a subscription, sensors first."""
-    found: dict[str, list[End]] = defaultdict(list)
-    for end in endpoints:
-        # The clock of all: its time is where others have their stamp.
-        is_clock = (end.name, end.type) == (CLOCK, CLOCK_TYPE)
-        if (end.kind, end.role) == (TOPIC, PUBLISHES) and (_names_a_frame(end) or is_clock):
-            found[end.name].append(end)
+    sent = (it for it in endpoints if (it.kind, it.role) == (TOPIC, PUBLISHES))
+    # The clock of all: its time is where others have their stamp.
+    clock = CLOCK, CLOCK_TYPE
+    found = lists_by_key(
+        (it.name, it) for it in sent if _names_a_frame(it) or (it.name, it.type) == clock
+    )
     for name, ends in sorted(found.items(), key=_rank):
         latched = all(it.qos and it.qos.durability == "TRANSIENT_LOCAL" for it in ends)
         yield SensorTopic(name, ends[0].type, latched, len(ends))

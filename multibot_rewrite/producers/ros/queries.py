@@ -6,7 +6,7 @@ The node is passed in: only ``graph.live.ros`` imports rclpy.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import suppress
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -138,7 +138,14 @@ def with_topic_details(
     unknown = {end.node: end for end in found if end.node not in known and end.kind != ACTION}
     if not unknown or asked.over():
         return endpoints
-    better = dict(_with_process(node, endpoints, unknown))
+    # Of each node without a known process one of its endpoints, and the same with its process.
+    better: dict[End, End] = {}
+    for name, end in unknown.items():
+        topic = end.kind == TOPIC
+        seen = _topic_endpoints(node, end.name) if topic else _service_endpoints(node, end)
+        same = (it for it in seen if it.node == name and it.role == end.role)
+        if end in endpoints and (other := next(same, None)):
+            better[end] = other
     return [*(it for it in endpoints if it not in better), *better.values()]
 
 
@@ -159,18 +166,6 @@ def _query_topics(
                 asked.cache[topic] = now, details
         result[topic] = details
     return result
-
-
-def _with_process(
-    node: Any, endpoints: Collection[End], unknown: Mapping[str, End]
-) -> Iterator[tuple[End, End]]:
-    """For each node without a known process one of its endpoints, and the same with its process."""
-    for name, end in unknown.items():
-        topic = end.kind == TOPIC
-        found = _topic_endpoints(node, end.name) if topic else _service_endpoints(node, end)
-        same = (it for it in found if it.node == name and it.role == end.role)
-        if end in endpoints and (better := next(same, None)):
-            yield end, better
 
 
 def _topic_endpoints(node: Any, topic: str) -> list[End]:

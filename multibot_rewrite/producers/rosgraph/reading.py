@@ -50,11 +50,8 @@ SEND_GOAL = "_SendGoal"
 NO_FRAMES = Caveat(
     "frames-not-read", False, "a rosgraph_msgs/Graph has no transforms: they are not compared"
 )
-ONLY_TOPICS = Caveat(
-    "topics-only",
-    True,
-    "no service is in this rosgraph_msgs/Graph: its monitor reports topics only",
-)
+_NO_SERVICE = "no service is in this rosgraph_msgs/Graph: its monitor reports topics only"
+ONLY_TOPICS = Caveat("topics-only", True, _NO_SERVICE)
 
 
 def is_message(value: object) -> bool:

@@ -9,6 +9,7 @@ from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import own_text
+from multibot_rewrite.base.grouping import lists_by_key
 
 ARGUMENT = "ARGUMENT"
 HELPER, OWN = "helper", "own"
@@ -27,11 +28,9 @@ class Api(NamedTuple):
 @cache
 def apis() -> Mapping[str, tuple[Api, ...]]:
     """By function."""
-    found: dict[str, list[Api]] = {}
-    for line in own_text(__file__, "calls.txt").splitlines():
-        if line and not line.startswith("#"):
-            api = Api(*line.split())
-            found.setdefault(api.function, []).append(api)
+    lines = own_text(__file__, "calls.txt").splitlines()
+    every = (Api(*line.split()) for line in lines if line and not line.startswith("#"))
+    found = lists_by_key((it.function, it) for it in every)
     return {name: tuple(rows) for name, rows in found.items()}
 
 

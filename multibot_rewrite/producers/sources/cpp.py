@@ -17,7 +17,6 @@ from multibot_rewrite.producers.sources.expressions import (
     MESSAGE,
     NAMES_PARAMETER,
     arguments_of,
-    braced,
     callee,
     dotted,
     evaluated,
@@ -38,6 +37,8 @@ from multibot_rewrite.producers.sources.records import (
     Plugin,
     Source,
     Value,
+    braced,
+    negated,
 )
 
 if TYPE_CHECKING:
@@ -123,7 +124,7 @@ def _asked(node: Node) -> str:
         below, above = above, above.parent
         if above.type == "if_statement" and below != above.child_by_field_name("condition"):
             text = _test(above.child_by_field_name("condition"))
-            found.append(_not(text) if below.type == "else_clause" else text)
+            found.append(negated(text) if below.type == "else_clause" else text)
         elif above.type in _SOMETIMES or (
             # The function may end in a statement before this one.
             above.type == "compound_statement" and _left_at(above) < below.start_byte
@@ -149,14 +150,10 @@ def _test(node: Node | None) -> str:
     while node is not None and node.type in ("condition_clause", "parenthesized_expression"):
         node = node.child_by_field_name("value") or next(iter(node.named_children), None)
     if node is not None and node.type == "unary_expression" and text_of(node)[:1] == "!":
-        return _not(_test(node.child_by_field_name("argument")))
+        return negated(_test(node.child_by_field_name("argument")))
     plain = ("identifier", "field_expression", "call_expression")
     text = evaluated(node) if node is not None and node.type in plain else ""
     return text if text[:1] == "<" and "(" not in text and text != ANY else OTHERWISE
-
-
-def _not(text: str) -> str:
-    return OTHERWISE if text == OTHERWISE else text[1:] if text[:1] == "!" else f"!{text}"
 
 
 @lru_cache(maxsize=256)

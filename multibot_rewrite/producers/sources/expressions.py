@@ -15,6 +15,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.producers.sources.records import braced
 
 if TYPE_CHECKING:
     from tree_sitter import Node, Parser, QueryCursor
@@ -63,11 +64,6 @@ def template_arguments(type_: str) -> tuple[str, ...]:
 def is_node(text: str) -> bool:
     """Is this argument a node, or a part of one?"""
     return _NODE.fullmatch(text) is not None
-
-
-def braced(text: str) -> str:
-    """The text inside another name in <>."""
-    return text.replace("<", "{").replace(">", "}")
 
 
 def evaluated(node: Node | None) -> str:

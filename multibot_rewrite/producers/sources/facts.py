@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.base.rosnames import check_node_name, check_topic_name, propose_token
 from multibot_rewrite.knowledge.conditions import AND, OPEN_KIND, OR, SOURCE, joined
@@ -27,6 +28,7 @@ from multibot_rewrite.producers.sources.programs import Start, start_of
 from multibot_rewrite.producers.sources.records import OTHERWISE, Place, Value
 from multibot_rewrite.producers.sources.resolve import (
     EACH,
+    FRAMES,
     LIST,
     NOBODY,
     Names,
@@ -319,14 +321,14 @@ def _sends(
 ) -> tuple[tuple[SentTransform, ...], tuple[FrameParameter, ...]]:
     """The transforms that it sends: of a message that it sends, the two frames that are written into
     it. A frame of the code has no parameter: it stands for itself, in quotes."""
-    written: dict[tuple[object, str], list[Looked]] = {}
-    for it in events:
-        if isinstance(it, Looked) and it.role != LOOKED_UP:
-            message = it.variable.removesuffix(it.role).rstrip(".")
-            written.setdefault((_where(it.spot), f"{message} {it.role}"), []).append(it)
+    frames_of = (it for it in events if isinstance(it, Looked) and it.role != LOOKED_UP)
+    messages = ((it.variable.removesuffix(it.role).rstrip("."), it) for it in frames_of)
+    written = lists_by_key(
+        ((_where(it.spot), f"{message} {it.role}"), it) for message, it in messages
+    )
     sends, frames = [], []
     for sent in (it for it in events if isinstance(it, Sent)):
-        pair = [written.get((_where(sent.spot), f"{sent.variable} {it}"), []) for it in _ENDS]
+        pair = [written.get((_where(sent.spot), f"{sent.variable} {it}"), []) for it in FRAMES]
         if not all(len({it.text for it in rows}) == 1 for rows in pair):
             continue
         words = []
@@ -343,9 +345,6 @@ def _sends(
                 own = word.strip("'") if in_code else default_of(names, it.spot, word) or ""
                 frames.append(FrameParameter(word, own, "", (_at(it.place),), in_code, in_code))
     return tuple(dict.fromkeys(sends)), tuple(frames)
-
-
-_ENDS = ("header.frame_id", "child_frame_id")
 
 
 def _where(spot: Spot) -> object:

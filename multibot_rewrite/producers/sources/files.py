@@ -18,7 +18,6 @@ READERS = {
     **dict.fromkeys((".cpp", ".cc", ".cxx", ".hpp", ".h", ".hh", ".hxx"), read_cpp),
     ".py": read_python,
 }
-_UNITS = (".cpp", ".cc", ".cxx")
 NOT_RUN = ("test", "tests", "build")
 MOST_FILES, MOST_LETTERS = 200, 1_000_000
 Packages = Mapping[str, str]
@@ -107,7 +106,7 @@ def _included(path: str, name: str, packages: Packages) -> Iterator[str]:
             yield header
             package = _package_of(header, packages)
             stem = os.path.splitext(os.path.basename(header))[0]
-            units = {f"{stem}{end}" for end in _UNITS}
+            units = {f"{stem}{end}" for end in (".cpp", ".cc", ".cxx")}
             every = sources_in(package) if package else ()
             yield from (one for one in every if os.path.basename(one) in units)
             return

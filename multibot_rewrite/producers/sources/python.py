@@ -22,7 +22,9 @@ from multibot_rewrite.producers.sources.records import (
     Place,
     Source,
     Value,
+    braced,
     joined,
+    negated,
 )
 
 # What is given a type and a name, by the names of their parameters.
@@ -35,10 +37,8 @@ TYPE_AT = {
     **dict.fromkeys(("ActionServer", "ActionClient", "Subscriber"), 1),
     "service_caller": 2,
 }
-_PARAMETERS = ("get_parameter", "declare_parameter", "get_parameter_or")
 # They give back what they are asked of, if that is a parameter.
 _SAME = ("get_parameter_value", "as_string", "as_bool")
-_VALUES = ("value", "string_value", "bool_value")
 ENUMERATED = "<new enumerate>"
 MOST_ROUNDS = 32
 _PLACE = re.compile(r"\{\}|%s")
@@ -217,7 +217,7 @@ def _under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
         return part
     return part._replace(
         condition=f"not ({text})" if wrong else text,
-        asked=_and(part.asked, _not(asked) if wrong else asked),
+        asked=_and(part.asked, negated(asked) if wrong else asked),
     )
 
 
@@ -246,13 +246,9 @@ def _may_leave(node: ast.AST) -> bool:
 
 def _asked(node: ast.expr) -> str:
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        return _not(_asked(node.operand))
+        return negated(_asked(node.operand))
     is_plain = isinstance(node, (ast.Name, ast.Attribute, ast.Call))
     return _text(node) if is_plain and _text(node) != ANY else OTHERWISE
-
-
-def _not(text: str) -> str:
-    return OTHERWISE if text == OTHERWISE else text[1:] if text[:1] == "!" else f"!{text}"
 
 
 def _and(one: str, other: str) -> str:
@@ -309,11 +305,6 @@ def _parameters(node: ast.Call, owner: str, function: str, place: Place) -> Iter
             yield Value(owner, function, f"@{braced(_text(key))}", _text(default), at)
 
 
-def braced(text: str) -> str:
-    """The text inside another name in <>."""
-    return text.replace("<", "{").replace(">", "}")
-
-
 def _called_name(node: ast.Call) -> str:
     return node.func.attr if isinstance(node.func, ast.Attribute) else ""
 
@@ -331,7 +322,7 @@ def _constant(node: ast.Constant) -> str:
 
 def _attribute(node: ast.Attribute) -> str:
     text = _text(node.value)
-    if node.attr in _VALUES and text != "<this>":
+    if node.attr in ("value", "string_value", "bool_value") and text != "<this>":
         return text
     inner = "self" if text == "<this>" else text[1:-1]
     is_name = text[:1] == "<" and text[-1:] == ">" and inner.replace(".", "").isidentifier()
@@ -357,7 +348,7 @@ def _put_in(text: str, words: list[ast.expr]) -> str:
 
 def _called(node: ast.Call) -> str:
     name = _called_name(node)
-    if name in _PARAMETERS:
+    if name in ("get_parameter", "declare_parameter", "get_parameter_or"):
         named = (it.value for it in node.keywords if it.arg == "name")
         key = node.args[0] if node.args else next(named, None)
         return f"<@{braced(_text(key))}>" if key is not None else ANY

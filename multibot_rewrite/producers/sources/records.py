@@ -15,6 +15,18 @@ from typing import NamedTuple
 ANY, OTHERWISE = "<?>", "?"
 
 
+def braced(text: str) -> str:
+    """The text inside another name in <>."""
+    return text.replace("<", "{").replace(">", "}")
+
+
+def negated(condition: str) -> str:
+    """The opposite of a condition, as ``Call`` has it."""
+    if condition == OTHERWISE:
+        return OTHERWISE
+    return condition[1:] if condition[:1] == "!" else f"!{condition}"
+
+
 class Place(NamedTuple):
     """Where something was read: a repository, its tag or commit, a path in it, a line, a package."""
 

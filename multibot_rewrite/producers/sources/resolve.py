@@ -23,7 +23,6 @@ from multibot_rewrite.producers.sources.records import (
 )
 
 DEEPEST = 12
-SELF = "self."
 _PART = re.compile(r"<([^<>]*)>")
 _BRACED = re.compile(r"\{([^{}]*)\}")
 _ROS_TYPE = re.compile(r"\b(\w+)(?:::|/|\.)(msg|srv|action)(?:::|/|\.)(?:_\w+\.)?(\w+)")
@@ -93,7 +92,7 @@ def names_of(source: Source) -> Names:
         _by(source.constructors, lambda it: (it.owner, it.function)),
         _by(source.values, lambda it: (it.owner, it.function, it.variable)),
         _by(source.values, lambda it: (it.owner, it.variable)),
-        _by(outside, lambda it: it.variable.removeprefix(SELF)),
+        _by(outside, lambda it: it.variable.removeprefix("self.")),
         _by(source.aliases, lambda it: it.name),
         _by((it for it in source.values if frame_in(it)), lambda it: (it.owner, it.function)),
     )

@@ -53,7 +53,6 @@ OF_PYTHON = {
 }
 OF_ANY = {"create_publisher", "create_subscription", "create_service", "create_client"}
 OF_ROS_1 = {"advertise", "advertiseCamera"}
-_IMAGES = {"create_publisher", "create_subscription"}
 IMAGE = "sensor_msgs/msg/Image"
 
 
@@ -140,22 +139,17 @@ def events_of(names: Names, starts: Sequence[Spot | Class]) -> Iterator[Event]:
     # What no name has called: callbacks, threads.
     for made in [one for every in [*walk.objects.values()] for one in every]:
         yield from _rest(walk, made)
-    yield from _never_reached(walk)
+    # What would declare an endpoint, in a part that no call was followed to. A node of its own that
+    # this program does not make is none of its parts.
+    for (owner, function), rows in names.calls.items():
+        left = (it for it in rows if it.name in OF_ANY and it.place not in walk.seen)
+        if (first_left := next(left, None)) and not _is_new_node(names, f"<new {owner}>"):
+            what = f"{owner or function}, which nothing is seen to call,"
+            yield Unread(what, first_left.place)
     if walk.budget[0] <= 0:
         first = starts[0]
         path = first.place.path if isinstance(first, Class) else first.path
         yield Unread("more than is followed", Place("", "", path, 1))
-
-
-def _never_reached(walk: _Walk) -> Iterator[Unread]:
-    """What would declare an endpoint, in a part that no call was followed to. A node of its own that
-    this program does not make is none of its parts."""
-    names = walk.names
-    for (owner, function), rows in names.calls.items():
-        for it in (it for it in rows if it.name in OF_ANY and it.place not in walk.seen):
-            if not _is_new_node(names, f"<new {owner}>"):
-                yield Unread(f"{owner or function}, which nothing is seen to call,", it.place)
-                break
 
 
 def _rest(walk: _Walk, made: Made) -> Iterator[Event]:
@@ -428,7 +422,7 @@ def _declared(
     for api in apis()[name]:
         if (api.node == OWN and not nodes) or (ARGUMENT in api.name and not others):
             continue
-        if not own and not types and nodes and name in _IMAGES:
+        if not own and not types and nodes and name in {"create_publisher", "create_subscription"}:
             # That of image_transport; those of rclcpp have a type.
             api = api._replace(function="advertise", type=IMAGE)  # noqa: PLW2901
         text = api.name.replace(ARGUMENT, others[0] if others else "")

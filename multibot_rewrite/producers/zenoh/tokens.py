@@ -11,7 +11,7 @@ first, and the hash, which is ``TypeHashNotSupported`` in Humble. Neither is tak
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from math import inf
 from typing import NamedTuple
@@ -39,7 +39,6 @@ _ENDS = {
     "SC": (SERVICE, CALLS),
 }
 _NODE_PARTS, _END_PARTS = 9, 13
-_HASH = "RIHS"
 # qos.cpp.
 _DEFAULT_DEPTH = 42
 # RMW_DURATION_INFINITE: the seconds and nanoseconds of the largest int64.
@@ -92,7 +91,7 @@ def _end(kind: str, node: str, session: str, rest: Sequence[str]) -> End:
     if not name.startswith("/"):
         raise _Malformed
     role = _ENDS[kind]
-    known = hash_ if hash_.startswith(_HASH) else ""
+    known = hash_ if hash_.startswith("RIHS") else ""
     return End(*role, name, ros_type(type_), known, node, read_qos(rest[3]), session)
 
 
@@ -171,12 +170,9 @@ def nodes(tokens: Iterable[Token]) -> list[Node]:
 def endpoints(tokens: Iterable[Token]) -> list[End]:
     """The endpoints in order, with the actions that topics of theirs belong to."""
     ends = [it.end for it in tokens if it.end]
-    return sorted([*ends, *_actions(ends)], key=repr)
-
-
-def _actions(ends: Iterable[End]) -> Iterator[End]:
-    for end in ends:
-        if end.kind == TOPIC and end.name.endswith(_FEEDBACK) and end.type.endswith(_FEEDBACK_TYPE):
+    for end in [it for it in ends if it.kind == TOPIC]:
+        if end.name.endswith(_FEEDBACK) and end.type.endswith(_FEEDBACK_TYPE):
             role, name = _ACTION_ROLES[end.role], end.name.removesuffix(_FEEDBACK)
             type_ = end.type.removesuffix(_FEEDBACK_TYPE)
-            yield End(ACTION, role, name, type_, "", end.node, None, end.process)
+            ends.append(End(ACTION, role, name, type_, "", end.node, None, end.process))
+    return sorted(ends, key=repr)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import SRDF, URDF
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.simulators import simulator_plugins
@@ -26,11 +27,8 @@ def urdf_faults(subject: Subject) -> tuple[Problem, ...]:
 
 @memoized
 def _by_kind(subject: Subject) -> Mapping[str, list[Problem]]:
-    found: dict[str, list[Problem]] = {}
-    for faults_of in (urdf_faults, _of_srdf, _in_blocks, _of_parameters):
-        for it in faults_of(subject):
-            found.setdefault(it.code, []).append(it)
-    return found
+    readers = (urdf_faults, _of_srdf, _in_blocks, _of_parameters)
+    return lists_by_key((it.code, it) for faults_of in readers for it in faults_of(subject))
 
 
 def _of_srdf(subject: Subject) -> Iterable[Problem]:

@@ -17,7 +17,6 @@ from multibot_rewrite.rules.subject import Subject
 if TYPE_CHECKING:
     from multibot_rewrite.description.sources.trace import WrittenAt
 
-Starts = Mapping[_Element, int]
 _ATTRIBUTE = lazy_compile(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 # What is the same text for every caller.
 _CONSTANT = lazy_compile(rb"\$\((?:find [^()]*|dirname|env [^()]*)\)|\$\$")
@@ -34,7 +33,7 @@ def claim_is_fixed(subject: Subject, claim: Claim) -> bool:
     return is_fixed(subject, claim.start, claim.attribute)
 
 
-def starts_of(subject: Subject, elements: Collection[_Element]) -> Starts:
+def starts_of(subject: Subject, elements: Collection[_Element]) -> Mapping[_Element, int]:
     """Where the tags of some elements start."""
     wanted = set(elements)
     every = zip(subject.document.elements, subject.document.starts, strict=True)

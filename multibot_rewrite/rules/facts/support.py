@@ -90,7 +90,5 @@ def side(start: Point, end: Point, point: Point) -> float:
 
 def beyond(corners: Sequence[Point], point: Point) -> float:
     """How far a point is outside of a convex area, or beside a line; below 0 inside of it."""
-    ways = []
-    for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
-        ways.append(-side(start, end, point) / hypot(end[0] - start[0], end[1] - start[1]))
-    return max(ways)
+    edges = zip(corners, [*corners[1:], corners[0]], strict=True)
+    return max(-side(a, b, point) / hypot(b[0] - a[0], b[1] - a[1]) for a, b in edges)

@@ -68,29 +68,21 @@ def not_converted(file: NamedFile) -> Iterator[Finding]:
     known: Mapping[str, list[str]] = bridge_data()["pairs"]
     for node in _rows(file):
         ros, gz = (text_in(row_of(node), key) for key in TYPES)
-        yield from _misspelt(node, ros, gz, known)
         bare, belongs = _bare(gz), known.get(ros, ())
         others = [it for it, types in known.items() if bare in types]
+        cased = (it for it in known if it.lower() == ros.lower())
+        alike = "" if ros in known else next(cased, nearest(ros, known, SLIP))
+        if alike:
+            yield remark_at(node, f"there is no type {ros!r}", f"did you mean {alike!r}?")
+        # A gz type of a package that there is not.
+        if others and gz not in (f"gz.msgs.{bare}", f"ignition.msgs.{bare}"):
+            yield remark_at(node, f"there is no gz type {gz!r}", f"write gz.msgs.{bare}")
+        near = "" if others else nearest(bare, belongs, SLIP)
+        if near:
+            yield remark_at(node, f"there is no gz type {gz!r}", f"did you mean gz.msgs.{near}?")
         if belongs and others and bare not in belongs:
             message = f"{ros} and {gz} are not converted into each other"
             yield remark_at(node, message, f"with {gz} write {' or '.join(others)}")
-
-
-def _misspelt(
-    node: yaml.Node, ros: str, gz: str, known: Mapping[str, list[str]]
-) -> Iterator[Finding]:
-    """Types that are nearly one, and gz types of a package that there is not."""
-    cased = (it for it in known if it.lower() == ros.lower())
-    alike = "" if ros in known else next(cased, nearest(ros, known, SLIP))
-    if alike:
-        yield remark_at(node, f"there is no type {ros!r}", f"did you mean {alike!r}?")
-    bare = _bare(gz)
-    whole = any(bare in types for types in known.values())
-    if whole and gz not in (f"gz.msgs.{bare}", f"ignition.msgs.{bare}"):
-        yield remark_at(node, f"there is no gz type {gz!r}", f"write gz.msgs.{bare}")
-    near = "" if whole else nearest(bare, known.get(ros, ()), SLIP)
-    if near:
-        yield remark_at(node, f"there is no gz type {gz!r}", f"did you mean gz.msgs.{near}?")
 
 
 @robots_rule("MB889", "bridge-of-second-model", WARNING, BRIDGE)

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import dicts_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
 from multibot_rewrite.base.releases import RELEASES
@@ -33,8 +33,6 @@ _ARRAY = lazy_compile(r"(\w+?)_array(?:_fixed_\d+)?")
 _WORD = lazy_compile(r"\w+")
 _CAPITALS = lazy_compile(r"[A-Z][A-Z0-9]*_[A-Z0-9_]+")
 ID = "<id>."
-_NUMBERS = frozenset(("double", "int", "bool"))
-_SURE = frozenset((YAML, DEMANDED))
 _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
@@ -75,10 +73,8 @@ def _meant_by(
     said = {it.name for it in section.given}
     free = [it for it in there if it not in said]
     # Group -> last word -> parameter.
-    groups: dict[str, dict[str, str]] = defaultdict(dict)
-    for name in free:
-        group, _, last = name.rpartition(".")
-        groups[group][last] = name
+    parts = ((name.rpartition("."), name) for name in free)
+    groups = dicts_by_key((group, last, name) for (group, _, last), name in parts)
     guesses = Guesses()
     for it in unknown:
         yield it, "" if _renamed(it.name) in said else _meant(it.name, free, groups, guesses)
@@ -161,7 +157,7 @@ def _wrong_type(it: Setting, known: Sequence[Declared]) -> str:
         return ""
     (type_,) = types
     # What code gives as a default may be a variable of any type.
-    sure = all(fact.how in _SURE for fact in facts) or type_ in _NUMBERS
+    sure = all(fact.how in (YAML, DEMANDED) for fact in facts) or type_ in ("double", "int", "bool")
     return type_ if sure and _expected(type_) not in ("", _type_of(it.value)) else ""
 
 

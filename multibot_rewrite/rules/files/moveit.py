@@ -80,11 +80,8 @@ def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> 
     for it in section.given:
         found = _JOINT.match(it.name)
         joint = found["joint"] if found else ""
-        if (
-            not is_plain(joint)
-            or joint in there | told
-            or any(joint.encode() in it for it in srdfs)
-        ):
+        is_known = joint in there | told or any(joint.encode() in it for it in srdfs)
+        if is_known or not is_plain(joint):
             continue
         told.add(joint)
         message = f"joint {joint!r}, which has limits here, is not in the description"

@@ -258,7 +258,14 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
         yield from found if is_whole or not controller else ()
         for fact in facts:
             for words in (words for check, words in fact.checks if check == "required_or"):
-                yield from _required_or(file, section, fact, words.split())
+                names = (fact.path, *words.split())
+                there = (
+                    it in section.whole or is_set_beside(file, section.title, it) for it in names
+                )
+                if section.given and not any(there):
+                    message = f"{section.title}: there is none of {', '.join(names)}"
+                    hint = f"add one; see {fact.source}"
+                    yield remark_at(section.given[0].key, message, hint, WARNING)
     for it in demands(file, "needs"):
         # A value that only a launch file fills in is there, too.
         if it.given.value is True and it.section.at + it.words[0] not in it.section.whole:
@@ -276,16 +283,6 @@ def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> 
         if not there and (listed is None or (isinstance(listed, list) and word in listed)):
             message = f"{section.title}: {name} is missing"
             yield remark_at(first, message, f"the node asks for it; see {fact.source}", WARNING)
-
-
-def _required_or(
-    file: NamedFile, section: Section, fact: Declared, others: Sequence[str]
-) -> Iterator[Finding]:
-    names = (fact.path, *others)
-    there = any(it in section.whole or is_set_beside(file, section.title, it) for it in names)
-    if section.given and not there:
-        message = f"{section.title}: there is none of {', '.join(names)}"
-        yield remark_at(section.given[0].key, message, f"add one; see {fact.source}", WARNING)
 
 
 def _blocks(section: Section, path: str) -> Iterator[tuple[str, yaml.ScalarNode]]:

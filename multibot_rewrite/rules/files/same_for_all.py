@@ -119,29 +119,23 @@ def prefix_twice(key: str, value: str) -> str:
 @of_robots
 def prefix_only(file: NamedFile) -> Iterator[Finding]:
     """Prefixes that cannot hold the robot's name at the end, set or left to their default."""
+    found: list[tuple[str, Finding]] = []
     for site in file.names if file.kind in (PARAMS, MOVEIT) else ():
         if not expressible(file.context, site.kind):
-            yield _prefix_only(site.key or site.kind, remark(site, ""))
+            found.append((site.key or site.kind, remark(site, "")))
     seen: set[str] = set()
     for section, _ in file.pages:
         if section.node and not (section.shared or section.inner or section.full in seen):
             seen.add(section.full)
-            yield from _default_prefixes(file, section)
-
-
-def _default_prefixes(file: NamedFile, section: ParamSection) -> Iterator[Finding]:
-    every = section.node.defaults if section.node else ()
-    open_ = [it.path for it in every if not expressible(file.context, it.kind)]
-    given = [it for it in given_in(file) if it.node == section.path] if open_ else []
-    there = {path for it in given for path in it.values}
-    for path in open_:
-        if path not in there:
-            yield _prefix_only(path, remark_at(section.keys[-1], ""))
-
-
-def _prefix_only(name: str, at: Finding) -> Finding:
-    message = f"{name} is put in front of names by the node, so a postfix cannot be added"
-    return at._replace(message=message, hint="set affix: prefix")
+            open_ = [
+                it.path for it in section.node.defaults if not expressible(file.context, it.kind)
+            ]
+            given = [it for it in given_in(file) if it.node == section.path] if open_ else []
+            there = {path for it in given for path in it.values}
+            found += ((it, remark_at(section.keys[-1], "")) for it in open_ if it not in there)
+    for name, at in found:
+        message = f"{name} is put in front of names by the node, so a postfix cannot be added"
+        yield at._replace(message=message, hint="set affix: prefix")
 
 
 # The second one: camera_aravis, spinnaker_camera_driver.

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, rule
+from multibot_rewrite.base.grouping import dicts_by_key
 from multibot_rewrite.companions.named_file import PARAMS, NamedFile
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.plugins import FILTER
@@ -42,11 +43,10 @@ def broken_commands(file: NamedFile) -> Iterator[Finding]:
     for section in sections(file):
         if section.node is None or section.node.name != "joy_teleop":
             continue
-        commands: dict[str, dict[str, Setting]] = {}
-        for it in section.given:
-            name, dot, rest = it.name.partition(".")
-            if dot and name != "qos_overrides":
-                commands.setdefault(name, {})[rest] = it
+        parts = ((it.name.partition("."), it) for it in section.given if "." in it.name)
+        commands = dicts_by_key(
+            (name, rest, it) for (name, _, rest), it in parts if name != "qos_overrides"
+        )
         for name, values in commands.items():
             if values.keys().isdisjoint(_WORDS):
                 continue  # another node may have that name: teleop_twist_joy has blocks, too

@@ -37,7 +37,6 @@ from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 _POSE = ("-x", "-y", "-z")
 # Two that stand nearer than this are in each other, whatever they are.
 _NEAR = 0.01
-_INTO_GAZEBO = DIRECTIONS["out"]
 
 
 @launch_rule("MG701", "model-name-twice")
@@ -118,7 +117,7 @@ def _lacking(launched: Launched, inwards: bool) -> Iterator[tuple[InSimulator, s
         (model, (it.ros_type, f"/{it.gz.lstrip('/')}"))
         for model in launched.simulated
         for it in model.topics
-        if (it.direction == _INTO_GAZEBO) is inwards
+        if (it.direction == DIRECTIONS["out"]) is inwards
     ]
     alike = {_plain(model, one) for model, one in every if one[1] in told}
     for model, one in every:

@@ -13,11 +13,12 @@ parameter_bridge.cpp.
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
 
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import check_node_name, expand, resolve_bound
 from multibot_rewrite.base.wording import shorten
@@ -267,18 +268,13 @@ def read_by_joints(launched: Launched) -> Iterator[tuple[Run, str]]:
 @launch_rule("MG716", "joints-of-itself", level=WARNING)
 def of_itself(launched: Launched) -> Iterator[Finding]:
     """Where all nodes are known."""
-    senders: dict[str, set[str]] = defaultdict(set)
-    for end in launched.system.ends:
-        if end.role == PUBLISHES:
-            senders[end.name].add(end.node)
+    sent = (it for it in launched.system.ends if it.role == PUBLISHES)
+    senders = sets_by_key((it.name, it.node) for it in sent)
     for node, topic in read_by_joints(launched) if launched.whole else ():
         if senders[topic] == {node.full_name}:
             message = f"{node.full_name} reads {topic}, which it sends itself"
             hint = "name another topic in source_list, or leave it out"
             yield at(of_itself, node.place, message, hint, names=(topic,))
-
-
-_NUMBERS = frozenset({"-x", "-y", "-z", "-R", "-P", "-Y"})
 
 
 @launch_rule("MG729", "program-ends-at-once")
@@ -294,7 +290,7 @@ def ends(launched: Launched) -> Iterator[Finding]:
             yield at(ends, it.place, message, "write it with letters, digits and underscores")
         if f"{it.package}/{it.executable}" in programs().spawners:
             for flag, word in pairwise(it.arguments):
-                if flag in _NUMBERS and number(word) is None:
+                if flag in {"-x", "-y", "-z", "-R", "-P", "-Y"} and number(word) is None:
                     message = f"{it.executable}: {flag} {word} is no number"
                     yield at(ends, it.place, message, "write a number")
     for node in launched.nodes:

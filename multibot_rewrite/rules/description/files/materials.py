@@ -11,10 +11,9 @@ from multibot_rewrite.base.findings.finding import WARNING, rule
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.rules.facts.elements import Elements
 from multibot_rewrite.rules.facts.faults import urdf_faults
 from multibot_rewrite.rules.facts.memo import lacking, memoized
-from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.rules.subject import Elements, Subject
 
 Look = tuple[tuple[float, ...] | str, str]
 

@@ -15,7 +15,9 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.outside import file_state, is_file, kept_bytes
 from multibot_rewrite.description.checks.numbers import Vector, vector
 from multibot_rewrite.description.checks.poses import minus
@@ -120,12 +122,13 @@ def _packages(name: str, first: str, file: str, roots: tuple[str, ...]) -> tuple
 @rule("MB701", "mesh-missing", ERROR)
 def mesh_missing(subject: Subject) -> Iterator[Problem]:
     """Files of packages that were found, and relative ones."""
-    lost: dict[tuple[str, ...], list[MeshFile]] = {}
-    for it in lookups(subject):
-        if it.folders and not it.found and not _elsewhere(subject, it):
-            lost.setdefault(_missing_folder(it) or (it.path,), []).append(it)
-    for first, *others in lost.values():
-        near = _nearest(first)
+    lost = (it for it in lookups(subject) if it.folders and not it.found)
+    alike = lists_by_key(
+        (_missing_folder(it) or (it.path,), it) for it in lost if not _elsewhere(subject, it)
+    )
+    for first, *others in alike.values():
+        folder = os.path.join(first.folders[0], os.path.dirname(first.path))
+        near = nearest(os.path.basename(first.path), sorted(entries(folder)))
         looked = f"correct the path, or add the file; looked in {first.folders[0]}"
         hint = f"did you mean {near!r}?" if near else looked
         more = f", nor do {len(others)} more in its folder" if others else ""
@@ -169,13 +172,6 @@ def _elsewhere(subject: Subject, it: MeshFile) -> str:
         if found := find_in(folder, path):
             return f"package://{package}/{os.path.relpath(os.path.join(folder, found), root)}"
     return ""
-
-
-def _nearest(it: MeshFile) -> str:
-    from multibot_rewrite.base.nearest import nearest
-
-    folder = os.path.join(it.folders[0], os.path.dirname(it.path))
-    return nearest(os.path.basename(it.path), sorted(entries(folder)))
 
 
 @rule("MB702", "package-not-found", NOTE)

@@ -139,7 +139,6 @@ def find_left_over(subject: Subject) -> Iterator[Problem]:
         yield problem(found[0], message, "write package://NAME/...")
 
 
-READABLE = frozenset(("stl", "dae", "obj"))
 # Programs that cannot read a format which RViz reads (through assimp).
 PARTLY = {
     "gltf": "Gazebo Classic and gz before Garden cannot read glTF",
@@ -155,7 +154,7 @@ def mesh_format_unknown(subject: Subject) -> Iterator[Problem]:
     """Extensions of meshes that no program knows."""
     for it in _meshes(subject):
         ending = _ending(it)
-        if ending not in READABLE and ending not in PARTLY:
+        if ending not in ("stl", "dae", "obj") and ending not in PARTLY:
             fault = f"no program can load .{ending}" if ending else "it has no extension"
             yield problem(it, f"{it.name!r}: {fault}", "use .stl, .dae or .obj")
 

@@ -18,9 +18,8 @@ from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.shapes import Extent, around, extent_of, placed_box
 from multibot_rewrite.rules.description.meshes.lookup import box_of
 from multibot_rewrite.rules.description.physics import inertia
-from multibot_rewrite.rules.facts.elements import Elements
 from multibot_rewrite.rules.facts.memo import memoized, parts
-from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.rules.subject import Elements, Subject
 
 LONG_SHAPE = 50.0
 LARGE_SCALE, SMALL_SCALE, UNEVEN = 50.0, 1e-5, 100.0

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from lxml.etree import _Element
-
 from multibot_rewrite.base.findings.finding import WARNING, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks.numbers import Vector
@@ -108,7 +106,11 @@ def scan_turned_around(subject: Subject) -> Iterator[Problem]:
         casts = sensor is not None and sensor.get("type") == "ray"
         for part, low, high in _BOUNDS[:1] if casts else _BOUNDS:
             for element in it.iterfind(part):
-                yield from _swapped(element, low, high)
+                least, most = number_at(element, low), number_at(element, high)
+                place = element.find(low)
+                if place is not None and least is not None and most is not None and least > most:
+                    message = f"{low} {least:g} is above {high} {most:g}"
+                    yield Problem(place, message, "", "swap them")
 
 
 _BOUNDS = (
@@ -116,15 +118,6 @@ _BOUNDS = (
     ("scan/horizontal", "min_angle", "max_angle"),
     ("scan/vertical", "min_angle", "max_angle"),
 )
-
-
-def _swapped(element: _Element, low: str, high: str) -> Iterator[Problem]:
-    least, most = number_at(element, low), number_at(element, high)
-    if least is not None and most is not None and least > most:
-        place = element.find(low)
-        if place is not None:
-            message = f"{low} {least:g} is above {high} {most:g}"
-            yield Problem(place, message, "", "swap them")
 
 
 @rule("MB629", "camera-clip", WARNING)

@@ -21,8 +21,7 @@ from multibot_rewrite.description.sources.packages import in_sources
 from multibot_rewrite.description.sources.read import XACRO
 from multibot_rewrite.description.sources.trace import alike
 from multibot_rewrite.description.steps.document import Document
-from multibot_rewrite.rules.description.structure.mimic import mimic_of_none
-from multibot_rewrite.rules.facts.elements import COMMAND, OWNERS, STANDARD, STATE, name_of
+from multibot_rewrite.rules.description.structure.mimic import controlled_joints, mimic_of_none
 from multibot_rewrite.rules.facts.memo import driven_joints, level_of_absence, since_jazzy
 from multibot_rewrite.rules.facts.simulators import (
     GAZEBO,
@@ -34,7 +33,7 @@ from multibot_rewrite.rules.facts.simulators import (
     simulator_of,
 )
 from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
-from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.rules.subject import COMMAND, OWNERS, STANDARD, STATE, Subject, name_of
 
 # Types that a motor cannot move.
 UNDRIVEN = ("fixed", "floating", "planar", "")
@@ -55,9 +54,8 @@ def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
 @rule("MB224", "driven-fixed-joint", ERROR)
 def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     """Joints that ros2_control is to move and that cannot."""
-    for it in _components(subject.document.root):
-        joint = subject.robot.joint.get(it.get("name", ""))
-        if joint is not None and joint.type == "fixed":
+    for it, joint in controlled_joints(subject):
+        if joint.type == "fixed":
             message = f"joint {joint.name!r} is fixed"
             yield Problem(it, message, "name", "remove it", level=since_jazzy(subject))
 
@@ -111,12 +109,8 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
     if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
         names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
         message = f"nothing drives the joint{'s' * (len(left) > 1)} {names}"
-        yield Problem(
-            left[0].element,
-            message,
-            "name",
-            "add to <ros2_control> what moves; publish the state of a passive joint",
-        )
+        hint = "add to <ros2_control> what moves; publish the state of a passive joint"
+        yield Problem(left[0].element, message, "name", hint)
 
 
 def _needs_a_drive(joint: Joint) -> bool:
@@ -125,17 +119,10 @@ def _needs_a_drive(joint: Joint) -> bool:
 
 def _mimicking(subject: Subject) -> Iterator[tuple[_Element, str]]:
     """Joints in <ros2_control> that follow another one, and which."""
-    for it in _components(subject.document.root):
-        joint = subject.robot.joint.get(it.get("name", ""))
-        mimic = None if joint is None else joint.element.find("mimic")
+    for it, joint in controlled_joints(subject):
+        mimic = joint.element.find("mimic")
         if mimic is not None and it.get("mimic", "").strip().lower() not in ("false", "0"):
             yield it, mimic.get("joint", "")
-
-
-def _components(root: _Element) -> Iterator[_Element]:
-    """The joints in <ros2_control>."""
-    for system in root.iterchildren("ros2_control"):
-        yield from system.iterchildren("joint")
 
 
 @rule("MB231", "repeated-interface", ERROR)
@@ -239,13 +226,8 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
             if is_here and not is_there(path) and not in_sources(path):
                 # A whole folder may be made by the build.
                 level = "" if is_folder(os.path.dirname(path)) else WARNING
-                yield Problem(
-                    it,
-                    f"there is no file {alike(path, os.curdir)}",
-                    "",
-                    "correct the path",
-                    level=level,
-                )
+                message = f"there is no file {alike(path, os.curdir)}"
+                yield Problem(it, message, "", "correct the path", level=level)
 
 
 def _is_told(subject: Subject, plugin: _Element) -> bool:

@@ -23,10 +23,9 @@ from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.sources.packages import entries, find_in, package_folder
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules import declaration
-from multibot_rewrite.rules.facts.elements import COMMAND, STATE, name_of
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
-from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.rules.subject import COMMAND, STATE, Subject, name_of
 
 if TYPE_CHECKING:
     from multibot_rewrite.system.records import Interface

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, locate, rule
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import ambiguous, repeated
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.rules.facts.elements import name_of
 from multibot_rewrite.rules.facts.memo import since_jazzy
 from multibot_rewrite.rules.schema.faults import canonical
-from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.rules.subject import Subject, name_of
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.sources.trace import WrittenAt
@@ -39,10 +39,8 @@ def duplicate_name(subject: Subject) -> Iterator[Problem]:
 
 def declared_twice(subject: Subject) -> Iterator[Problem]:
     """Links and joints; one finding for all that one macro call repeats."""
-    calls: dict[object, list[tuple[Claim, Claim]]] = {}
-    for claim, first in repeated(subject.inventory):
-        cause = _cause(subject, claim, first) or claim
-        calls.setdefault(cause, []).append((claim, first))
+    pairs = repeated(subject.inventory)
+    calls = lists_by_key((_cause(subject, *pair) or pair[0], pair) for pair in pairs)
     for (claim, first), *more in calls.values():
         text = f"{claim.site.kinds[0]} {claim.value!r} is declared twice"
         are = "are" if len(more) > 1 else "is"

@@ -5,7 +5,6 @@ of a description place and a plugin as well.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import NamedTuple
@@ -14,6 +13,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import FRAME_KINDS, make_naming
 from multibot_rewrite.base.nearest import HINTED, meant_name
@@ -54,13 +54,12 @@ def references(subject: Subject) -> References:
     """
     inventory = subject.inventory
     claims = doubtful(inventory)
-    by_code = defaultdict(list)
-    if not uses_xacro(inventory.document):
-        ends = loose_ends(claims, inventory.declared, subject.settings.naming.shared_frames)
-        loose = [it for it in ends if not _elsewhere(it, inventory)]
-        for problem in undeclared_names(loose, inventory.declared):
-            by_code[problem.code].append(problem)
-    return References(claims, by_code)
+    if uses_xacro(inventory.document):
+        return References(claims, lists_by_key(()))
+    ends = loose_ends(claims, inventory.declared, subject.settings.naming.shared_frames)
+    loose = [it for it in ends if not _elsewhere(it, inventory)]
+    found = undeclared_names(loose, inventory.declared)
+    return References(claims, lists_by_key((it.code, it) for it in found))
 
 
 def _is_part(inventory: Inventory) -> bool:

@@ -159,20 +159,12 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
     for it in subject.document.root.iterchildren("disable_collisions") if robot else ():
         for attribute in ("link1", "link2"):
             name = text_of(it, attribute)
-            if (
-                robot
-                and name in robot.link
-                and name not in reported
-                and not _has_shape(robot, name)
-            ):
+            is_new = robot and name in robot.link and name not in reported
+            if robot and is_new and not _has_shape(robot, name):
                 reported.add(name)
                 message = f"{name!r} has no collision geometry"
-                yield Problem(
-                    it,
-                    message,
-                    attribute,
-                    "delete the line, it has no effect; or add <collision> to the link",
-                )
+                hint = "delete the line, it has no effect; or add <collision> to the link"
+                yield Problem(it, message, attribute, hint)
 
 
 @srdf_rule("MB820", "adjacent-links", NOTE)

@@ -204,14 +204,19 @@ def _level(subject: Subject, param: _Element, text: str) -> str:
 
 def mimic_of_none(subject: Subject) -> Iterator[Problem]:
     """Joints of <ros2_control> that are to mimic and have no <mimic> in the robot."""
+    for it, joint in controlled_joints(subject):
+        is_to = it.get("mimic", "").strip().lower() in ("true", "1")
+        if is_to and "mimic" not in joint.parts:
+            message = f"joint {joint.name!r} is to mimic, and its <joint> has no <mimic>"
+            yield Problem(it, message, "mimic", "add <mimic>, or leave the attribute out")
+
+
+def controlled_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
+    """Yield the joints in <ros2_control> that the robot has, and what they are there."""
     for system in subject.elements.tops("ros2_control"):
         for it in system.iterchildren("joint"):
-            joint = subject.robot.joint.get(it.get("name", ""))
-            if joint is None or it.get("mimic", "").strip().lower() not in ("true", "1"):
-                continue
-            if "mimic" not in joint.parts:
-                message = f"joint {joint.name!r} is to mimic, and its <joint> has no <mimic>"
-                yield Problem(it, message, "mimic", "add <mimic>, or leave the attribute out")
+            if joint := subject.robot.joint.get(it.get("name", "")):
+                yield it, joint
 
 
 @rule("MB538", "command-beyond-limits", WARNING)

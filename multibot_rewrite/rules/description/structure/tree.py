@@ -63,26 +63,20 @@ def kinematic_loop(subject: Subject) -> Iterator[Problem]:
         at = joints.index(last) + 1
         names = [it.child for it in joints[at:] + joints[:at]]
         path = " -> ".join(repr(it) for it in names[:SHOWN]) + (" -> ..." if names[SHOWN:] else "")
-        yield Problem(
-            last.element,
-            f"joint {last.name!r} closes a loop of {len(joints)} joints: {last.child!r} is below "
-            f"itself ({names[-1]!r} -> {path})",
-        )
+        below = f"{last.child!r} is below itself ({names[-1]!r} -> {path})"
+        message = f"joint {last.name!r} closes a loop of {len(joints)} joints: {below}"
+        yield Problem(last.element, message)
 
 
 @rule("MB504", "several-parents", ERROR)
 def several_parents(subject: Subject) -> Iterator[Problem]:
     """Every joint but the first that has the link as its child; copies of a joint are MB201."""
     for name, joints in subject.robot.above.items():
-        if len(joints) == 1:
-            continue
         for joint in joints[1:]:
             if joint.name != joints[0].name and joint.parent != name:
-                yield Problem(
-                    joint.parts["child"],
-                    f"link {name!r} is the child of {joint.name!r} and of {joints[0].name!r}",
-                    "link",
-                )
+                both = f"{joint.name!r} and of {joints[0].name!r}"
+                message = f"link {name!r} is the child of {both}"
+                yield Problem(joint.parts["child"], message, "link")
 
 
 @rule("MB505", "unreachable-link", ERROR)
