@@ -229,7 +229,7 @@ def test_every_caveat_is_documented() -> None:
     rooms = ("system", "live", *(f"producers/{it}" for it in ("bags", "ros", "rosgraph", "zenoh")))
     files = (it for room in rooms for it in (root / "multibot_rewrite" / room).rglob("*.py"))
     source = "".join(it.read_text() for it in files)
-    page = (root / "docs/snapshot.md").read_text().partition("## Caveats")[2]
+    page = (root / "docs/snapshot.md").read_text().partition("## Limitations")[2]
     assert set(
         re.findall(
             r'(?:Caveat\(\s*|(?:BUSY_MACHINE|WAITED_FOR|SILENT|WITHOUT_READERS) = )"([\w-]+)"',

@@ -162,7 +162,7 @@ _LEFT = lazy_compile(rf"<[A-Za-z_]\w*>|\$\({IN_SUBSTITUTION}\)|\$\{{\w+\}}")
 
 def _placeholders(launched: Launched) -> Iterator[Finding]:
     """Those in parameter files as nodes get them, and in the words that start them; what has blanks
-    besides is a text."""
+    besides is a text. The share folder of a package that is not here is asked for as it starts."""
     given: list[tuple[Place, str]] = []
     for it in launched.graph.nodes:
         given += [(it.place, one) for one in chain(it.arguments, *it.remappings)]
@@ -172,8 +172,11 @@ def _placeholders(launched: Launched) -> Iterator[Finding]:
                     line = Place(text.file, one.start_mark.line + 1) if text.file else it.place
                     given += [(line, one.value)] if isinstance(one, yaml.ScalarToken) else []
     told = set()
+    started = {it.place.file for it in launched.graph.nodes}
     for place, value in given:
         left = _LEFT.search(value)
+        if left and place.file in started and left[0].startswith("$(find-pkg-share "):
+            continue
         if left and " " not in _LEFT.sub("", value) and (place.file, left[0]) not in told:
             told.add((place.file, left[0]))
             message = f"the placeholder {left[0]} stays in {value!r}: the launch fills nothing in"

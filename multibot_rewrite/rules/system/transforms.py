@@ -133,8 +133,10 @@ def _bare_frames(seen: Index, tree: Tree) -> list[str]:
 
 
 def _is_of_several(seen: Index, edge: Edge) -> bool:
-    """Do nodes of several robots send it, and is it not known to be the same of all?"""
-    return edge.several and not edge.transform and len(robots_of(seen, edge.publishers)) > 1
+    """Do nodes of several robots send it, is it below a robot's own frame, and is it not known to be
+    the same of all?"""
+    own = edge.parent not in WORLD_FRAMES and not edge.transform
+    return own and edge.several and len(robots_of(seen, edge.publishers)) > 1
 
 
 def _named_frames(seen: Index, tree: Tree) -> Iterator[str]:
