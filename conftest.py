@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The helpers of the tests are found by the pytest of Ubuntu 22.04, too: it has no setting for that."""
 
 import sys

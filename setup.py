@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """For colcon, which builds ament_python packages by setup.py; pip goes by pyproject.toml alone.
 
 What pyproject.toml says is read here instead of by setuptools: that of Ubuntu 24.04 refuses its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Prepares a release, and says what is new in it.
 
     python .ci/release.py prepare 0.3.0     writes the version and its date wherever they are said
@@ -21,7 +22,9 @@ ROOT = Path(__file__).resolve().parents[1]
 CHANGES = "CHANGELOG.rst"
 LABEL = "Forthcoming"
 VERSION = r"\d+\.\d+\.\d+"
-# Where the version is said; manual pages are made anew.
+# What has the version in it and is made anew: manual pages, and the badges of the README.
+MAKERS = ("share/make.py", "docs/site/badges.py")
+# Where the version is said.
 PLACES = {
     "pyproject.toml": rf'(?m)^(version = "){VERSION}(")$',
     "package.xml": rf"(<version>){VERSION}(</version>)",
@@ -95,8 +98,8 @@ def main(words: list[str]) -> int:
         return 1
     # The sources that were changed, not an installed package.
     environ = {**os.environ, "PYTHONPATH": str(ROOT)}
-    make = [sys.executable, ROOT / "share" / "make.py"]
-    return subprocess.run(make, env=environ, check=False).returncode
+    made = (subprocess.run([sys.executable, ROOT / it], env=environ, check=False) for it in MAKERS)
+    return max(it.returncode for it in made)
 
 
 if __name__ == "__main__":

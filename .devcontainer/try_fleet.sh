@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # The README's fleet in Gazebo: started without a window, checked against its plan, and driven.
 set -euo pipefail
 rover=$PWD/examples/launch_tutorial/rover.urdf

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Run the tests with the Python and the dependencies of an Ubuntu release: those of package.xml, as apt has them.
 #   sudo tests/in_ubuntu.sh jammy|noble|resolute [words for pytest]
 # Needs debootstrap, pip and 1 GB in /var/tmp, where the release stays for the next run; xacro comes from PyPI.

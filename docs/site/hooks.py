@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pages that are made of what the package knows, pages that are not in docs/, and where links lead.
 
 On GitHub all links are to files of the repository, and to a section of reference.md in place of a made

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws two robots in each layout: ``python docs/site/layout_pictures.py``.
 
 What is drawn is what a build writes: the frames, the tf topic, the nodes and the topics of its plan.

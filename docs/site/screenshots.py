@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Photographs the pages that the commands write: ``python docs/site/screenshots.py``, with chromium.
 
 Four of the README's robots, the report of a check that finds something, and that of twenty robots.

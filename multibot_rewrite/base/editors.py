@@ -9,10 +9,11 @@ from multibot_rewrite.base.bounded import load_json, read_bytes
 
 _PACKAGE = os.path.dirname(os.path.dirname(__file__))
 # The schemas of what people edit, below this package.
-FLEET, NODES, PLAN = (
+FLEET, NODES, PLAN, LINT = (
     "fleet/fleet.schema.json",
     "knowledge/nodes.schema.json",
     "system/system.schema.json",
+    "lint/lint.schema.json",
 )
 
 
@@ -37,7 +38,9 @@ def may_be_written(schema: str, path: str) -> bool:
     version?"""
     if not os.path.lexists(path):
         return True
-    return _name_in(path) == _name_in(os.path.join(_PACKAGE, schema))
+    own = _name_in(os.path.join(_PACKAGE, schema))
+    # Before it was an address it was a name.
+    return str(_name_in(path)).startswith((str(own), "urn:multibot_rewrite:"))
 
 
 def _name_in(path: str) -> object:

@@ -42,7 +42,7 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "inspect --suggest": (multibot.main, ["inspect", "--suggest", PATH], 2),
 }
 # Those that read no description.
-OTHERS = {"snapshot"}
+OTHERS = {"snapshot", "completion"}
 
 
 @pytest.fixture

@@ -29,7 +29,7 @@ pytestmark = pytest.mark.slow
 
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
 PAGE = (ROOT / "docs" / "lint.md").read_text()
-HOME = "https://github.com/OWNER/multibot_rewrite"
+HOME = "https://github.com/multibot-rewrite/multibot_rewrite"
 REVISION = f"v{__version__}"
 BASH = ("bash", "-e", "-o", "pipefail", "-c")
 IDENTITY = ("-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "init.defaultBranch=main")
@@ -49,7 +49,7 @@ def example(language: str, has: str) -> str:
 
 PRE_COMMIT = example("yaml", "hooks:")
 WORKFLOW = example("yaml", "workflow_call:")
-SHORT = example("yaml", "- uses: OWNER/")
+SHORT = example("yaml", "- uses: multibot-rewrite/")
 ACTION = ROOT / "action.yml"
 GITLAB = example("yaml", "codequality:")
 JENKINS = example("groovy", "pipeline")

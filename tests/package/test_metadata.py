@@ -101,7 +101,11 @@ def test_the_links_of_the_project_are_of_one_repository() -> None:
     site = (ROOT / "docs" / "site" / "mkdocs.yml").read_text()
     (home,) = re.findall(r'SITE_REPOSITORY, "([^"]+)"', site)
     assert {it.partition("/issues")[0].partition("/blob/")[0] for it in URLS.values()} == {home}
-    assert (ROOT / URLS["Changelog"].rpartition("/")[2]).is_file()
+    for page in ("Changelog", "Documentation"):
+        assert (ROOT / URLS[page].partition("/blob/main/")[2]).is_file()
+    urls = {it.get("type"): it.text for it in MANIFEST.iter("url")}
+    assert urls == {"repository": URLS["Repository"], "bugtracker": URLS["Issues"]}
+    assert URLS["Repository"] == home
 
 
 def test_what_is_always_needed_has_no_condition() -> None:
@@ -112,9 +116,11 @@ def test_what_is_always_needed_has_no_condition() -> None:
 
 
 def test_no_address_is_made_up() -> None:
-    """Domains for examples are not ours; .invalid says that there is none (RFC 2606)."""
+    """Domains for examples are not ours (RFC 2606), nor is any but that of the repository's owner."""
     (maintainer,) = MANIFEST.iter("maintainer")
-    assert not re.search(r"example\.(com|org|net)$", maintainer.get("email", ""))
+    owner = URLS["Repository"].split("/")[3]
+    assert maintainer.get("email") == f"{owner}@users.noreply.github.com"
+    assert "OWNER" not in "".join(URLS.values())
     assert all("email" not in author for author in PROJECT["authors"])
 
 

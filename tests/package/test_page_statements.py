@@ -27,6 +27,7 @@ OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]+")
 TOP = {
     *(".ci", ".devcontainer", ".dockerignore", ".github", ".gitignore", ".pre-commit-hooks.yaml"),
     *("CHANGELOG.rst", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "README.md", "SECURITY.md"),
+    *("LICENSES", "REUSE.toml"),  # where REUSE looks for licences
     *("MANIFEST.in", "package.xml", "pyproject.toml", "setup.cfg", "setup.py", "resource", "share"),
     *("action.yml", "benchmarks", "conftest.py", "docs", "examples", "fixtures"),
     *("multibot_rewrite", "tests", "tools"),

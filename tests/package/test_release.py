@@ -108,7 +108,8 @@ def test_the_wheel_has_what_shells_and_launch_files_look_for(archives: Path) -> 
     names = zipfile.ZipFile(wheel_of(archives)).namelist()
     found = {it.partition(".data/data/")[2] for it in names} - {""}
     made = {it for it in ours(Path("share")) if not it.endswith("make.py")}
-    moved = {it.replace("share/launch", "share/multibot_rewrite/launch") for it in made}
+    ours_alone = re.compile(r"^share/(?=launch/|cmake/)")
+    moved = {ours_alone.sub("share/multibot_rewrite/", it) for it in made}
     assert found == moved
 
 

@@ -100,6 +100,22 @@ def test_pictures_are_what_a_build_writes(monkeypatch: pytest.MonkeyPatch) -> No
     assert [name for name, text in made.items() if "#c4261d" in text] == ["layout-before.svg"]
 
 
+def test_badges_say_what_the_package_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are files of the repository: nothing is asked of a server, and none is left out."""
+    monkeypatch.syspath_prepend(str(SITE))
+    from badges import FOLDER, badges
+
+    made = badges()
+    assert {it.name for it in FOLDER.glob("badge-*.svg")} == made.keys()
+    stale = [name for name, text in made.items() if (FOLDER / name).read_text() != text]
+    assert stale == [], "run python docs/site/badges.py"
+    top = (ROOT / "README.md").read_text().partition("\n## ")[0]
+    assert re.findall(r"\[!\[[^]]*\]\(docs/pictures/(badge-[^)]+)\)", top) == [*made]
+    assert "<title>Python: 3.10 to 3.14</title>" in made["badge-python.svg"]
+    assert "<title>ROS 2: humble, jazzy, kilted, lyrical, rolling</title>" in made["badge-ros.svg"]
+    assert "shields.io" not in (ROOT / "README.md").read_text()
+
+
 class Html(HTMLParser):
     """Where a page leads to, what it loads, and its anchors."""
 

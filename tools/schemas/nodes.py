@@ -10,6 +10,7 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
+from multibot_rewrite.base import editors
 from multibot_rewrite.knowledge.node_entries import ENDPOINT_KEYS
 from multibot_rewrite.knowledge.node_library import (
     ENTRY_KEYS,
@@ -19,6 +20,7 @@ from multibot_rewrite.knowledge.node_library import (
 )
 from multibot_rewrite.knowledge.parameter_entries import KINDS, PARAM_KEYS
 from multibot_rewrite.system.records import ROLES
+from tools.schemas import address
 
 Schema = dict[str, Any]
 
@@ -27,7 +29,7 @@ def schema() -> Schema:
     """JSON schema, draft 2020-12."""
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "$id": "urn:multibot_rewrite:nodes",
+        "$id": address(editors.NODES),
         "title": "Nodes and stacks: multibot plan --nodes, nodes: of a fleet file",
         **_keys(FILE_KEYS, parts=_named("part"), nodes=_named("node"), stacks=_named("stack")),
         "$defs": {

@@ -8,10 +8,12 @@ from collections.abc import Mapping
 from types import NoneType
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
+from multibot_rewrite.base import editors
 from multibot_rewrite.system.json import BEFORE, SCHEMA
 from multibot_rewrite.system.nested import ROW, WHEN
 from multibot_rewrite.system.record_values import LEFT_OUT, POLICIES, POLICY_NAMES, SHORT, needed
 from multibot_rewrite.system.records import KINDS, ROLES, SURE_WORDS, End, Node, Robot, Sure, System
+from tools.schemas import address
 
 _PLAIN = {str: "string", int: "integer", bool: "boolean"}
 _TEXT = {"type": "string"}
@@ -46,7 +48,7 @@ def schema() -> dict[str, object]:
     top["properties"]["ends"]["items"]["required"] = ["node"]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "$id": "urn:multibot_rewrite:system",
+        "$id": address(editors.PLAN),
         "title": "A system of robots: multibot snapshot, plan, build, check",
         **top,
         "required": ["schema"],

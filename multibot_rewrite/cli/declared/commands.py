@@ -132,7 +132,7 @@ class _Pages(Mapping[str, Command]):
 
 
 COMMANDS: Mapping[str, Command] = _Pages(
-    *("adopt", "build", "check", "check-launch", "init", "inspect", "join"),
+    *("adopt", "build", "check", "check-launch", "completion", "init", "inspect", "join"),
     *("plan", "rehearse", "rename", "snapshot", "view"),
 )
 # The commands that are programs of their own.

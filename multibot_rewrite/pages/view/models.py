@@ -31,7 +31,8 @@ MOST_FACES = 200_000
 # A mesh file is read whole.
 MOST_BYTES = 256 * 1024 * 1024
 # A shape for which the file gives no colour: the page gives it the colour of its robot.
-UNCOLOURED: tuple[float, ...] = ()
+Colour = tuple[float, ...]
+UNCOLOURED: Colour = ()
 _LIBRARY_END = "THREE.GLTFLoader=GLTFLoader;})();"
 Matrix = Sequence[Sequence[float]]
 
@@ -166,9 +167,6 @@ def three() -> str:
     # What follows the last part of the library is trimesh's own viewer.
     library, end, _ = "\n".join(scripts).partition(_LIBRARY_END)
     return library + end
-
-
-Colour = tuple[float, ...]
 
 
 def load_urdf(root: _Element, source: str) -> Model:

@@ -3,11 +3,17 @@
 
 from __future__ import annotations
 
+import ctypes
 import errno
+import os
+import signal
 import struct
+from typing import NamedTuple
 
 import pytest
+from paths import FIXTURES
 
+from multibot_rewrite.description.sources.child import seccomp
 from multibot_rewrite.description.sources.child.seccomp import MACHINES, Machine, filter_program
 
 KILL, ALLOW, REFUSE = 0x80000000, 0x7FFF0000, 0x00050000 | errno.EPERM
@@ -74,7 +80,8 @@ def test_computing_is_allowed_and_acting_is_refused(name: str) -> None:
 def test_no_more_is_allowed_than_was_written_down(name: str) -> None:
     allowed = [number for number in range(1000) if decide(MACHINES[name], number) == ALLOW]
     assert len(allowed) == 24
-    assert set(allowed) == {*MACHINES[name].calls, *MACHINES[name].memory}
+    machine = MACHINES[name]
+    assert set(allowed) == {*machine.calls, *machine.memory, machine.asks[0]}
 
 
 @pytest.mark.parametrize("name", MACHINES)
@@ -127,3 +134,116 @@ def test_another_interface_of_the_processor_is_the_end(name: str) -> None:
     machine = MACHINES[name]
     assert decide(machine, COMPUTING[name]["read"], audit=0x40000003) == KILL
     assert decide(machine, 0x40000000 | COMPUTING[name]["write"]) == KILL
+
+
+class Call(NamedTuple):
+    """A system call: its number by processor, and the published filter that refuses it."""
+
+    name: str
+    numbers: dict[str, int]
+    refused_by: str
+
+
+def _calls() -> list[Call]:
+    lines = (FIXTURES / "system_calls.tsv").read_text().splitlines()
+    head, *rows = (it.split("\t") for it in lines if not it.startswith("#"))
+    assert head[1:3] == ["x86_64", "aarch64"]
+    return [
+        Call(name, {key: int(it) for key, it in zip(head[1:3], its, strict=True) if it}, by)
+        for name, *its, by in rows
+    ]
+
+
+CALLS = _calls()
+# What a process does that computes and answers; with files also what reads and writes a folder.
+COMPUTING_CALLS = """
+read write close lseek brk mmap munmap mprotect mremap madvise rt_sigaction rt_sigprocmask rt_sigreturn
+sigaltstack sched_yield getpid gettid gettimeofday clock_gettime futex restart_syscall exit exit_group
+getrandom
+"""
+FILE_CALLS = """
+stat fstat lstat newfstatat statx access faccessat faccessat2 readlink readlinkat getcwd chdir openat
+pread64 pwrite64 readv writev dup ioctl fcntl fsync fdatasync ftruncate getdents getdents64 mkdir
+mkdirat rmdir unlink unlinkat rename renameat renameat2 nanosleep clock_nanosleep clock_getres uname
+sysinfo times getrusage getuid getgid geteuid getegid getppid sched_getaffinity
+"""
+COMPUTES = {*COMPUTING_CALLS.split()}
+WITH_FILES = COMPUTES | {*FILE_CALLS.split()}
+# Of those that others refuse: the time that this process took, which Python's modules ask for.
+OPEN = {"getrusage", "times"}
+
+
+@pytest.mark.parametrize("files", [False, True])
+@pytest.mark.parametrize("name", MACHINES)
+def test_each_call_is_refused_unless_it_computes(name: str, files: bool) -> None:
+    """Each of Linux, by its number in the kernel's own tables."""
+
+    def answer(call: Call) -> int:
+        # What may be asked of a file by ioctl is one thing, 0 is none.
+        second = 0x5451 if call.name == "ioctl" else 0
+        return decide(MACHINES[name], call.numbers[name], files=files, second=second)
+
+    answers = {it.name: answer(it) for it in CALLS if name in it.numbers}
+    computing = {it for it in (WITH_FILES if files else COMPUTES) if it in answers}
+    assert len(answers) > 300 and set(answers.values()) == {ALLOW, REFUSE}
+    assert {call for call, it in answers.items() if it == ALLOW} == computing
+
+
+def test_what_published_filters_refuse_is_refused() -> None:
+    """Groups of systemd that a service does without, and what flatpak keeps from any application."""
+    others = {it.name for it in CALLS if it.refused_by}
+    assert len(others) > 150 and {it.refused_by for it in CALLS} >= {"@debug", "@mount", "flatpak"}
+    assert others & WITH_FILES == OPEN and not others & COMPUTES
+
+
+# include/uapi/linux/futex.h. Chromium's sandbox refuses those of priorities as well (RestrictFutex in
+# syscall_parameters_restrictions.cc): CVE-2014-3153 was one of them.
+WAIT, WAKE, FD, REQUEUE, CMP_REQUEUE, WAKE_OP, WAIT_BITSET, WAKE_BITSET = 0, 1, 2, 3, 4, 5, 9, 10
+LOCK_PI, UNLOCK_PI, TRYLOCK_PI, WAIT_REQUEUE_PI, CMP_REQUEUE_PI, LOCK_PI2 = 6, 7, 8, 11, 12, 13
+PRIVATE, REALTIME = 128, 256
+
+
+@pytest.mark.parametrize("files", [False, True])
+@pytest.mark.parametrize("name", MACHINES)
+def test_a_lock_inherits_no_priority(name: str, files: bool) -> None:
+    def answer(operation: int) -> int:
+        number = COMPUTING[name]["futex"]
+        return decide(MACHINES[name], number, files=files, second=operation)
+
+    waits = (WAIT, WAKE, REQUEUE, CMP_REQUEUE, WAKE_OP, WAIT_BITSET, WAKE_BITSET)
+    assert {answer(it | more) for it in waits for more in (0, PRIVATE)} == {ALLOW}
+    # What Python's locks with a limit of time ask for: glibc, pthread_cond_clockwait.
+    assert {answer(WAIT_BITSET | REALTIME | more) for more in (0, PRIVATE)} == {ALLOW}
+    never = (FD, LOCK_PI, UNLOCK_PI, TRYLOCK_PI, WAIT_REQUEUE_PI, CMP_REQUEUE_PI, LOCK_PI2)
+    for more in (0, PRIVATE, REALTIME, PRIVATE | REALTIME):
+        assert {answer(it | more) for it in never} == {REFUSE}
+
+
+@pytest.mark.more
+@pytest.mark.parametrize("files", [False, True])
+def test_the_kernel_refuses_each_of_them(files: bool) -> None:
+    """Asked for in a process with the filter: whatever is refused does nothing, and says EPERM."""
+    name = os.uname().machine
+    if name not in MACHINES:
+        pytest.skip(f"no filter for {name}")
+    allowed = WITH_FILES if files else COMPUTES
+    numbers = [it.numbers[name] for it in CALLS if name in it.numbers and it.name not in allowed]
+    ask = ctypes.CDLL(None, use_errno=True).syscall
+    ask.restype = ctypes.c_long
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            signal.alarm(20)
+            if seccomp.enclose(files):
+                for number in numbers:
+                    answer = ask(number, 0, 0, 0, 0, 0, 0)
+                    refused = answer == -1 and ctypes.get_errno() == errno.EPERM
+                    os.write(writing, b"." if refused else b"%d " % number)
+        finally:
+            os._exit(0)
+    os.close(writing)
+    with os.fdopen(reading, "rb") as file:
+        said = file.read()
+    os.waitpid(child, 0)
+    assert len(numbers) > 200 and said == b"." * len(numbers)
