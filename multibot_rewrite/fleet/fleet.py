@@ -272,22 +272,25 @@ def planned(fleet: Fleet) -> System:
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
     plan = expect(fleet.table, fleet.naming, frames, named, fleet.tags, fleet.maybe_real)
+    # What could not be read of launch files: the nodes in it are not in the plan.
+    asked = ((NOT_READ, WARNING), (NOT_KNOWN_PROCESS, NOTE))
+    not_read = (it for it in fleet.table.problems if (it.code, it.level) in asked)
+    # The transforms that nodes' parameters name.
+    told = (
+        edge._replace(publishers=(it.full_name,))
+        for it in fleet.table.runs
+        if it.fact.package != STATE_PUBLISHER
+        for edge in fleet.edges.get((it.robot, it.node), ())
+    )
     whole = plan._replace(
-        edges=tuple(_sends(fleet)),
+        edges=tuple(told),
         release=fleet.table.release,
-        gaps=(*fleet.gaps, *_not_read(fleet)),
+        gaps=(*fleet.gaps, *not_read),
         topics=fleet.bridged,
         parameters=tuple(_parameters(fleet)),
         domains=fleet.apart.domains,
     )
     return with_bridges(whole, fleet.apart.crossing) if whole.domains else whole
-
-
-def _not_read(fleet: Fleet) -> Iterator[Finding]:
-    """Yield what could not be read of launch files: the nodes in it are not in the plan."""
-    problems = fleet.table.problems
-    asked = ((NOT_READ, WARNING), (NOT_KNOWN_PROCESS, NOTE))
-    yield from (it for it in problems if (it.code, it.level) in asked)
 
 
 def _parameters(fleet: Fleet) -> Iterator[Parameter]:
@@ -302,15 +305,6 @@ def _parameters(fleet: Fleet) -> Iterator[Parameter]:
             given[FRAME_PREFIX] = f"{fleet.tags.get(it.robot, it.robot)}/"
         for name, value in given.items():
             yield Parameter(it.full_name, name, parameter_text(value))
-
-
-def _sends(fleet: Fleet) -> Iterator[Edge]:
-    """The transforms that nodes' parameters name."""
-    for it in fleet.table.runs:
-        edges = fleet.edges.get((it.robot, it.node), ())
-        if edges and it.fact.package != STATE_PUBLISHER:
-            sender = (it.full_name,)
-            yield from (edge._replace(publishers=sender) for edge in edges)
 
 
 def possible(fleet: Fleet) -> tuple[End, ...]:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import robots_meet
@@ -170,23 +171,21 @@ def _fleet(
     naming: Naming,
     evidence: Mapping[NodeSources, RobotEvidence],
 ) -> Fleet:
-    groups: dict[NodeSources, list[RewrittenRobot]] = {}
-    for robot in robots:
-        groups.setdefault(node_sources(robot.spec), []).append(robot)
     fleets: list[Fleet] = []
     notes: list[Finding] = []
-    for key, group in groups.items():
+    for key, group in lists_by_key((node_sources(it.spec), it.member) for it in robots).items():
         found = evidence[key]
-        members = [it.member for it in group]
-        fleets.append(assemble(members, found.nodes, naming, file.distro, found.given))
+        fleets.append(assemble(group, found.nodes, naming, file.distro, found.given))
         notes += found.findings
     fleet = merge(fleets)
     members = [it.member for it in robots]
     written = {it.spec.namespace: it.written for it in robots}
     domains = {it.robot: it.number for it in file.apart.domains}
-    table, never = fleet.table, _never_meet(file)
+    own_domains = [it.number for it in file.apart.domains if it.robot]
+    never_meet = bool(own_domains) and len({*own_domains}) == len(own_domains)
+    table = fleet.table
     met = (*table.problems, *robots_meet(table, members, naming, written, domains))
-    every = (it for it in met if it.code != UNREACHABLE_NAME.code or not never)
+    every = (it for it in met if it.code != UNREACHABLE_NAME.code or not never_meet)
     simulated = [it.member for it in robots if is_simulated(it)]
     said = [it.member for it in robots if is_said(it)]
     own = [it.member for it in robots if it.spec.launch]
@@ -194,9 +193,3 @@ def _fleet(
     told = (*declared_twice(robots, naming, met), *other_manager(robots, table), *wrong)
     problems = tuple(dict.fromkeys((*every, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))
-
-
-def _never_meet(file: FleetFile) -> bool:
-    """Has each robot a domain of its own?"""
-    numbers = [it.number for it in file.apart.domains if it.robot]
-    return bool(numbers) and len({*numbers}) == len(numbers)

@@ -4,6 +4,7 @@ bridge, a behavior tree, Lua."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -188,11 +189,12 @@ def _for_robot(
     named = with_description(named, job.inventories[0].document) if job else named
     findings = tuple(dict.fromkeys((*made.findings, *judged_once(named))))
     ordered = tuple(sorted(findings, key=lambda it: (it.line, it.column, it.code)))
-    return RewrittenFile(robot, kind, made.text.encode(), ordered, _not_proved(ordered, made.kept))
-
-
-def _not_proved(findings: Sequence[Finding], kept: int) -> tuple[str, ...]:
-    """Why a file is not proved, with counts; empty where it is."""
-    counted = {code: sum(it.code == code for it in findings) for code in REASONS}
-    found = [f"{plural(n, REASONS[it][0])} {REASONS[it][1]}" for it, n in counted.items() if n]
-    return (*found, *([f"{plural(kept, 'name')} not the robot's"] if kept else []))
+    counted = Counter(it.code for it in findings)
+    reasons = [
+        f"{plural(counted[code], what)} {why}"
+        for code, (what, why) in REASONS.items()
+        if counted[code]
+    ]
+    if made.kept:
+        reasons.append(f"{plural(made.kept, 'name')} not the robot's")
+    return RewrittenFile(robot, kind, made.text.encode(), ordered, tuple(reasons))

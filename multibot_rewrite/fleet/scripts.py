@@ -47,7 +47,8 @@ class LoadedFleet:
         self.plan = plan
         self.file: str = plan.file.file
         self.robots: tuple[LoadedRobot, ...] = tuple(LoadedRobot(self, it) for it in plan.robots)
-        self.findings: tuple[Finding, ...] = _findings(plan)
+        said = dict.fromkeys((*plan.of_rewrites, *plan.fleet.table.problems))
+        self.findings: tuple[Finding, ...] = tuple(said)
         self._parameters: dict[str, YamlText] = {}
         self.kept = KeptFiles()
 
@@ -171,10 +172,6 @@ def load_fleet(
 def _planned(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
     """The fleet of a pickle: rewritten again from the descriptions that it includes."""
     return LoadedFleet(plan_fleet(file, jobs=jobs))
-
-
-def _findings(plan: FleetPlan) -> tuple[Finding, ...]:
-    return tuple(dict.fromkeys((*plan.of_rewrites, *plan.fleet.table.problems)))
 
 
 def _refuse(findings: Iterable[Finding]) -> None:

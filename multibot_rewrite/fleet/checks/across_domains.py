@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.fleet.file.domains import Apart
 from multibot_rewrite.fleet.fleet import Fleet, planned
@@ -22,9 +23,9 @@ def not_across(fleet: Fleet) -> Iterator[Finding]:
     apart = fleet.apart
     plan = planned(fleet) if apart.domains else System()
     yield from _of_simulator(apart, plan)
-    called: dict[tuple[str, int, int], list[str]] = {}
-    for end, own, other in services_apart(plan):
-        called.setdefault((end.node, own, other), []).append(end.name)
+    called = lists_by_key(
+        ((end.node, own, other), end.name) for end, own, other in services_apart(plan)
+    )
     for (node, own, other), names in called.items():
         message = f"{node} of domain {own} calls {shorten(names)}, which domain {other} has"
         hint = "run both in one domain: services and actions do not cross"

@@ -94,7 +94,9 @@ def not_as_printed(starts: FleetStarts, launch_file: bytes, folder: str) -> list
         if done.error:
             found.append(Difference(done.error, Place(path, 1)))
         else:
-            planned = _planned(starts, it, os.path.realpath(folder))
+            planned = _Planned(starts, it, os.path.realpath(folder), count())
+            usual = {name: planned.value(one) for name, one, _ in launch_arguments(starts)}
+            planned = planned._replace(arguments={**usual, **it.arguments})
             found += _differences([*planned.actions()], done.actions)
     return [*dict.fromkeys(found)]
 
@@ -279,12 +281,6 @@ def _given(it: Start, there: Mapping[str, str]) -> dict[str, Any]:
     """Return the keywords of a process in an environment."""
     own = {name: with_rest(text, there.get(name, "")) for name, text in it.environment.items()}
     return {name: own if name == "additional_env" else one for name, one in keywords(it).items()}
-
-
-def _planned(starts: FleetStarts, launch: Launching, home: str) -> _Planned:
-    found = _Planned(starts, launch, home, count())
-    usual = {name: found.value(it) for name, it, _ in launch_arguments(starts)}
-    return found._replace(arguments={**usual, **launch.arguments})
 
 
 def _change(number: int, transition: int) -> dict[str, Any]:

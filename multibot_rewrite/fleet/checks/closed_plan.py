@@ -56,24 +56,20 @@ def closed_plan(plan: FleetPlan) -> Fleet:
 
 
 def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...]:
-    """What the bridges of these files carry, but for those of robots that may be real."""
-    files = [it for it in _demanded(plan, texts) if it.path.rpartition("/")[2] == BRIDGE_FILE]
+    """What the bridges of these files carry, but for those of robots that may be real, and for that of
+    what all share where all may be."""
+    maybe = plan.fleet.maybe_real
+    real = {it.spec.name for it in plan.robots if it.spec.namespace in maybe}
+    left = {f"{it}/{BRIDGE_FILE}" for it in real}
+    left |= {BRIDGE_FILE} if len(real) == len(plan.robots) else set()
+    bridges = (it for it in texts if it.path.rpartition("/")[2] == BRIDGE_FILE)
+    files = [it for it in bridges if it.path not in left]
     rows = (end for it in files for end in bridge_ends(it.yaml))
     topics = [Topic(it.name, bridge=(it.role,) if it.role else BOTH, type=it.type) for it in rows]
     if any(it.path == BRIDGE_FILE for it in files):
         served = (it.end for it in services_in(plan.launched_words).values())
         topics += (Topic(it.name, bridge=(it.role,), type=it.type) for it in served)
     return once(topics)
-
-
-def _demanded(plan: FleetPlan, texts: Iterable[OutputFile]) -> Iterator[OutputFile]:
-    """The files without the bridges of robots that may be real, and without that of what all share
-    where all may be."""
-    maybe = plan.fleet.maybe_real
-    names = {it.spec.name for it in plan.robots if it.spec.namespace in maybe}
-    left = {f"{it}/{BRIDGE_FILE}" for it in names}
-    left |= {BRIDGE_FILE} if len(names) == len(plan.robots) else set()
-    return (it for it in texts if it.path not in left)
 
 
 def gaps_of(

@@ -54,11 +54,11 @@ def named_twice(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
         read = (one for one in it.member.reading.names if one.kind in _KINDS)
         twice = (one.name for one in read if one.name.startswith(starts))
         name = next(twice, "") if is_named else ""
-        if name and it.spec.description not in told:
-            told.add(it.spec.description)
-            given = it.spec.arguments
-            which = [key for key, text in given.items() if name_robot({key: text}, [it.spec.name])]
-            message = f"{name} has the name of robot {it.spec.name!r} twice"
+        if name and spec.description not in told:
+            told.add(spec.description)
+            given = spec.arguments.items()
+            which = [key for key, text in given if name_robot({key: text}, [spec.name])]
+            message = f"{name} has the name of robot {spec.name!r} twice"
             hint = f"write {' or '.join(which)}: '' under arguments"
             yield at_robot(robots_name_twice, it, message, hint)
 

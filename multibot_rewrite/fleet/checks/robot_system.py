@@ -216,21 +216,18 @@ def _system(runs: Iterable[Run], rows: Iterable[End] = (), edges: Iterable[Edge]
         sure = MAY if run.fact.when or is_tool_word(run.code_name) else RUNS
         name = run.full_name
         nodes[name] = Node(name, robot=run.robot, known=run.node, sure=sure, place=run.place)
-    ends = [*_ends(running, nodes), *(one for it in bridged for one in either_way(it))]
+    ends: list[End] = []
+    for node, end in ((nodes[run.full_name], end) for run in running for end in ends_of(run)):
+        if end.name not in OF_EVERY_NODE:
+            # A node with parameters is meant to run: what it needs has to be there.
+            needs = end.role in NEEDS and node.place != NOWHERE
+            sure = end.sure if end.sure != RUNS else RUNS if needs else node.sure
+            place = end.place if end.place != NOWHERE else node.place
+            ends += either_way(end._replace(node=node.name, sure=sure, place=place))
     for it in bridged:
+        ends += either_way(it)
         nodes.setdefault(it.node, Node(it.node, known=BRIDGE_NODE))
     return System(tuple(nodes.values()), tuple(ends), tuple(edges), DRIVERS)
-
-
-def _ends(runs: Iterable[Run], nodes: Mapping[str, Node]) -> Iterator[End]:
-    for node, end in ((nodes[run.full_name], end) for run in runs for end in ends_of(run)):
-        if end.name in OF_EVERY_NODE:
-            continue
-        # A node with parameters is meant to run: what it needs has to be there.
-        needs = end.role in NEEDS and node.place != NOWHERE
-        sure = end.sure if end.sure != RUNS else RUNS if needs else node.sure
-        place = end.place if end.place != NOWHERE else node.place
-        yield from either_way(end._replace(node=node.name, sure=sure, place=place))
 
 
 def _rows(bridges: Iterable[OutputFile], home: str) -> Iterator[End]:

@@ -16,7 +16,6 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
-from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, params_of, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.producers.ends import BRIDGE_FILE
@@ -119,17 +118,12 @@ def _names_of(robot: RewrittenRobot, what: str) -> Iterator[str]:
     elif what == BRIDGE:
         yield from [BRIDGE_FILE] if spec.companions.get(BRIDGE) else ()
     else:
-        found = (path for path, nodes in _nodes_by_file(spec) if what in nodes)
-        yield from (_plain_name(robot, path) for path in found)
+        for path, document in params_of(spec).items():
+            with suppress(InputError):
+                if any(it.path.rpartition("/")[2] == what for it in raw_sections(document)):
+                    yield _plain_name(robot, path)
 
 
 def _plain_name(robot: RewrittenRobot, source: str) -> str:
     plain = robot._replace(spec=robot.spec._replace(places=()))
     return path_for(plain, source).partition("/")[2]
-
-
-def _nodes_by_file(spec: RobotSpec) -> Iterator[tuple[str, set[str]]]:
-    """The parameter files with the names of the nodes that they have sections for."""
-    for path, document in params_of(spec).items():
-        with suppress(InputError):
-            yield path, {it.path.rpartition("/")[2] for it in raw_sections(document)}

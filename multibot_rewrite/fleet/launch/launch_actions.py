@@ -46,7 +46,7 @@ from multibot_rewrite.knowledge.programs import (
     program_of,
     started_as,
 )
-from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.producers.launch.bridges import services_in
@@ -119,25 +119,21 @@ def of_robot(
         *(it._replace(condition=SIMULATOR) for it in _spawned(given)),
     )
     spaces = {it.namespace for it in names.nodes.values() if it.namespace != "/"}
+    # What launch files do not start with the arguments that they are given, each with these.
+    idle = (
+        (it.what, f"{os.path.basename(it.place.file)}:{it.place.line} has {it.why}; {_OTHERWISE}")
+        for it in one.evidence_of(robot).idle
+    )
     return RobotStarts(
         robot.spec.name,
         os.path.basename(robot.spec.description),
         f"namespace {min(spaces, key=len)}" if spaces else "the root namespace",
         params_paths(robot, files),
         starts,
-        (*given.left.items(), *_idle(one, robot)),
+        (*given.left.items(), *idle),
         not_bridged(robot.spec.name) if any(it.needs for it in relayed) else "",
         tuple(_nodes(given)),
     )
-
-
-def _idle(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
-    """What launch files do not start with the arguments that they are given, each with these."""
-    for it in plan.evidence_of(robot).idle:
-        yield (
-            it.what,
-            f"{it.place.file.rpartition('/')[2]}:{it.place.line} has {it.why}; {_OTHERWISE}",
-        )
 
 
 class _Given(NamedTuple):
@@ -203,13 +199,13 @@ def _is_needed(given: _Given, it: NodeFacts) -> bool:
         return False
     full = given.names.full_name(it.name)
     ends = given.plan.fleet.table.ends
-    sent = [(run.full_name == full, name) for run, end, name in ends if _sends(end, topic)]
+    sent = [
+        (run.full_name == full, name)
+        for run, end, name in ends
+        if end.role == PUBLISHES and not end.when and end.name.endswith(topic)
+    ]
     others = {name for is_mine, name in sent if not is_mine}
     return others.union(given.bridged).isdisjoint(name for is_mine, name in sent if is_mine)
-
-
-def _sends(end: Endpoint, topic: str) -> bool:
-    return end.role == PUBLISHES and not end.when and end.name.endswith(topic)
 
 
 def _started(given: _Given, name: str) -> Start:
@@ -217,9 +213,7 @@ def _started(given: _Given, name: str) -> Start:
     it, facts = given.names.started[name], given.facts[name]
     if it.way == SPAWNER:
         return controller(given.plan, it)
-    program = _program(given, name)
-    assert program is not None
-    made = _with_own(given.plan, given.robot, start_of(it, program, _parameters(given, name)), name)
+    made = _made(given, name)
     own = given.values.get((given.robot.spec.name, name), {})
     words = made.arguments
     if made.name and names_its_process(facts.kind, given.release):
@@ -232,9 +226,18 @@ def _started(given: _Given, name: str) -> Start:
     placing = given.plan.evidence_of(given.robot).placing
     if placing is not None and spawn.is_of_vendor(placing) and made.number == placing.number:
         words = tuple(spawn.placed_at(words, given.robot.spec.pose))
+    lua = given.robot.spec.companions.get("lua", ())
+    if facts.kind == CARTOGRAPHER and lua:
+        folder, _, file = path_for(given.robot, lua[0]).rpartition("/")
+        words = (*words, "-configuration_directory", File(folder), "-configuration_basename", file)
     return made._replace(
-        arguments=(*words, *_options(given, facts)),
-        components=tuple(_components(given, name)),
+        arguments=tuple(words),
+        components=tuple(
+            _made(given, one)
+            for one in given.running
+            if (started := given.names.started[one]).way == COMPONENT
+            and started.node.fact.container == name
+        ),
         brought_up=is_unmanaged(facts, given.release)
         and not any(name in listed for listed in given.names.managed.values()),
     )
@@ -248,14 +251,12 @@ def _program(given: _Given, name: str) -> Program | None:
     return program if known else None
 
 
-def _components(given: _Given, container: str) -> Iterator[Start]:
-    for name in given.running:
-        it = given.names.started[name]
-        if it.way == COMPONENT and it.node.fact.container == container:
-            program = _program(given, name)
-            assert program is not None
-            made = start_of(it, program, _parameters(given, name))
-            yield _with_own(given.plan, given.robot, made, name)
+def _made(given: _Given, name: str) -> Start:
+    """The process or component of a node, with its parameters and what its launch file gives it."""
+    program = _program(given, name)
+    assert program is not None
+    made = start_of(given.names.started[name], program, _parameters(given, name))
+    return _with_own(given.plan, given.robot, made, name)
 
 
 def _with_own(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> Start:
@@ -283,11 +284,16 @@ def _with_own(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> S
 
 
 def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
-    """The processes of its launch files that are no nodes."""
-    for it in plan.evidence_of(robot).processes:
-        if not it.once:
-            made = _process(it.node, robot.spec.name, robot.spec.namespace, plan.fleet.naming)
-            yield made._replace(arguments=tuple(_with_files(made, robot)))
+    """The processes of its launch files that are no nodes, with the robot's own parameter files in the
+    words of a launch file."""
+    own = {os.path.realpath(it): it for it in robot.spec.companions.get("params", ())}
+    for it in (one for one in plan.evidence_of(robot).processes if not one.once):
+        made = _process(it.node, robot.spec.name, robot.spec.namespace, plan.fleet.naming)
+        words = []
+        for word in made.arguments:
+            path = own.get(os.path.realpath(str(word))) if made.process.is_include else None
+            words.append(word if path is None else File(path_for(robot, path)))
+        yield made._replace(arguments=tuple(words))
 
 
 def _of_one(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
@@ -342,14 +348,6 @@ def _named_for(word: str, verb: str, space: str, naming: Naming) -> str:
     return f"/{space}/{target}" if target and target[0] != "/" else target or word
 
 
-def _with_files(it: Start, robot: RewrittenRobot) -> Iterator[str | File]:
-    """The words of a process, with the robot's own parameter files in those of a launch file."""
-    own = {os.path.realpath(one): one for one in robot.spec.companions.get("params", ())}
-    for word in it.arguments:
-        path = own.get(os.path.realpath(str(word))) if it.process.is_include else None
-        yield word if path is None else File(path_for(robot, path))
-
-
 def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) -> Start:
     """A process of a robot; of all without a naming, as it is."""
     made: LaunchedNode = for_robot(it, robot)
@@ -383,20 +381,17 @@ def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) ->
     )
 
 
-def _options(given: _Given, facts: NodeFacts) -> Iterator[str | File]:
-    """Return the words that name the robot's first Lua file to Cartographer."""
-    files = given.robot.spec.companions.get("lua", ())
-    if facts.kind == CARTOGRAPHER and files:
-        folder, _, name = path_for(given.robot, files[0]).rpartition("/")
-        yield from ("-configuration_directory", File(folder), "-configuration_basename", name)
-
-
 def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     """Its robot's parameter files, and what no file says of it."""
     robot, facts = given.robot, given.facts[name]
-    files = [File(it) for it in _files(given, name)]
-    known, made = facts.kind, File(path_for(robot, moveit_parameters.FILE))
     is_launched = name in given.plan.evidence_of(robot).handed_on
+    files = [
+        File(it)
+        for it in params_paths(robot, given.files)
+        # Of those that launch files name a launched node has its own.
+        if not is_launched or name in given.readers.get(it, (name,))
+    ]
+    known, made = facts.kind, File(path_for(robot, moveit_parameters.FILE))
     later = files if is_launched and known in _OF_MOVEIT and made.path in given.files else []
     found: list[Parameters] = [] if later else [*files]
     if facts.usual:
@@ -461,14 +456,6 @@ def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, froz
             yield path_for(robot, it), nodes
 
 
-def _files(given: _Given, name: str) -> Iterator[str]:
-    """The parameter files of a node: of those that launch files name a launched one has its own."""
-    launched = name in given.plan.evidence_of(given.robot).handed_on
-    for it in params_paths(given.robot, given.files):
-        if not launched or name in given.readers.get(it, (name,)):
-            yield it
-
-
 def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
     """The types of the controllers that no file of the robot declares: without one a controller is not
     loaded (ros2_control controller_manager.cpp)."""
@@ -495,30 +482,25 @@ def _description(robot: RewrittenRobot) -> str:
 
 def controller(plan: FleetPlan, it: Started) -> Start:
     """Return the spawner of a controller of the one robot of a plan."""
-    made = spawner_of(it, *_as_declared(plan, it.node.node))
-    spawned = plan.evidence_of(plan.robots[0]).spawned.get(it.node.node)
-    if spawned is None:
-        return made
-    how, words = spawned.process, (*made.arguments, *spawned.words)
-    return made._replace(process=how, number=spawned.number, arguments=words)
-
-
-def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str | File]:
-    """The file of a controller whose own section has its type, and if a launch file leaves it
-    inactive."""
     (robot,) = plan.robots
     evidence = plan.evidence_of(robot)
-    own = next((it for it in evidence.given if it.node == controller), None)
-    params = robot.spec.companions.get("params", ())
-    if own and OWN_TYPE in own.values and own.values[OWN_TYPE].place.file in params:
-        yield from ("--param-file", File(path_for(robot, own.values[OWN_TYPE].place.file)))
-    spawned = evidence.spawned.get(controller)
-    sources = {it.source for it in spawned.parameters} if spawned else ()
-    for it in params if not (own and OWN_TYPE in own.values) else ():
-        if os.path.realpath(it) in sources:
-            yield from ("--param-file", File(path_for(robot, it)))
-    if spawned and spawned.inactive and "--load-only" not in spawned.words:
-        yield "--inactive"
+    own = next((one for one in evidence.given if one.node == it.node.node), None)
+    spawned = evidence.spawned.get(it.node.node)
+    sources = {one.source for one in spawned.parameters} if spawned else set[str]()
+    files = robot.spec.companions.get("params", ())
+    if own and OWN_TYPE in own.values:
+        # Its own section has its type.
+        files = tuple(one for one in files if one == own.values[OWN_TYPE].place.file)[:1]
+    else:
+        files = tuple(one for one in files if os.path.realpath(one) in sources)
+    words = [word for one in files for word in ("--param-file", File(path_for(robot, one)))]
+    if spawned is None:
+        return spawner_of(it, *words)
+    if spawned.inactive and "--load-only" not in spawned.words:
+        words.append("--inactive")
+    made = spawner_of(it, *words)
+    how, words_ = spawned.process, (*made.arguments, *spawned.words)
+    return made._replace(process=how, number=spawned.number, arguments=words_)
 
 
 def _spawned(given: _Given) -> Iterator[Start]:

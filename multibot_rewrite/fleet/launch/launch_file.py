@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Sequence
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.fleet.file.robot_spec import REAL
@@ -51,15 +52,16 @@ def fleet_starts(
     clock = None if others else first
     source = os.path.basename(plan.file.file) or "a fleet"
     count = plural(len(plan.robots), "robot")
-    opened = [(name, it._replace(condition=RVIZ)) for name, it in opens]
-    names = {it.name for it in robots}
+    # A window that shows one robot alone is not opened without it.
+    opened = lists_by_key((name, it._replace(condition=RVIZ)) for name, it in opens)
+    robots = [it._replace(starts=(*it.starts, *opened.pop(it.name, ()))) for it in robots]
     launched = launched_simulator(plan.file)
     return FleetStarts(
         f"Start {count} of {source}{facts_of_release(plan.file.distro)}.",
         simulators,
         launch_actions.of_all(plan, paths, simulators, values),
-        [_with_windows(it, opened) for it in robots],
-        [window for name, window in opened if name not in names],
+        robots,
+        [window for own in opened.values() for window in own],
         bool(simulators) or _is_simulated(plan) if clock is None else clock,
         [shell_line(it.start) for one in each for it in teleop.teleops(one)],
         _world(simulators, paths, launched.world),
@@ -87,10 +89,10 @@ def _environment(
     for robot in robots:
         more = dict(it for it in own[robot.name] if it not in common)
         domain = {"ROS_DOMAIN_ID": f"{domains[robot.name]}"} if domains else {}
-        starts = (
-            it._replace(environment={**more, **it.environment, **(domain if _is_later(it) else {})})
-            for it in robot.starts
-        )
+        starts = []
+        for it in robot.starts:
+            later = domain if it.process.delay or it.process.event else {}
+            starts.append(it._replace(environment={**more, **it.environment, **later}))
         made.append(robot._replace(starts=tuple(starts)))
     return dict(common), made
 
@@ -102,20 +104,11 @@ def _is_simulated(plan: FleetPlan) -> bool:
     return {it.clock for it in handed if it.clock is not None} == {True}
 
 
-def _is_later(it: Start) -> bool:
-    return bool(it.process.delay or it.process.event)
-
-
 def domains_of(plan: FleetPlan) -> dict[str, int]:
     """Return the ROS domain of each robot by its name and that of all (empty), if they have several."""
     numbers = {it.robot: it.number for it in plan.file.apart.domains}
     own = {it.spec.name: numbers[it.spec.namespace] for it in plan.robots if numbers}
     return {**own, "": numbers[""]} if numbers else {}
-
-
-def _with_windows(it: RobotStarts, opened: Sequence[tuple[str, Start]]) -> RobotStarts:
-    """The robot with the windows that show it alone: they are not opened without it."""
-    return it._replace(starts=(*it.starts, *(own for name, own in opened if name == it.name)))
 
 
 def _world(simulators: Collection[str], paths: Collection[str], launched: str) -> File | str:

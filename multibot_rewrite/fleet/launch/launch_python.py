@@ -75,19 +75,16 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
         yield ("", "", *_function(own))
     calls = {name: _call(own, name) for own in made for name in own.calls}
     names = (f"    {value(robot.name)}: {calls[robot.name]}," for robot in it.robots)
-    yield "", "", "ROBOTS = {", *names, "}", *_domains(it)
+    yield "", "", "ROBOTS = {", *names, "}"
+    if it.domains:
+        # As an environment has them.
+        numbers = ((one.name, f"{it.domains[one.name]}") for one in it.robots)
+        domains = (f"    {value(name)}: {value(number)}," for name, number in numbers)
+        yield "DOMAINS = {", *domains, "}", "", "", *_part("in_domain")
     started = _STARTED_APART if it.domains else _STARTED
     yield "", "", *(line.replace("{started}", started) for line in _part("chosen"))
     yield from (("", "", *_part(f"{one} switches")) for one in it.simulators)
     yield "", "", *_description(it)
-
-
-def _domains(it: FleetStarts) -> Iterator[str]:
-    """The domain of each robot, as an environment has it."""
-    if it.domains:
-        rows = ((robot.name, f"{it.domains[robot.name]}") for robot in it.robots)
-        own = (f"    {value(name)}: {value(number)}," for name, number in rows)
-        yield from ("DOMAINS = {", *own, "}", "", "", *_part("in_domain"))
 
 
 def _head(it: FleetStarts) -> Iterator[str]:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.rosnames import expand
@@ -127,20 +128,18 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
     taken = {os.path.basename(it): it for it in (*written, *beside)}
     for it in named:
         there = taken.setdefault(os.path.basename(it.path), it.path)
-        text = yaml_of(it.path).text
+        text, where = yaml_of(it.path).text, {"file": it.place.file, "line": it.place.line}
         if os.path.realpath(there) != it.path:
             message = f"the launch gives a node {it.path}; {there} is rewritten in its place"
             hint = "give the launch what is written for the robot, or give one of them another name"
-            file, line, *_ = it.place
-            notes.append(NOT_REWRITTEN.finding(message, hint, file=file, line=line))
+            notes.append(NOT_REWRITTEN.finding(message, hint, **where))
         elif _SUBSTITUTED not in text or _is_filled(it, text, spec):
             own += [] if there in own else [there]
             filled += [(there, it.text)] if _SUBSTITUTED in text else []
         elif there not in own:
             message = f"the launch fills {_SUBSTITUTED}...) in {it.path}; it is not rewritten"
             hint = "write it out for one robot without a prefix, and list that file under params"
-            file, line, *_ = it.place
-            notes.append(NOT_REWRITTEN.finding(message, hint, level=WARNING, file=file, line=line))
+            notes.append(NOT_REWRITTEN.finding(message, hint, level=WARNING, **where))
     companions = {**spec.companions, PARAMS: tuple(own)} if own else spec.companions
     return spec._replace(companions=companions, filled=(*spec.filled, *filled)), notes
 
@@ -158,9 +157,7 @@ def with_one_map(file: FleetFile) -> FleetFile:
     Robots with different maps have a server each, as nav2_bringup starts it. Raises InputError for a
     launch file that cannot be read.
     """
-    maps: dict[str, set[tuple[object, str]]] = {}
-    for name, yaml, topic in (row for spec in file.robots for row in _maps(spec)):
-        maps.setdefault(name, set()).add((yaml, topic))
+    maps = sets_by_key(row for spec in file.robots for row in _maps(spec))
     apart = {it for it in maps if len(maps[it]) > 1 or file.params_style == BRINGUP}
     own = tuple(dict.fromkeys((*file.own_nodes, *sorted(apart))))
     topics = [topic for it in maps if it not in own for _, topic in maps[it]]
@@ -171,7 +168,7 @@ def with_one_map(file: FleetFile) -> FleetFile:
     return file._replace(own_nodes=own, policy=policy)
 
 
-def _maps(spec: RobotSpec) -> Iterator[tuple[str, object, str]]:
+def _maps(spec: RobotSpec) -> Iterator[tuple[str, tuple[object, str]]]:
     """The map servers outside of the robot's namespace: name, map, and the topic from the root."""
     words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
     for it in launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ():
@@ -179,7 +176,7 @@ def _maps(spec: RobotSpec) -> Iterator[tuple[str, object, str]]:
             name = it.name or _SERVER
             told = handed_on(it, name).values
             topic = str(told.get("topic_name", "map"))
-            yield name, told.get("yaml_filename"), expand(topic, it.namespace, name)
+            yield name, (told.get("yaml_filename"), expand(topic, it.namespace, name))
 
 
 _PACKAGES = ("ros_gz_bridge", "ros_ign_bridge")

@@ -12,9 +12,7 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.fleet.fleet import FRAME_PREFIX
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import node_sources
-from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
 OTHER_PREFIX = declare("MF841", "launch-file-adds-prefix", WARNING, formats=("fleet",))
@@ -33,17 +31,14 @@ def launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
         if given and given.place.file in robot.spec.companions.get("params", ()):
             continue
         prefix = str(given.value).strip("/") if given else ""
-        if given and prefix != robot.frame_prefix.strip("/"):
-            yield _finding(robot, given, prefix)
-
-
-def _finding(robot: RewrittenRobot, given: Given, prefix: str) -> Finding:
-    layout = robot.names.naming.layout.name
-    starts = f"{STATE_PUBLISHER} of {robot.spec.name} is started with"
-    message = f"{starts} frame_prefix {prefix!r}, which layout {layout} has not"
-    hint = "leave it out of the launch file, or use layout frame-prefix"
-    if not prefix:
-        message = f"{starts} no frame_prefix, and layout {layout} needs {robot.frame_prefix!r}"
-        hint = f"give it frame_prefix: {robot.frame_prefix}"
-    file, line, _ = given.place
-    return OTHER_PREFIX.finding(message, hint, file=file, line=line)
+        if not given or prefix == robot.frame_prefix.strip("/"):
+            continue
+        layout = robot.names.naming.layout.name
+        starts = f"{STATE_PUBLISHER} of {robot.spec.name} is started with"
+        message = f"{starts} frame_prefix {prefix!r}, which layout {layout} has not"
+        hint = "leave it out of the launch file, or use layout frame-prefix"
+        if not prefix:
+            message = f"{starts} no frame_prefix, and layout {layout} needs {robot.frame_prefix!r}"
+            hint = f"give it frame_prefix: {robot.frame_prefix}"
+        file, line, _ = given.place
+        yield OTHER_PREFIX.finding(message, hint, file=file, line=line)

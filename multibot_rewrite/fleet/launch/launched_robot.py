@@ -67,7 +67,7 @@ def _read(order: LaunchOrder) -> LaunchGraph:
     was given."""
     whole = _whole(order)
     with suppress(InputError):
-        return once_kept(whole, lambda: _graph(whole, _times(whole.file)))
+        return once_kept(whole, lambda: _graph(whole, times_of(whole.file)))
     return launch_graph(order)
 
 
@@ -86,7 +86,8 @@ def _graph(order: LaunchOrder, times: tuple[int, ...]) -> LaunchGraph:
     return launch_graph(order)
 
 
-def _times(file: str) -> tuple[int, ...]:
+def times_of(file: str) -> tuple[int, ...]:
+    """Return what differs once a file has changed, and each time for one that is not there."""
     try:
         found = os.stat(file)
     except OSError:  # it is told by who reads it
@@ -108,7 +109,12 @@ def nodes_with(
     """The nodes that a robot runs, by its launch files, its other files and its stacks."""
     if launched is None:
         return nodes_of(stack, given, known)
-    nodes, findings = nodes_of(launched.nodes, given, known, _spawned(launched, given))
+    # Controllers of which launch files say whether they run -> the condition; empty for always.
+    later = {name: it.later for name, it in launched.spawned.items()}
+    if later and launched.whole:
+        rest = (it.node for it in given if it.host_name and it.node not in later)
+        later |= dict.fromkeys([*rest], NOT_SPAWNED)
+    nodes, findings = nodes_of(launched.nodes, given, known, later)
     return RobotNodes(tuple(as_launched(nodes, launched)), (*launched.findings, *findings))
 
 
@@ -120,13 +126,6 @@ def under_plugins(
     if launched and MANAGER in launched.started:
         return tuple(nodes)
     return tuple(under_plugin(it, rules, release) for it in nodes)
-
-
-def _spawned(launched: Launched, given: Sequence[Run]) -> dict[str, str]:
-    """Controllers of which launch files say whether they run -> the condition; empty for always."""
-    found = {name: it.later for name, it in launched.spawned.items()}
-    rest = (it.node for it in given if it.host_name and it.node not in found)
-    return found | (dict.fromkeys(rest, NOT_SPAWNED) if found and launched.whole else {})
 
 
 def given_with(launched: Launched | None, given: Sequence[Run]) -> tuple[Run, ...]:

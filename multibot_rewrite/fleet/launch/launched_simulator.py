@@ -12,7 +12,6 @@ from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR, SIMULATORS
 from multibot_rewrite.producers.launch.launched import world_files
-from multibot_rewrite.producers.launch.records import LaunchedNode
 
 # Options of ``gz sim`` that are switches of the built launch file: -r it has always.
 _SERVER, _WINDOW, _OWN = "-s", "-g", ("-r", "-s", "-g")
@@ -43,7 +42,8 @@ def launched_simulator(file: FleetFile) -> Simulator:
             worlds = [one for own in started for one in world_files(own)]
             world = worlds[0] if worlds else ""
             if started[0].package == CLASSIC:
-                return Simulator(world, (), any(_is_client(it) for it in nodes), True)
+                programs = (os.path.basename(it.executable) for it in nodes if not it.package)
+                return Simulator(world, (), "gzclient" in programs, True)
             headless = _SERVER in words and _WINDOW not in words
             return Simulator(world, tuple(dict.fromkeys(_options(words))), headless)
     return Simulator()
@@ -58,10 +58,6 @@ def with_launched_world(file: FleetFile) -> FleetFile:
         return file
     place = next((it.launch[0].file, 1) for it in file.robots if it.launch)
     return file._replace(simulator_world=own.world, world_place=place)
-
-
-def _is_client(it: LaunchedNode) -> bool:
-    return not it.package and os.path.basename(it.executable) == "gzclient"
 
 
 def _options(words: Sequence[str]) -> Iterator[str]:

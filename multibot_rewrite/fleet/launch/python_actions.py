@@ -101,7 +101,12 @@ def _process(it: Start, indent: int, own: OfRobot) -> Iterator[str]:
 def _include(it: Start) -> Iterator[str]:
     """Yield a launch file of a package, in the namespace of its robot and under its rules."""
     yield from ("GroupAction(", "    [")
-    yield from (f"        {line}" for line in _scope(it))
+    for variable, setting in it.environment.items():
+        yield f"        SetEnvironmentVariable({value(variable)}, {value(setting)}),"
+    if it.namespace.strip("/"):
+        yield f"        PushRosNamespace({value(it.namespace)}),"
+    for old, new in it.remappings:
+        yield f"        SetRemap({value(old)}, {value(new)}),"
     path = f"PathJoinSubstitution([FindPackageShare({value(it.package)}), {value(it.executable)}])"
     yield from ("        IncludeLaunchDescription(", f"            {path},")
     if it.arguments:
@@ -110,15 +115,6 @@ def _include(it: Start) -> Iterator[str]:
             yield f"                ({value(name)}, {value(given)}),"
         yield "            ],"
     yield from ("        ),", "    ],", "),")
-
-
-def _scope(it: Start) -> Iterator[str]:
-    for name, given in it.environment.items():
-        yield f"SetEnvironmentVariable({value(name)}, {value(given)}),"
-    if it.namespace.strip("/"):
-        yield f"PushRosNamespace({value(it.namespace)}),"
-    for old, new in it.remappings:
-        yield f"SetRemap({value(old)}, {value(new)}),"
 
 
 def _action(it: Start, indent: int, own: OfRobot) -> Iterator[str]:

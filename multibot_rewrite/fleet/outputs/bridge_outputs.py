@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple, cast
+from typing import cast
 
 import yaml
 
@@ -28,7 +28,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
 from multibot_rewrite.fleet.outputs.spawn import simulators
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
+from multibot_rewrite.fleet.robots.robot_groups import group_robots
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.spelling.bridged_topics import (
     BridgedTopic,
@@ -36,13 +36,6 @@ from multibot_rewrite.spelling.bridged_topics import (
     as_yaml,
     bridged_topics,
 )
-
-
-class GroupBridges(NamedTuple):
-    """A group of robots with its bridge files by path, each rewritten once."""
-
-    group: RobotGroup
-    files: dict[str, BridgeFile]
 
 
 def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
@@ -54,6 +47,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
     topics, unbridged = bridged_topics(
         fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, fleet.placed
     )
+    # The groups of robots with their bridge files by path, each rewritten once.
     groups = []
     for group in group_robots(plan):
         spec = group.robots[0].spec
@@ -62,7 +56,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
             it: rewrite_bridge(own_yaml(spec, it), group.context, above=above(it))
             for it in group.companions.get("bridge", ())
         }
-        groups.append(GroupBridges(group, bridges))
+        groups.append((group, bridges))
     for group, files in groups:
         for file in files.values():
             yield from (*file.own.findings, *wrong_in_file(plan, file.own.file, group.robots))
@@ -83,7 +77,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
                 line = line_of(robot.member.source, it.tag, number)
                 message = f"{it.what} of {it.robot} is not bridged: {it.why}"
                 yield NO_TOPIC.finding(message, it.hint, file=robot.spec.description, line=line)
-    yield from _for_all(groups, topics, simulators(plan) == ["gz"])
+    yield from _for_all([files for _, files in groups], topics, simulators(plan) == ["gz"])
 
 
 def _for_robot(
@@ -105,12 +99,12 @@ def _for_robot(
 
 
 def _for_all(
-    groups: Iterable[GroupBridges], topics: Sequence[BridgedTopic], is_timed: bool
+    groups: Iterable[dict[str, BridgeFile]], topics: Sequence[BridgedTopic], is_timed: bool
 ) -> FilesAndFindings:
     """The bridge of what all robots share, where there is anything to bridge; ``is_timed`` is whether
     their clock is that of Gazebo."""
     shared = dict.fromkeys(
-        (path, file.shared) for it in groups for path, file in it.files.items() if file.shared
+        (path, file.shared) for files in groups for path, file in files.items() if file.shared
     )
     if not shared and not is_timed and not any(it.robot for it in topics):
         return

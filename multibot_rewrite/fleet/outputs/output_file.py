@@ -62,15 +62,16 @@ def path_for(robot: RewrittenRobot, source: str) -> str:
     if last == BRIDGE_FILE and kind != "bridge":
         # The robot's bridge is called so.
         name = os.path.join(above, f"{kind}_{last}")
-    return _placed(robot, name)
+    return placed_path(robot, name)
 
 
 def gz_bridge_path(robot: RewrittenRobot) -> str:
     """Return where the file of the robot's bridge goes."""
-    return _placed(robot, BRIDGE_FILE)
+    return placed_path(robot, BRIDGE_FILE)
 
 
-def _placed(robot: RewrittenRobot, name: str) -> str:
+def placed_path(robot: RewrittenRobot, name: str) -> str:
+    """Return where an output of a robot goes, by its name: a vendor's place, if it has one there."""
     return f"{robot.spec.name}/{dict(robot.spec.places).get(name, name)}"
 
 

@@ -9,6 +9,7 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import find_layout
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
@@ -30,7 +31,6 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
     yaml_of,
 )
-from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import world_of
 from multibot_rewrite.spelling.start import File, Start
@@ -60,10 +60,9 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
 
     Raises InputError for a config that cannot be read or rewritten.
     """
-    robots_of: dict[str, list[RewrittenRobot]] = {}
-    for robot in plan.robots:
-        for path in robot.spec.companions.get("rviz", ()):
-            robots_of.setdefault(path, []).append(robot)
+    robots_of = lists_by_key(
+        (path, it) for it in plan.robots for path in it.spec.companions.get("rviz", ())
+    )
     own = {it.robots[0].spec.name: it for it in each}
     world = world_of(plan.file, plan.fleet.naming)
     for path, robots in robots_of.items():

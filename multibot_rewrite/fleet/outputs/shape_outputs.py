@@ -16,7 +16,7 @@ from multibot_rewrite.companions.yaml_text import pairs, replaced, spliced
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.file.shape import REAL, SIMULATED, TakingCommand, name_of, shapes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.output_file import OutputFile, yaml_of
+from multibot_rewrite.fleet.outputs.output_file import OutputFile, placed_path, yaml_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 
@@ -29,7 +29,7 @@ def vendor_commands(plan: FleetPlan) -> Iterator[str]:
         files = {argument: name_of(robot, what) for argument, what in given.items()}
         if given and not any(files.values()):
             continue
-        paths = {key: shlex.quote(_path(robot, name)) for key, name in files.items() if name}
+        paths = {key: shlex.quote(placed_path(robot, name)) for key, name in files.items() if name}
         words = (f"{argument}:=$PWD/{path}" for argument, path in paths.items())
         spec, pose = robot.spec, (robot.spec.pose or Pose())._asdict()
         clock = str(is_simulated(robot)).lower()
@@ -43,7 +43,7 @@ def vendor_commands(plan: FleetPlan) -> Iterator[str]:
 def taken_as_they_are(plan: FleetPlan) -> set[str]:
     """The outputs that a vendor's launch file hands on to nodes as they are."""
     return {
-        _path(robot, name)
+        placed_path(robot, name)
         for robot in plan.robots
         for it in _commands(plan, robot)
         for what in it.as_it_is.values()
@@ -80,7 +80,3 @@ def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[TakingCommand]
             not it.releases or has_release(it.releases, plan.file.distro)
         ):
             yield it
-
-
-def _path(robot: RewrittenRobot, name: str) -> str:
-    return f"{robot.spec.name}/{dict(robot.spec.places).get(name, name)}"

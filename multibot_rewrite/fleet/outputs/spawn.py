@@ -31,7 +31,6 @@ FLAGS = {"x": "-x", "y": "-y", "z": "-z", "roll": "-R", "pitch": "-P", "yaw": "-
 # Options that a launch file may have besides.
 _FURTHER = ("-timeout", "-spawn_service_timeout", "-package_to_model", "-world")
 DESCRIPTION = "/robot_description"
-# File names of Gazebo Classic plugins that are ROS nodes start like this.
 
 
 class Spawn(NamedTuple):

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.reports.xacro_arguments import names_robots
 from multibot_rewrite.description.sources.own_names import ROBOT
@@ -113,7 +114,10 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
     every = read_any(launch)
     included = _included(every)
     roots = [it for it in every if not it.why and it.file not in included]
-    likely = [it for it in roots if _starts(it.graph, robot)]
+    # Those that start the publisher or spawner of the description, as far as it is known which one that
+    # is, and of one robot.
+    publishing = (it for it in roots if any(map(_publishes, it.graph.nodes)))
+    likely = [it for it in publishing if not _is_of_another(it.graph, robot)]
     starting = [it for it in likely if _reads(it.graph) & robot.files] or likely
     if not starting:
         return _beside(roots, robot, trust)
@@ -152,15 +156,15 @@ def _with_own_arguments(
 
     found = starting(LaunchOrder(it.file) for it in likely)
     if not fits(found):
-        found += starting(_switched(likely, _passed(every)))
+        # The values that launch files give to the arguments of others.
+        includes = (one for it in every for one in it.graph.includes)
+        passed = sets_by_key(pair for one in includes for pair in one.arguments)
+        found += starting(_switched(likely, passed))
     if not fits(found):
-        below = (one.file for it in likely for one in it.graph.includes)
-        found += starting(LaunchOrder(it) for it in [*dict.fromkeys(below)][:_MOST] if _is_here(it))
+        below = dict.fromkeys(one.file for it in likely for one in it.graph.includes)
+        here = (it for it in [*below][:_MOST] if os.path.isabs(it) and os.path.isfile(it))
+        found += starting(map(LaunchOrder, here))
     return found
-
-
-def _is_here(file: str) -> bool:
-    return os.path.isabs(file) and os.path.isfile(file)
 
 
 def _included(read: Iterable[Reading]) -> frozenset[str]:
@@ -173,14 +177,6 @@ def _included(read: Iterable[Reading]) -> frozenset[str]:
         if os.path.realpath(one.file) != os.path.realpath(it.file)
     )
     return frozenset(files[it] for it in named if it in files)
-
-
-def _passed(read: Iterable[Reading]) -> Mapping[str, set[str]]:
-    """The values that launch files give to the arguments of others."""
-    found: dict[str, set[str]] = {}
-    for name, value in (pair for it in read for one in it.graph.includes for pair in one.arguments):
-        found.setdefault(name, set()).add(value)
-    return found
 
 
 def _switched(likely: Iterable[Reading], passed: Mapping[str, set[str]]) -> Iterator[LaunchOrder]:
@@ -200,12 +196,6 @@ def _others(it: LaunchArgument, passed: set[str]) -> list[str]:
     """Other values of an argument: those that launch files give it, that it may have, the opposite."""
     values = [*sorted(passed), *it.choices, *other_values(it.default)]
     return [value for value in dict.fromkeys(values) if value not in ("", it.default)]
-
-
-def _starts(graph: LaunchGraph, robot: Robot) -> bool:
-    """Does a launch file start the publisher or spawner of the description, as far as it is known which
-    one that is, and of one robot?"""
-    return any(map(_publishes, graph.nodes)) and not _is_of_another(graph, robot)
 
 
 def _is_of_another(graph: LaunchGraph, robot: Robot) -> bool:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.sources.included_by import data_of_file
-from multibot_rewrite.fleet.launch.launched_robot import keep, launch_of
+from multibot_rewrite.fleet.launch.launched_robot import keep, launch_of, times_of
 from multibot_rewrite.producers.launch.child import read_launch_files
 from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.programs import programs
@@ -88,7 +88,7 @@ def read_any(launch: Sequence[str]) -> list[Reading]:
 def read_as(orders: Iterable[LaunchOrder]) -> list[Reading]:
     """What launch files start, each as it is launched."""
     every = tuple(orders)
-    read = _read(every, tuple(_time(it.file) for it in every)) if every else []
+    read = _read(every, tuple(times_of(it.file) for it in every)) if every else []
     for it in (one for one in read if one.graph.nodes and not one.order.every):
         keep(it.order, it.graph)
     return read
@@ -104,14 +104,6 @@ def _read(orders: tuple[LaunchOrder, ...], times: tuple[object, ...]) -> list[Re
         else Reading(order, it)
         for order, it in zip(orders, read, strict=True)
     ]
-
-
-def _time(file: str) -> tuple[int, int]:
-    try:
-        found = os.stat(file)
-    except OSError:  # whoever reads it says so
-        return 0, 0
-    return found.st_mtime_ns, found.st_size
 
 
 def order_text(it: LaunchOrder, folder: str) -> str:

@@ -206,7 +206,11 @@ def without_names(it: Looked, given: Mapping[str, str]) -> Looked:
 
 def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
     """The same with the argument that makes it the simulated robot, or the real one, if it has one."""
-    return _switched(it, _suits_simulator if simulated else suits_real, reach)
+
+    def suits_its_simulator(root: etree._Element) -> bool:
+        return _simulator(root) != NO_SIMULATOR and suits_simulator(root)
+
+    return _switched(it, suits_its_simulator if simulated else suits_real, reach)
 
 
 def with_hardware_loaded(it: Looked, reach: Reach) -> Looked:
@@ -258,13 +262,10 @@ def with_model(it: Looked, sdf: Looked) -> Looked:
     )
 
 
-def _suits_simulator(root: etree._Element) -> bool:
-    return _simulator(root) != NO_SIMULATOR and suits_simulator(root)
-
-
 def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> Looked:
     root = read_document(text, path).root
     model = root if root.tag != "sdf" else next(root.iter("model"), root)
+    rules = root.iter("remapping", "argument")
     return Looked(
         path,
         model.get("name", ""),
@@ -273,13 +274,9 @@ def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> L
         _simulator(root),
         _is_controlled(root),
         arguments,
-        own_tf=any(_moves_tf(it) for it in root.iter("remapping", "argument")),
+        own_tf=any((it.text or "").strip() == "/tf:=tf" for it in rules),
         root=root,
     )
-
-
-def _moves_tf(rule: etree._Element) -> bool:
-    return (rule.text or "").strip() == "/tf:=tf"
 
 
 def _is_controlled(root: etree._Element) -> bool:

@@ -208,15 +208,12 @@ def release_of(robots: Sequence[Looked], found: Found, wanted: Wanted) -> Choice
         return Choice(wanted.release, "the ROS 2 release that was asked for")
     if any(it.simulator == CLASSIC for it in robots):
         return Choice(OF_CLASSIC, "the last ROS release that has Gazebo Classic")
-    said = {release_said("", _text_of(it), it.path) for it in robots if it.path}
+    texts = {it.path: b"" if it.root is None else etree.tostring(it.root) for it in robots}
+    said = {release_said("", text, path) for path, text in texts.items() if path}
     telling = [it for it in said if it.why] or [release_of_files(found.params)]
     if len(telling) == 1 and telling[0].why:
         return Choice(*telling[0])
     return Choice(wanted.release, "the newest long-term ROS release; name yours")
-
-
-def _text_of(it: Looked) -> bytes:
-    return b"" if it.root is None else etree.tostring(it.root)
 
 
 def propose(

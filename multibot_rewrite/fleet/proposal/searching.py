@@ -21,6 +21,7 @@ from multibot_rewrite.base.file_kinds import (
     recognised,
     refuse_others,
 )
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.left_out import source_folders
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import shorten
@@ -138,9 +139,8 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
     apart = (it for it in files if not any(is_below(it, folder) for folder in folders))
     homes = dict.fromkeys((*folders, *map(home_of, apart)))
     every = dict.fromkeys((*(path for home in homes for path in _files(home)), *meant))
-    kinds: dict[str, list[str]] = {}
-    for path, kind in _sorted(every, [*map(read_named, launch)]):
-        kinds.setdefault(kind, []).append(path)
+    told = _sorted(every, [*map(read_named, launch)])
+    kinds = lists_by_key((kind, path) for path, kind in told)
     kinds["every"] = kinds.get("descriptions", [])
     if files:
         kinds["descriptions"] = files
@@ -160,13 +160,10 @@ def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
     words = (it for node in graph.nodes for it in node.arguments if it.endswith(_ENDS))
     real = dict.fromkeys((*(it.file for it in graph.read), *map(os.path.realpath, words)))
     texts = [text_of(it) for it in real if it in map(os.path.realpath, found.worlds)]
-    models = (it for it in known if any(_is_in_world(it, text) for text in texts))
+    uris = {it: f"model://{os.path.basename(os.path.dirname(it))}<" for it in known}
+    models = (it for it, uri in uris.items() if any(uri in text for text in texts))
     own = {it: known.get(it) or os.path.relpath(it) for it in (*real, *models)}
     return {it: path for it, path in own.items() if it in known or _is_description(it)}
-
-
-def _is_in_world(model: str, text: str) -> bool:
-    return f"model://{os.path.basename(os.path.dirname(model))}<" in text
 
 
 def _is_description(path: str) -> bool:

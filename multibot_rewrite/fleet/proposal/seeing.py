@@ -41,7 +41,6 @@ from multibot_rewrite.fleet.proposal.looking import (
 )
 from multibot_rewrite.fleet.proposal.searching import Found, Undecided, search
 from multibot_rewrite.producers.launch.records import LaunchOrder
-from multibot_rewrite.system.records import Place
 
 # Descriptions of a folder that are looked at.
 MOST = 60
@@ -107,13 +106,10 @@ def see(wanted: Wanted) -> Seen:
         rows = [(said_of(it), it.place) for graph in graphs for it in graph.nodes]
         unread = (it for graph in graphs for it in graph.notes if not it.parameters)
         rows += [(it.message, it.place) for it in unread]
-        listed = "; ".join(dict.fromkeys(f"{text} ({_at(place)})" for text, place in rows))
+        texts = (f"{text} ({os.path.basename(at.file)}:{at.line})" for text, at in rows)
+        listed = "; ".join(dict.fromkeys(texts))
         file = os.path.relpath(found.named[0].file)
         raise UsageError(f"{error}; so nothing of {file} is in a fleet: {listed}") from None
-
-
-def _at(it: Place) -> str:
-    return f"{os.path.basename(it.file)}:{it.line}"
 
 
 def _seen(wanted: Wanted, found: Found) -> Seen:

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding, Rule, declare
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
@@ -144,9 +145,7 @@ def read_jobs(
         return read_in(text, beside, path if path in made else "")
 
     found: dict[Sources, Jobs] = {}
-    given_to: dict[str, list[tuple[Arguments, Sequence[str]]]] = {}
-    for it in robots:
-        given_to.setdefault(it.description, []).append((it.arguments, it.words))
+    given_to = lists_by_key((it.description, (it.arguments, it.words)) for it in robots)
     common = {source: common_to(each) for source, each in given_to.items()}
     for it in robots:
         if it.sources not in found:
@@ -196,9 +195,7 @@ def rewrite_robots(
 
     Raises as ``rewrite_all``.
     """
-    groups: dict[Sources, list[RobotSpec]] = {}
-    for robot in robots:
-        groups.setdefault(robot.sources, []).append(robot)
+    groups = lists_by_key((robot.sources, robot) for robot in robots)
     made = (it for key, group in groups.items() for it in _rewritten(group, jobs[key]))
     found = {it.spec.name: it for it in made}
     classic = any(it.is_classic for it in found.values())
@@ -334,7 +331,7 @@ def with_own_ports(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
         }
     )
     every = [
-        it if new == old else _with_text(it, new)
+        it if new == old else robot_with_text(it, new)
         for it, old, new in zip(robots, sources, made.texts, strict=True)
     ]
     first = next((n for n, old in enumerate(sources) if old != made.texts[n]), 0)
@@ -344,6 +341,7 @@ def with_own_ports(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
     return every
 
 
-def _with_text(robot: RewrittenRobot, data: bytes) -> RewrittenRobot:
+def robot_with_text(robot: RewrittenRobot, data: bytes) -> RewrittenRobot:
+    """The robot with another text of what its simulator gets."""
     robot = robot._replace(member=with_text(robot.member, data))
     return robot._replace(simulated=data) if robot.simulated else robot._replace(description=data)

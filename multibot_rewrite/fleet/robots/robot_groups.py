@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.selection import grouped
-from multibot_rewrite.base.grouping import dicts_by_key
+from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes, stack_nodes
@@ -32,14 +33,7 @@ class RobotGroup(NamedTuple):
 
 def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
     """The groups of a fleet, in the order of their first robots."""
-    groups: dict[object, list[RewrittenRobot]] = {}
-    for robot in plan.robots:
-        spec = robot.spec
-        files = tuple(spec.companions.items())
-        said = spec.use_sim_time, spec.bridge_namespace, spec.bridges_below
-        key = spec.sources, spec.stacks, spec.launch, spec.simulator, files, said
-        groups.setdefault(key, []).append(robot)
-    for robots in groups.values():
+    for robots in lists_by_key((_key(it.spec), it) for it in plan.robots).values():
         spec = robots[0].spec
         evidence = plan.evidence_of(robots[0])
         facts = tuple(companion_nodes(evidence.nodes, stack_nodes(spec, plan.file)))
@@ -47,6 +41,13 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         context = make_context(declared, naming, facts, plan.file.distro, own, words)
         context = context._replace(names=context.names._replace(given=given))
         yield RobotGroup(tuple(robots), facts, context._replace(frames=evidence.frames))
+
+
+def _key(spec: RobotSpec) -> object:
+    """Robots for which this is equal have the same files."""
+    files = tuple(spec.companions.items())
+    said = spec.use_sim_time, spec.bridge_namespace, spec.bridges_below
+    return spec.sources, spec.stacks, spec.launch, spec.simulator, files, said
 
 
 def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:

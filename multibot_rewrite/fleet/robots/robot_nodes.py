@@ -76,6 +76,8 @@ NodeSources = tuple[
     tuple[str, ...], tuple[tuple[str, ...], ...], tuple[LaunchOrder, ...], str, str, Sources
 ]
 _DECIDING = ("params", "bridge", "rviz", "moveit")
+# What a launch hands on for any robot.
+_HANDED_ON = ("handed_on", "environment", "placing", "idle", "qos")
 
 
 def node_sources(spec: RobotSpec) -> NodeSources:
@@ -196,29 +198,18 @@ def _with_launch(
     if not launched:
         idle = left_idle(it.nodes, it.given, it.known)
         return it._replace(findings=(*it.findings, *idle))
-    handed_on, processes, environment, placing, idle, qos = _of_launch(spec, launched, file)
+    every = (one._replace(once=_is_once(one.name, one.once, file)) for one in launched.processes)
+    own: dict[str, Any] = {it: getattr(launched, it) for it in _HANDED_ON}
+    own["processes"] = tuple(every)
+    # It may be asked for one robot by name.
+    if any(ROBOT in value for one in spec.launch for _, value in one.arguments):
+        own = {name: for_any(given, spec.name) for name, given in own.items()}
     return it._replace(
-        findings=(*it.findings, *processes_not_known(processes)),
+        findings=(*it.findings, *processes_not_known(own["processes"])),
         unsimulated=launched.whole and not launched.simulated,
         arguments=tuple(word for one in launched.started.values() for word in one.arguments),
-        handed_on=handed_on,
-        processes=processes,
-        environment=environment,
-        placing=placing,
-        idle=idle,
-        qos=qos,
+        **own,
     )
-
-
-def _of_launch(spec: RobotSpec, launched: Launched, file: FleetFile) -> tuple[Any, ...]:
-    """What a launch hands on for any robot: it may be asked for one by name."""
-    by_name = any(ROBOT in value for it in spec.launch for _, value in it.arguments)
-    processes = tuple(
-        it._replace(once=_is_once(it.name, it.once, file)) for it in launched.processes
-    )
-    after = launched.environment, launched.placing, launched.idle, launched.qos
-    own = (launched.handed_on, processes, *after)
-    return tuple(for_any(it, spec.name) for it in own) if by_name else own
 
 
 def _as_written(

@@ -37,12 +37,12 @@ from multibot_rewrite.fleet.file.simulator_switch import (
     suits_simulator,
     switch_for,
 )
-from multibot_rewrite.fleet.robots.member import (
-    has_parts_for_simulator,
-    is_for_simulator,
-    with_text,
+from multibot_rewrite.fleet.robots.member import has_parts_for_simulator, is_for_simulator
+from multibot_rewrite.fleet.robots.rewritten_robots import (
+    RewrittenRobot,
+    at_robot,
+    robot_with_text,
 )
-from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, stack_nodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.semantics import FIXED
@@ -231,12 +231,8 @@ def _without(robot: RewrittenRobot) -> RewrittenRobot:
     edits = [Edit(spans.start_of(it), spans.end_of(it), b"", None) for it in own]
     data = b"".join(cut(document.source, sorted(edits)))
     texts = {_library(it): spans.text_of(it).decode() for it in own}
-    robot = robot._replace(
-        member=with_text(robot.member, data),
-        world_systems=texts,
-        findings=tuple(it for it in robot.findings if it.code != _IN_ROBOT),
-    )
-    return robot._replace(simulated=data) if robot.simulated else robot._replace(description=data)
+    said = tuple(it for it in robot.findings if it.code != _IN_ROBOT)
+    return robot_with_text(robot, data)._replace(world_systems=texts, findings=said)
 
 
 def _library(plugin: _Element) -> str:

@@ -91,9 +91,16 @@ def is_bridge(it: Run) -> bool:
 def bridged_by(it: Run) -> Iterator[Row]:
     """All that a bridge passes on; nothing for another node. The names in the simulator may be below
     its namespace (ros_gz humble ros_gz_bridge/src/ros_gz_bridge.cpp, expand_gz_topic_names)."""
-    for row in _rows_of(it) if is_bridge(it) else ():
-        below = it.namespace if expands(it) else "/"
-        yield Row(row.end, expand(row.inside, below, it.name))
+    if not is_bridge(it):
+        return
+    below = it.namespace if expands(it) else "/"
+    given = it.values.get("config_file")
+    path = str(given.value) if given else ""
+    own = [read_file(path).decode("utf-8", "replace")] if os.path.isfile(path) else []
+    rows = [*_told(it.program, it.arguments)]
+    for text in (*own, *it.texts):
+        rows += _of_text(text)
+    yield from (Row(row.end, expand(row.inside, below, it.name)) for row in rows)
 
 
 def expands(it: Run) -> bool:
@@ -114,7 +121,8 @@ def rows_in_words(
     ways = {word: name for name, word in _WAYS.items()}
     rows = (_ROW.fullmatch(word) for word in words if program in _BRIDGES)
     found = [it.groups() for it in rows if it and it["way"] and "/srv/" not in it["type"]]
-    images = (word for word in words if program in _OF_IMAGES and _is_name(word))
+    names_ = (word for word in words if word and "@" not in word and word[0] != "-")
+    images = names_ if program in _OF_IMAGES else ()
     found += [(word, _IMAGE, "[", "gz.msgs.Image", None) for word in images]
     entries = []
     for name, type_, way, gz, inside in found:
@@ -126,10 +134,6 @@ def rows_in_words(
     return yaml.safe_dump(entries, sort_keys=False) if entries else ""
 
 
-def _is_name(word: str) -> bool:
-    return bool(word) and "@" not in word and word[0] != "-"
-
-
 def refused_rows(it: Run) -> Iterator[str]:
     """The arguments of a bridge that are to be a row and are none: it ends then."""
     for word in it.arguments if it.program in _BRIDGES else ():
@@ -137,16 +141,6 @@ def refused_rows(it: Run) -> Iterator[str]:
         whole = row is not None and (row["way"] or "/srv/" in row["type"])
         if "@" in word and not whole:
             yield word
-
-
-def _rows_of(it: Run) -> Iterator[Row]:
-    yield from _told(it.program, it.arguments)
-    given = it.values.get("config_file")
-    path = str(given.value) if given else ""
-    if path and os.path.isfile(path):
-        yield from _of_text(read_file(path).decode("utf-8", "replace"))
-    for text in it.texts:
-        yield from _of_text(text)
 
 
 def _told(program: str, words: Sequence[str]) -> Iterator[Row]:
@@ -174,14 +168,11 @@ def _topics(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
 
 @lru_cache(maxsize=4096)  # a fleet has one a robot, and several rules ask for it
 def _of_text(text: str) -> tuple[Row, ...]:
-    return tuple(_written(text))
-
-
-def _written(text: str) -> Iterator[Row]:
+    rows: list[Row] = []
     try:
         entries = load_yaml(text, "")
     except InputError:
-        return
+        return ()
     for entry in entries if isinstance(entries, list) else ():
         if isinstance(entry, Mapping):
             # A row with one name has it on both sides.
@@ -189,9 +180,10 @@ def _written(text: str) -> Iterator[Row]:
             way = _WAYS.get(str(entry.get("direction", "BIDIRECTIONAL")), "@")
             inside, type_ = entry.get(GZ) or topic, str(entry.get("ros_type_name", ""))
             if service := entry.get(SERVICE_ROW):
-                yield Row(Endpoint(SERVICE, SERVES, str(service), type_), str(service))
+                rows.append(Row(Endpoint(SERVICE, SERVES, str(service), type_), str(service)))
             elif topic:
-                yield from _topics(str(topic), type_, way, str(inside))
+                rows += _topics(str(topic), type_, way, str(inside))
+    return (*rows,)
 
 
 def _for_any_robot(
@@ -236,7 +228,14 @@ def bridged_domains(running: Sequence[Run]) -> BridgedDomains:
 def _ends(it: Run, notes: list[LaunchNote]) -> Iterator[End]:
     """Yield the ends of one bridge. All its files are for one name: the last that has one."""
     options, paths = _words(it.arguments)
-    files = [*_read(it, paths, notes)]
+    files: list[Mapping[str, Any]] = []
+    for path in paths:
+        try:
+            data = load_yaml(read_file(path).decode("utf-8", "replace"), path)
+        except (InputError, OSError) as error:
+            notes.append(LaunchNote(it.place, f"domain_bridge does not read {path}: {error}"))
+            continue
+        files += [data] if isinstance(data, Mapping) else []
     name = [DOMAIN_BRIDGE, *(str(file["name"]) for file in files if file.get("name"))][-1]
     for file in files:
         topics = file.get("topics")
@@ -260,17 +259,6 @@ def _words(words: Sequence[str]) -> tuple[dict[str, object], list[str]]:
     return options, paths
 
 
-def _read(it: Run, paths: Sequence[str], notes: list[LaunchNote]) -> Iterator[Mapping[str, Any]]:
-    for path in paths:
-        try:
-            data = load_yaml(read_file(path).decode("utf-8", "replace"), path)
-        except (InputError, OSError) as error:
-            notes.append(LaunchNote(it.place, f"domain_bridge does not read {path}: {error}"))
-            continue
-        if isinstance(data, Mapping):
-            yield data
-
-
 def _of_topic(it: Run, bridge: str, topic: str, row: Mapping[str, Any]) -> Iterator[End]:
     """Yield both ends of a topic, and those of the way back; of one domain nothing is bridged."""
     domains: tuple[int, ...] = ()
@@ -280,12 +268,9 @@ def _of_topic(it: Run, bridge: str, topic: str, row: Mapping[str, Any]) -> Itera
         return
     ways = [domains[::-1] if row.get("reversed") else domains]
     ways += [ways[0][::-1]] if row.get("bidirectional") else []
+    type_, sent = str(row.get("type", "")), str(row.get("remap") or topic)
     for here, there in ways:
-        yield _end(it, f"/{bridge}_{here}", SUBSCRIBES, topic, row)
-        yield _end(it, f"/{bridge}_{there}", PUBLISHES, str(row.get("remap") or topic), row)
-
-
-def _end(it: Run, node: str, role: str, topic: str, row: Mapping[str, Any]) -> End:
-    """Return an end of a node in the root namespace, which has no rules."""
-    name, type_ = f"/{topic.lstrip('/')}", str(row.get("type", ""))
-    return End(TOPIC, role, name, type_, "", node, None, it.process, topic)
+        # Its nodes are in the root namespace, and have no rules.
+        for domain, role, name in ((here, SUBSCRIBES, topic), (there, PUBLISHES, sent)):
+            full, node = f"/{name.lstrip('/')}", f"/{bridge}_{domain}"
+            yield End(TOPIC, role, full, type_, "", node, None, it.process, name)

@@ -72,13 +72,9 @@ def confine(order: LaunchOrder, folder: str, more: Sequence[str], seconds: float
     os.environ.__class__ = type("Environ", (type(os.environ),), {"__getitem__": _asked(hidden)})
     # A library that may start no thread would end the process.
     os.environ |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    # They would change files that are only read; what copies files asks for them.
-    vars(os).update(dict.fromkeys(("chmod", "utime", "listxattr"), _nothing))
-
-
-def _nothing(*_: object, **__: object) -> tuple[()]:
-    """Nothing is done, and nothing is there."""
-    return ()
+    # They would change files that are only read; what copies files asks for them. Nothing is done, and
+    # nothing is there.
+    vars(os).update(dict.fromkeys(("chmod", "utime", "listxattr"), lambda *_, **__: ()))
 
 
 def _asked(hidden: set[str]) -> Callable[[Any, str], str]:

@@ -295,7 +295,9 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
     """The node of a ``ros2 run`` line, a simulator, or else the command."""
     line = [*_told_words(getattr(action, "cmd", ()), "of a command", here)]
     words = [word for it in line for word in it.split()]
-    run = ros2_run(words) or _simulator(words)
+    run = ros2_run(words)
+    if package := _GAZEBO.get(os.path.basename(words[0]) if words else ""):
+        run = (package, SIMULATOR, (*words[1:],))
     more = here.later, here.place, _environment(action, here), how_it_runs(action, here)
     if run is None:
         program, *own = line or [""]
@@ -313,19 +315,13 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
 def _kept_words(package: str, executable: str, words: Iterable[str]) -> tuple[str, ...]:
     """The own words of a program; those of a spawner each by itself, with one dash (gflags takes
     ``--name=a``, too)."""
-    if f"{package}/{executable}" not in programs().spawners:
-        return (*words,)
-    return tuple(part for it in words for part in _flag(it))
-
-
-def _flag(word: str) -> list[str]:
-    found = _FLAG.fullmatch(word)
-    return [f"-{found[1] or found[3]}", *([found[2]] if found[1] else [])] if found else [word]
-
-
-def _simulator(words: list[str]) -> tuple[str, str, list[str]] | None:
-    package = _GAZEBO.get(os.path.basename(words[0]) if words else "")
-    return (package, SIMULATOR, words[1:]) if package else None
+    kept: list[str] = []
+    for word in words:
+        flag = _FLAG.fullmatch(word) if f"{package}/{executable}" in programs().spawners else None
+        kept.append(f"-{flag[1] or flag[3]}" if flag else word)
+        if flag and flag[1]:
+            kept.append(flag[2])
+    return (*kept,)
 
 
 def _kept(action: Any, name: str) -> Any:
@@ -428,7 +424,12 @@ def _of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterText]:
         yield from _file(path, here)
     # The launch file has written down what stands for a package that is not here, or what is gone.
     texts = {name: repr(value) for name, value in found.items()}
-    gone = [name for name, it in texts.items() if STOOD_FOR in it or _is_gone(it)]
+    gone = [
+        name
+        for name, it in texts.items()
+        # A description may name what the launch makes: it is rewritten.
+        if STOOD_FOR in it or (GONE in real_paths(it) and "<" not in it)
+    ]
     yield from (_values({})._replace(untold=name) for name in gone)
     rest = {name: value for name, value in found.items() if name not in gone}
     if rest or not found:
@@ -438,11 +439,6 @@ def _of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterText]:
     for text_ in (it for it in rest.values() if isinstance(it, str)):
         for path in _OF_PLUGIN.findall(text_):
             here.files.update((path, it) for it in _file(path, here))
-
-
-def _is_gone(text_: str) -> bool:
-    """Does it name what the launch makes? A description may do so: it is rewritten."""
-    return GONE in real_paths(text_) and "<" not in text_
 
 
 def _values(values: Any) -> ParameterText:

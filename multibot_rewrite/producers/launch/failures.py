@@ -83,7 +83,7 @@ def _known(error: BaseException) -> str:
         return f"the launch configuration {name!r} is not set; {hint}"
     if stopped := _stopped(error):
         return stopped
-    if isinstance(error, FileNotFoundError) and _is_program(str(error.filename)):
+    if isinstance(error, FileNotFoundError) and re.fullmatch(r"[^/.]+", str(error.filename)):
         return f"it starts the program {error.filename!r} itself, which is not installed here"
     if isinstance(error, SystemExit):
         hint = "give it the arguments that it reads from the command line (NAME:=VALUE)"
@@ -148,10 +148,6 @@ def _is_of_thread(error: BaseException) -> bool:
     frame = _frame(error)
     of_module = frame is not None and frame.f_globals.get("__name__") == "threading"
     return of_module and isinstance(error, RuntimeError)
-
-
-def _is_program(name: str) -> bool:
-    return bool(name) and "/" not in name and "." not in name
 
 
 def not_installed(name: str) -> str:

@@ -50,7 +50,10 @@ def as_started(node: NodeFacts, executable: str, words: Collection[str]) -> Node
         if it.how == ":" and it.parameter == PROGRAM and "::" not in executable:
             return executable in it.values
         if it.parameter.startswith("-") and it.how in ("set", "unset"):
-            return _is_given(it.parameter, words) == (it.how == "set")
+            # ``-`` alone is any word that is no option.
+            bare = any(not word.startswith("-") for word in words)
+            given = bare if it.parameter == "-" else it.parameter in words
+            return given == (it.how == "set")
         return None
 
     return _as_decided(node, decide)
@@ -65,7 +68,10 @@ def as_named(node: NodeFacts, words: Sequence[str], values: Mapping[str, Given])
         if it.how != "names":
             return None
         given = {**{name: one.value for name, one in values.items()}, **options}
-        paths = [_path(name, given) for name in it.parameter.split(ALSO)]
+        # FOLDER/FILE asks two parameters or options for a path.
+        parts = (name.split("/") for name in it.parameter.split(ALSO))
+        words = [[str(given.get(name) or "") for name in names] for names in parts]
+        paths = (os.path.join(*own) for own in words if all(own))
         return any(_has(path, it.values) for path in paths) or None
 
     return _as_decided(node, decide)
@@ -92,20 +98,9 @@ def _as_decided(node: NodeFacts, decide: Decide) -> NodeFacts:
     return node._replace(endpoints=ends)
 
 
-def _is_given(option: str, words: Collection[str]) -> bool:
-    """Is the option one of the words? ``-`` alone is any word that is no option."""
-    return any(it == option if option != "-" else not it.startswith("-") for it in words)
-
-
-def _path(name: str, given: Mapping[str, object]) -> str:
-    """The path that a parameter or option has: ``FOLDER/FILE`` asks two of them."""
-    words = [str(given.get(it) or "") for it in name.split("/")]
-    return os.path.join(*words) if all(words) else ""
-
-
 def _has(path: str, words: Sequence[str]) -> bool:
     """Is one of the words in a file, but for its comments and how it is spaced?"""
-    if not path or not os.path.isfile(path):
+    if not os.path.isfile(path):
         return False
     text = read_file(path).decode("utf-8", "replace")
     comments = _COMMENTS.get(os.path.splitext(path)[1])
@@ -223,21 +218,18 @@ def with_sources(
     and whose source is found: below the roots of the ``orders``, or beside their launch files. Raises
     nothing."""
     wanted = {(it.package, it.executable): it for it in nodes if not passes(it)}
-    unknown = [it for it in wanted.values() if known_node(it, (), known) is None]
+    unknown = [program for program, it in wanted.items() if known_node(it, (), known) is None]
     if not unknown:
         return dict(known)
     folders: dict[str, str] = {}
     for order in orders:
         folders = {**packages_for(order.file, order.roots), **folders}
-    found = {f"{it.package} {it.executable}": _read(it, folders, release) for it in unknown}
-    return {**known, **{name: it for name, it in found.items() if it is not None}}
-
-
-def _read(it: LaunchedNode, folders: Mapping[str, str], release: str) -> NodeFacts | None:
-    found = None
-    if it.package in folders:
+    every = dict(known)
+    for package, program in (it for it in unknown if it[0] in folders):
         # C++ without its reader: who says that a node is not known, says so.
         with suppress(UsageError):
-            program = it.package, it.executable
-            found = node_of_program(folders[it.package], *program, folders, release)
-    return found.facts._replace(known=f"{it.package} {it.executable}") if found else None
+            found = node_of_program(folders[package], package, program, folders, release)
+            if found:
+                name = f"{package} {program}"
+                every[name] = found.facts._replace(known=name)
+    return every

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from lxml.etree import SubElement, tostring
 
 from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.base.rosnames import expand
@@ -25,7 +26,7 @@ from multibot_rewrite.description.readback.reading import FRAME, Reading, read
 from multibot_rewrite.description.readback.xml import read_xml, values_at
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.producers.launch.programs import programs
+from multibot_rewrite.producers.launch.programs import program_of, programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
 from multibot_rewrite.system.records import TOPIC, Edge, Place, edge_of
 
@@ -73,7 +74,7 @@ def models_of(
     started: Iterable[LaunchedNode], published: Iterable[Published], release: str
 ) -> Models:
     """What spawners put into a simulator, and what is only published."""
-    spawners = [it for it in started if f"{it.package}/{it.executable}" in programs().spawners]
+    spawners = [it for it in started if program_of(it) in programs().spawners]
     texts = {it.topic: it for it in published}
     found, lost, taken = [], [], set()
     for it in spawners:
@@ -178,11 +179,7 @@ def sent_by_plugins(models: Iterable[Model]) -> dict[str, list[tuple[str, Edge]]
 
 def sent_in_simulator(models: Iterable[Model]) -> dict[str, list[Edge]]:
     """The transforms that systems of gz send, by the topic in the simulator."""
-    found: dict[str, list[Edge]] = {}
-    for model in (it for it in models if it.spawned):
-        for topic, edge in _sent(model):
-            found.setdefault(topic, []).append(edge)
-    return found
+    return lists_by_key(sent for it in models if it.spawned for sent in _sent(it))
 
 
 def _sent(model: Model) -> Iterator[tuple[str, Edge]]:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.rosnames import check_topic_name, expand
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
@@ -122,7 +122,8 @@ def with_launched(
     graph = _lasting(graph._replace(notes=(*graph.notes, *notes)))
     each = [(number, it) for number, it in enumerate(graph.nodes) if not passes(it)]
     pairs, twice = _each_once(_pair(number, it, stack, known, words) for number, it in each)
-    spawned, lost = under_managers(spawned, _managers(pairs) if graph.whole else ())
+    managers = unique(_full_name(it.node, it.facts) for it in pairs if it.facts.known == MANAGER)
+    under, lost = under_managers(spawned, managers if graph.whole else ())
     nodes = {it.facts.name: it.facts for it in pairs}
     left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
@@ -133,7 +134,7 @@ def with_launched(
     kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
-    given = list(_controllers(spawned, pairs, words, parameters))
+    given = list(_controllers(under, pairs, words, parameters))
     given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
     unknown = {it.facts.name: it.node for it in pairs if not it.facts.is_known}
     of_all = graph.environment
@@ -153,7 +154,7 @@ def with_launched(
         (*kept, *nodes.values(), *hosted),
         tuple({it.node: it for it in reversed(given)}.values()),
         {it.facts.name: it.node for it in pairs},
-        dict(_under_manager(spawned, pairs, words, release)),
+        dict(_under_manager(under, pairs, words, release)),
         graph.whole,
         (*launch_findings(graph, unknown, handed, left, passing), *twice, *lost),
         any(it.package in programs().simulators for it in graph.nodes),
@@ -261,11 +262,6 @@ def _passing(
     once = bool(once_for_all(it)) and not is_of_robot(it.namespace, words)
     below = own if once else own._replace(namespace=f"/{_below(it.namespace, '', words)}")
     return Passing(below, process_name(it), once)
-
-
-def _managers(pairs: Iterable[_Pair]) -> dict[str, None]:
-    """The full names of the controller managers."""
-    return {_full_name(it.node, it.facts): None for it in pairs if it.facts.known == MANAGER}
 
 
 def _under_manager(

@@ -263,7 +263,8 @@ def graph_of(values: Any) -> LaunchGraph:
 def _read(kind: Any, value: Any) -> Any:
     """A value of JSON as its type: records and pairs are lists there."""
     if hasattr(kind, "_fields"):
-        return kind(*(_read(*it) for it in zip(_types(kind), value, strict=True)))
+        types = _hints(kind).values()
+        return kind(*(_read(*it) for it in zip(types, value, strict=True)))
     if get_origin(kind) is not tuple:
         return value
     inner = get_args(kind)
@@ -271,6 +272,5 @@ def _read(kind: Any, value: Any) -> Any:
     return tuple(_read(*it) for it in zip(each, value, strict=True))
 
 
-@cache
-def _types(record: type) -> tuple[Any, ...]:
-    return tuple(get_type_hints(record).values())
+# Asked for each record that is read.
+_hints = cache(get_type_hints)

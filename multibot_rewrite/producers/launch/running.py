@@ -147,14 +147,13 @@ def _descriptions(nodes: Iterable[Run]) -> Iterator[Published]:
 
 def bound_of(name: str, namespace: str, rules: Rules) -> BoundNode:
     """A node under its rules; raises UsageError for one that rcl refuses."""
-    return bind(name, namespace, [_rule(f"{old}:={new}") for old, new in rules])
-
-
-def _rule(text: str) -> RemapRule:
-    found = read_remap(text)
-    if isinstance(found, NameFault):
-        raise UsageError(f"rule {text!r}: {found.reason}")
-    return found
+    found: list[RemapRule] = []
+    for text in (f"{old}:={new}" for old, new in rules):
+        rule = read_remap(text)
+        if isinstance(rule, NameFault):
+            raise UsageError(f"rule {text!r}: {rule.reason}")
+        found.append(rule)
+    return bind(name, namespace, found)
 
 
 def _plugins(model: Model) -> Iterator[Run]:
@@ -217,15 +216,13 @@ def _clock(graph: LaunchGraph) -> Iterator[Run]:
     # Who spawns has the simulator running, if in another launch file.
     started = [it for it in classic if it.executable == SIMULATOR]
     started = started or [it for it in classic if it.executable == _CLASSIC_SPAWNER]
-    for it in [one for one in started if _has_clock(one.arguments)][:1]:
-        clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
-        fact = NodeFacts("gazebo", it.package, (clock,))
-        yield _simulated(fact.name, "/", fact, SIMULATOR, it.place)
-
-
-def _has_clock(words: Sequence[str]) -> bool:
-    """Is its plugin for the clock loaded? Its launch files load it, a command line may not."""
-    return "-s" not in words or any(_INIT in it for it in words)
+    for it in started:
+        # Its launch files load its plugin for the clock, a command line may not.
+        if "-s" not in it.arguments or any(_INIT in word for word in it.arguments):
+            clock = Endpoint(TOPIC, PUBLISHES, CLOCK, CLOCK_TYPE)
+            fact = NodeFacts("gazebo", it.package, (clock,))
+            yield _simulated(fact.name, "/", fact, SIMULATOR, it.place)
+            return
 
 
 def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:

@@ -231,17 +231,14 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Cave
 
 
 def _of_bridges(nodes: Sequence[Run], inside: Sent) -> Iterator[Caveat]:
-    bridges = [it.full_name for it in nodes if not {*_tf_topics(it)} <= inside.keys()]
+    """Of bridges that pass on topics of the simulator as transforms."""
+    bridges = []
+    for it in nodes:
+        ends = (own for end, own in bridged_by(it) if (end.role, end.type) == (PUBLISHES, TF_TYPE))
+        bridges += [it.full_name] if not {*ends} <= inside.keys() else []
     if bridges:
         text = f"the transforms that the simulator sends are not known: {shorten(bridges)}"
         yield Caveat(NOT_KNOWN, True, text)
-
-
-def _tf_topics(it: Run) -> Iterator[str]:
-    """The topics in the simulator that a bridge passes on as transforms."""
-    for end, inside in bridged_by(it):
-        if (end.role, end.type) == (PUBLISHES, TF_TYPE):
-            yield inside
 
 
 def _part(it: Run, inside: Sent) -> _Part:

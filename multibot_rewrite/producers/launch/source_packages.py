@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -121,16 +121,14 @@ def file_of_package(package: str, name: str, roots: tuple[str, ...]) -> str:
     folders = package_folders(package, os.sep, ()) or package_folders(package, os.sep, roots)
     if not folders:
         raise UsageError(f"launch {package} {name}: package {package!r} is not found; {ROOTS}")
-    found = sorted(_called(name, folders[0]))
+    found: list[str] = []
+    for above, below, files in os.walk(folders[0]):
+        below[:] = [it for it in below if not it.startswith(".")]
+        found += [os.path.join(above, name)] if name in files else []
+    found.sort()
     if len(found) == 1:
         return found[0]
     if found:
         both = " and ".join(os.path.relpath(it, folders[0]) for it in found[:2])
         raise UsageError(f"launch {package} {name}: it has {both}; give the path of one")
     raise UsageError(f"launch {package} {name}: {folders[0]} has no such file; correct the name")
-
-
-def _called(name: str, folder: str) -> Iterator[str]:
-    for above, folders, files in os.walk(folder):
-        folders[:] = [it for it in folders if not it.startswith(".")]
-        yield from (os.path.join(above, it) for it in files if it == name)

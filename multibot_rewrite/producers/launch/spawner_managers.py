@@ -8,7 +8,6 @@ manager is below the namespace that the spawner gets, by ``--namespace`` or as a
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.grouping import lists_by_key
@@ -17,20 +16,16 @@ from multibot_rewrite.producers.launch.spawners import Spawned
 NO_MANAGER = declare("MG723", "no-controller-manager", ERROR, formats=("fleet",))
 
 
-class UnderManagers(NamedTuple):
-    """Controllers under a manager that runs, and findings of spawners that ask for another one."""
-
-    spawned: tuple[Spawned, ...]
-    findings: tuple[Finding, ...]
-
-
-def under_managers(spawned: Iterable[Spawned], started: Collection[str]) -> UnderManagers:
+def under_managers(
+    spawned: Iterable[Spawned], started: Collection[str]
+) -> tuple[list[Spawned], list[Finding]]:
     """The controllers, those of a manager that is not among the ``started`` ones under the one that
-    is meant; as they are where there is none, or more than one."""
+    is meant; as they are where there is none, or more than one. With it findings of spawners that ask
+    for another manager than the one that runs."""
     meant = next(iter(started)) if len(started) == 1 else ""
     every = tuple(spawned)
     lost = [it for it in every if meant and it.manager not in started]
-    found = tuple(it._replace(manager=meant) if it in lost else it for it in every)
+    found = [it._replace(manager=meant) if it in lost else it for it in every]
     # One finding a spawner.
     spawners = lists_by_key(((it.place.file, it.place.line, it.manager), it.name) for it in lost)
     findings = []
@@ -39,4 +34,4 @@ def under_managers(spawned: Iterable[Spawned], started: Collection[str]) -> Unde
         hint = f"{meant} is started; give the namespace once; the plan has them there"
         where = {"file": file, "line": line, "column": 1}
         findings.append(NO_MANAGER.finding(message, hint, level=WARNING, **where))
-    return UnderManagers(found, tuple(findings))
+    return found, findings

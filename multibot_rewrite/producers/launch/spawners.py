@@ -102,14 +102,13 @@ def texts_of(
     by_manager = lists_by_key((it.manager, it) for it in spawned)
     for manager, controllers in by_manager.items():
         named = (text for it in controllers for text in it.parameters)
-        said = (_declaration(it) for it in controllers)
+        # Each as a parameter file would have it: a section of its own, its type if said.
+        said = []
+        for it in controllers:
+            typed = f"{manager}:\n  ros__parameters: {{{it.name}.type: {it.type}}}\n"
+            section = f"{it.full_name}:\n  ros__parameters: {{}}\n"
+            said.append(ParameterText("", f"{typed}{section}" if it.type else section))
         yield manager, list(dict.fromkeys((*said, *given.get(manager, ()), *named)))
-
-
-def _declaration(it: Spawned) -> ParameterText:
-    """The controller as a parameter file would have it: a section of its own, its type if said."""
-    typed = f"{it.manager}:\n  ros__parameters: {{{it.name}.type: {it.type}}}\n" if it.type else ""
-    return ParameterText("", f"{typed}{it.full_name}:\n  ros__parameters: {{}}\n")
 
 
 def _spawned(node: LaunchedNode) -> Iterator[Spawned]:

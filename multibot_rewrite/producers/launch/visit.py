@@ -69,7 +69,9 @@ def visit(entity: Any, seen: Visit) -> None:
         # Note a group that is left out: launch itself asks for its condition.
         with suppress(Exception):
             wants(entity, here)
-    apart = seen.every and _is(entity, *_GIVING) and not _holds(entity, seen)
+    apart = seen.every and _is(entity, *_GIVING)
+    with suppress(Exception):
+        apart = apart and not is_wanted(entity, seen.context)
     if own:
         seen.context._push_locals()
     if apart:
@@ -89,12 +91,6 @@ def visit(entity: Any, seen: Visit) -> None:
             seen.context._pop_locals()
 
 
-def _holds(entity: Any, seen: Visit) -> bool:
-    with suppress(Exception):
-        return is_wanted(entity, seen.context)
-    return False
-
-
 def _failed(entity: Any, error: BaseException, here: Visit) -> None:
     """Keep why an entity cannot be visited, or what it starts, where that is known all the same."""
     if _is(entity, _INCLUDE):
@@ -105,19 +101,15 @@ def _failed(entity: Any, error: BaseException, here: Visit) -> None:
         here.nodes.extend(known or not_here(error, entity, here))
         if known:
             return
-    reason = f"{failure(error)}{_by_its_text(entity)}"
+    reason = failure(error)
+    # What a function of a launch file names that cannot be asked.
+    function = getattr(entity, "_OpaqueFunction__function", getattr(entity, "function", None))
+    with suppress(OSError, TypeError):
+        reason = f"{reason}{started_by(getsource(function))}"  # type: ignore[arg-type]
     if here.later and is_unset(error):
         reason = f"{reason.partition(';')[0]}; {_ENDED}"
     message = f"{here.later} {reason}".strip()
     here.failed(error, message, fails=is_certain(error, here.place.file))
-
-
-def _by_its_text(entity: Any) -> str:
-    """What a function of a launch file names that cannot be asked."""
-    function = getattr(entity, "_OpaqueFunction__function", getattr(entity, "function", None))
-    with suppress(OSError, TypeError):
-        return started_by(getsource(function))  # type: ignore[arg-type]
-    return ""
 
 
 def _is(entity: Any, *names: str) -> bool:

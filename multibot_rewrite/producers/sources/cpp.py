@@ -324,18 +324,15 @@ def _taking(node: Node, place: Place) -> Iterator[Constructor]:
     if parameters is None:
         return
     owner, _ = _around(node)
-    names = tuple(
-        re.split(r"[\s&*]", text_of(it.child_by_field_name("declarator")))[-1]
-        for it in parameters.named_children
-        if it.type in ("parameter_declaration", "optional_parameter_declaration")
-    )
-    defaults = tuple(
-        (re.split(r"[\s&*]", text_of(it.child_by_field_name("declarator")))[-1], evaluated(value))
-        for it in parameters.named_children
-        if (value := it.child_by_field_name("default_value")) is not None
-    )
+    names, defaults = [], []
+    for it in parameters.named_children:
+        name = re.split(r"[\s&*]", text_of(it.child_by_field_name("declarator")))[-1]
+        if it.type in ("parameter_declaration", "optional_parameter_declaration"):
+            names.append(name)
+        if (value := it.child_by_field_name("default_value")) is not None:
+            defaults.append((name, evaluated(value)))
     own = owner or last(full.rpartition("::")[0])
-    yield Constructor(own, last(full), names, defaults, place.path)
+    yield Constructor(own, last(full), tuple(names), tuple(defaults), place.path)
 
 
 HANDLERS: dict[str, Callable[[Any, Place], Iterator[Any]]] = {

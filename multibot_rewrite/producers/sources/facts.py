@@ -25,7 +25,7 @@ from multibot_rewrite.knowledge.records import (
 )
 from multibot_rewrite.producers.sources.files import Packages, Read, read_program
 from multibot_rewrite.producers.sources.programs import Start, start_of
-from multibot_rewrite.producers.sources.records import OTHERWISE, Place, Value
+from multibot_rewrite.producers.sources.records import OTHERWISE, Place, Value, parameter_in
 from multibot_rewrite.producers.sources.resolve import (
     EACH,
     FRAMES,
@@ -288,10 +288,10 @@ def _params(names: Names, events: Sequence[Event], values: Iterable[Value]) -> I
     """The parameters that are declared where the program comes along."""
     kinds: dict[str, str] = {}
     for it in events:
-        if isinstance(it, Declared) and it.name.startswith("<@") and it.name.count("<") == 1:
-            kinds[it.name[2:-1]] = TOPIC
-        elif isinstance(it, Looked) and it.text.startswith("<@") and it.text.count("<") == 1:
-            kinds[it.text[2:-1]] = "frame"
+        if isinstance(it, Declared) and (name := parameter_in(it.name)):
+            kinds[name] = TOPIC
+        elif isinstance(it, Looked) and (name := parameter_in(it.text)):
+            kinds[name] = "frame"
     spots = {
         (it.spot.owner, it.spot.function): it.spot for it in events if isinstance(it, Parameter)
     }
@@ -309,11 +309,10 @@ def _params(names: Names, events: Sequence[Event], values: Iterable[Value]) -> I
 def _frames(names: Names, events: Iterable[Event]) -> Iterator[FrameParameter]:
     """Parameters that hold frames."""
     for it in events:
-        if isinstance(it, Looked) and it.text.startswith("<@") and it.text.count("<") == 1:
-            parameter = it.text[2:-1]
-            if "{" not in parameter:
-                default = default_of(names, it.spot, parameter) or ""
-                yield FrameParameter(parameter, default, source=(_at(it.place),))
+        parameter = parameter_in(it.text) if isinstance(it, Looked) else ""
+        if isinstance(it, Looked) and parameter and "{" not in parameter:
+            default = default_of(names, it.spot, parameter) or ""
+            yield FrameParameter(parameter, default, source=(_at(it.place),))
 
 
 def _sends(
@@ -333,8 +332,8 @@ def _sends(
             continue
         words = []
         for text in (rows[0].text for rows in pair):
-            is_set = text.startswith("<@") and text.count("<") == 1 and "{" not in text
-            words.append(text[2:-1] if is_set else f"'{text}'" if text and "<" not in text else "")
+            own = parameter_in(text) if "{" not in text else ""
+            words.append(own or (f"'{text}'" if text and "<" not in text else ""))
         if all(words) and words[0] != words[1]:
             # That a callback may never run is no switch.
             asked = "&".join(it for it in sent.asked.split("&") if it != OTHERWISE)
@@ -342,8 +341,8 @@ def _sends(
             sends.append(SentTransform(words[0], words[1], "" if switch == PERHAPS else switch))
             for (it, *_), word in zip(pair, words, strict=True):
                 in_code = word[0] == "'"
-                own = word.strip("'") if in_code else default_of(names, it.spot, word) or ""
-                frames.append(FrameParameter(word, own, "", (_at(it.place),), in_code, in_code))
+                frame = word.strip("'") if in_code else default_of(names, it.spot, word) or ""
+                frames.append(FrameParameter(word, frame, "", (_at(it.place),), in_code, in_code))
     return tuple(dict.fromkeys(sends)), tuple(frames)
 
 

@@ -27,6 +27,11 @@ def negated(condition: str) -> str:
     return condition[1:] if condition[:1] == "!" else f"!{condition}"
 
 
+def parameter_in(text: str) -> str:
+    """The parameter whose value a text is, and nothing else; empty for another text."""
+    return text[2:-1] if text.startswith("<@") and text.count("<") == 1 else ""
+
+
 class Place(NamedTuple):
     """Where something was read: a repository, its tag or commit, a path in it, a line, a package."""
 

@@ -20,6 +20,8 @@ from multibot_rewrite.producers.sources.records import (
     Constructor,
     Source,
     Value,
+    braced,
+    parameter_in,
 )
 
 DEEPEST = 12
@@ -121,8 +123,7 @@ def _value(names: Names, spot: Spot, name: str, without: str, depth: int) -> str
     if name.startswith("@"):
 
         def inside(found: re.Match[str]) -> str:
-            text = text_in(names, spot, f"<{found[1]}>", "", depth)
-            return text.replace("<", "{").replace(">", "}")
+            return braced(text_in(names, spot, f"<{found[1]}>", "", depth))
 
         return f"<{_BRACED.sub(inside, name)}>"
     if name.startswith(EACH):
@@ -137,7 +138,7 @@ def _value(names: Names, spot: Spot, name: str, without: str, depth: int) -> str
         text_in(names, at, it, without, depth) for at, it in rows if it not in (f"<{name}>", own)
     }
     found = {it for it in found if it not in _NOTHING} or found
-    of_parameters = {it for it in found if it.startswith("<@") and it.count("<") == 1}
+    of_parameters = {it for it in found if parameter_in(it)}
     rest = found - of_parameters
     if len(of_parameters) == 1 and all("<" not in it or it in FLAGS for it in rest):
         # A variable has the default until it is told the parameter.

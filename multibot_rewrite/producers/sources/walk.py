@@ -18,6 +18,7 @@ from multibot_rewrite.producers.sources.records import (
     Class,
     Constructor,
     Place,
+    parameter_in,
 )
 from multibot_rewrite.producers.sources.resolve import (
     EACH,
@@ -105,7 +106,6 @@ class Named(NamedTuple):
     space: str
     asked: str
     place: Place
-    is_cycled: bool = False
 
 
 class Unread(NamedTuple):
@@ -153,7 +153,8 @@ def events_of(names: Names, starts: Sequence[Spot | Class]) -> Iterator[Event]:
 
 
 def _rest(walk: _Walk, made: Made) -> Iterator[Event]:
-    cycled = is_cycled(made)
+    # Has it the states of a life cycle?
+    cycled = any(last(it) == "LifecycleNode" for it in made.beyond)
     for it in made.chain:
         for owner, function in [key for key in walk.names.calls if key[0] == it.name]:
             key = (made.owners[0], owner, function)
@@ -161,11 +162,6 @@ def _rest(walk: _Walk, made: Made) -> Iterator[Event]:
                 continue
             asked = "" if cycled and function in _OF_CYCLE else OTHERWISE
             yield from _function(walk, Spot(made, owner, function, {}, asked, it.place.path))
-
-
-def is_cycled(made: Made) -> bool:
-    """Has it the states of a life cycle?"""
-    return any(last(it) == "LifecycleNode" for it in made.beyond)
 
 
 def _function(walk: _Walk, spot: Spot) -> Iterator[Event]:
@@ -193,9 +189,8 @@ def _asked(names: Names, spot: Spot, call: Call) -> str:
     own = []
     for it in filter(None, call.asked.split("&")):
         text = text_in(names, spot, it)
-        is_parameter = text.lstrip("!").startswith("<@") and text.count("<") == 1
         if not text.startswith(f"<{EACH}{LIST}"):
-            own.append(text if is_parameter else OTHERWISE)
+            own.append(text if parameter_in(text.lstrip("!")) else OTHERWISE)
     return "&".join(dict.fromkeys((*filter(None, spot.asked.split("&")), *own)))
 
 
@@ -388,7 +383,7 @@ def _base(walk: _Walk, spot: Spot, call: Call, name: str) -> Iterator[Event]:
     keys = dict(named)
     called = texts[0] if texts else keys.get("node_name", keys.get("name", ANY))
     space = texts[1] if len(texts) > 1 and "<" not in texts[1] else keys.get("namespace", "")
-    yield Named(called, space, spot.asked, call.place, last(base) == "LifecycleNode")
+    yield Named(called, space, spot.asked, call.place)
 
 
 def _above(spot: Spot, call: Call, name: str) -> Class | None:

@@ -14,16 +14,18 @@ from multibot_rewrite.fleet.robots.fitting.node_topics import (
     CommandEnd,
     controllers,
     entry_of,
+    sent_commands,
     topic_of,
     topics_of,
     usual_values,
+    with_rules,
 )
 from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup
 from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.system.records import SUBSCRIBES
 from multibot_rewrite.system.words import PLAIN
 
 
@@ -39,13 +41,8 @@ def driving(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeFa
             made.append(node)
             continue
         heard = topics_of((it for it in nodes if it is not node), SUBSCRIBES)
-        ends = (
-            it._replace(remapped=drives[0])
-            if it.role == PUBLISHES and it.type in COMMANDS and topic_of(node, it) not in heard
-            else it
-            for it in node.endpoints
-        )
-        made.append(node._replace(endpoints=tuple(ends)))
+        lost = (it for it, topic in sent_commands(node).items() if topic not in heard)
+        made.append(with_rules(node, dict.fromkeys(lost, drives[0])))
     return made
 
 
@@ -61,16 +58,10 @@ def by_way_of_relays(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequen
     made = []
     for node in nodes:
         is_tool = node.name in own and not node.host and is_tool_word(node.kind)
-        moved = (
-            it._replace(remapped=entry)
-            if is_tool
-            and it.role == PUBLISHES
-            and it.type in COMMANDS
-            and (entry := entry_of(topic := topic_of(node, it), ends)) != topic
-            else it
-            for it in node.endpoints
-        )
-        made.append(node._replace(endpoints=tuple(moved)))
+        sent = sent_commands(node) if is_tool else {}
+        entries = {it: (topic, entry_of(topic, ends)) for it, topic in sent.items()}
+        moved = {it: entry for it, (topic, entry) in entries.items() if entry != topic}
+        made.append(with_rules(node, moved))
     return made
 
 

@@ -8,7 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.fleet.robots.fitting.node_topics import COMMANDS, topic_of, topics_of
+from multibot_rewrite.fleet.robots.fitting.node_topics import (
+    COMMANDS,
+    sent_commands,
+    topic_of,
+    topics_of,
+    with_rules,
+)
 from multibot_rewrite.knowledge.records import TWIST_MUX, Endpoint, NodeFacts
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
@@ -29,13 +35,7 @@ def own_mux(nodes: Iterable[NodeFacts], added: Collection[str]) -> tuple[str, ..
 def to_the_drive(node: NodeFacts) -> NodeFacts:
     """Return the twist_mux with its output on the usual topic of a drive, where no rule has it on
     another: its own name is there to be remapped."""
-    ends = (
-        it._replace(remapped=it.remapped or _DRIVE)
-        if it.role == PUBLISHES and it.type in COMMANDS
-        else it
-        for it in node.endpoints
-    )
-    return node._replace(endpoints=tuple(ends))
+    return with_rules(node, {it: it.remapped or _DRIVE for it in sent_commands(node)})
 
 
 def through_a_mux(
@@ -132,13 +132,6 @@ def _with_inputs(
 
 def _moved(node: NodeFacts, moves: Mapping[tuple[str, str], str]) -> NodeFacts:
     """Return the node with its commands on other topics."""
-    ends = (
-        it._replace(remapped=to)
-        if it.role == PUBLISHES
-        and it.type in COMMANDS
-        and not it.when
-        and (to := moves.get((node.name, topic_of(node, it))))
-        else it
-        for it in node.endpoints
-    )
-    return node._replace(endpoints=tuple(ends))
+    sent = ((it, topic_of(node, it)) for it in _commands(node, PUBLISHES))
+    own = {it: moves[node.name, topic] for it, topic in sent if moves.get((node.name, topic))}
+    return with_rules(node, own)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.description.readback.reading import read
@@ -45,6 +45,18 @@ def topics_of(nodes: Iterable[NodeFacts], role: str, types: Collection[str] = ()
     these are given."""
     ends = ((node, it) for node in nodes for it in node.endpoints if it.role == role)
     return [topic_of(*it) for it in ends if not it[1].when and (not types or it[1].type in types)]
+
+
+def sent_commands(node: NodeFacts) -> dict[Endpoint, str]:
+    """Return the topics of the commands that a node sends, by their ends."""
+    ends = (it for it in node.endpoints if it.role == PUBLISHES and it.type in COMMANDS)
+    return {it: topic_of(node, it) for it in ends}
+
+
+def with_rules(node: NodeFacts, targets: Mapping[Endpoint, str]) -> NodeFacts:
+    """Return the node with some of its ends on other topics."""
+    ends = (it._replace(remapped=targets.get(it, it.remapped)) for it in node.endpoints)
+    return node._replace(endpoints=tuple(ends))
 
 
 def plugins(member: Member) -> Iterator[NodeFacts]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
@@ -41,17 +42,17 @@ _NAMING = make_naming("tf-per-robot")
 def offered_topics(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
     """Return the topics of the sensors in the description, by what they are, as the robot alone has
     them."""
-    found: dict[str, list[str]] = {}
+    sent: list[tuple[str, str]] = []
     if spec.simulator != REAL:
         topics, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING)
         for it in topics:
             # One that the description does not name comes where it is read.
-            if it.ros_type in SENSED and it.direction == DIRECTIONS["in"] and not it.is_free:
-                found.setdefault(it.ros_type, []).append(it.ros.strip("/"))
+            if it.direction == DIRECTIONS["in"] and not it.is_free:
+                sent.append((it.ros_type, it.ros.strip("/")))
         for node in plugins(member):
-            for end in node.endpoints:
-                if end.role == PUBLISHES and end.type in SENSED and not end.when:
-                    found.setdefault(end.type, []).append(topic_of(node, end))
+            ends = (it for it in node.endpoints if it.role == PUBLISHES and not it.when)
+            sent += ((it.type, topic_of(node, it)) for it in ends)
+    found = lists_by_key(it for it in sent if it[0] in SENSED)
     # Beside images of depths is a cloud of points in Gazebo.
     images, clouds = found.get(IMAGE, ()), found.get(CLOUD, ())
     depths = [it for it in images if _DEPTH in it or f"{it}/points" in clouds]

@@ -69,7 +69,9 @@ def standing_in(**more: Mapping[str, Any]) -> Iterator[None]:
     """``import launch`` finds the stand-in inside, and all else what it found before."""
     found: dict[str, Mapping[str, Any]] = {**contents(), **more}
     every = {name: found[package] for name, package in inside().items()} | found
-    made = {name: _module(name, it) for name, it in every.items()}
+    made = {name: ModuleType(name) for name in every}
+    for name, module in made.items():
+        vars(module).update(every[name], __path__=[])
     for name, module in made.items():
         package, _, last = name.rpartition(".")
         if package and not hasattr(made[package], last):
@@ -90,9 +92,3 @@ def standing_in(**more: Mapping[str, Any]) -> Iterator[None]:
 def is_stood_in() -> bool:
     """Does ``import launch`` find the stand-in?"""
     return sys.modules.get("launch") is not None and not hasattr(sys.modules["launch"], "__file__")
-
-
-def _module(name: str, content: Mapping[str, Any]) -> ModuleType:
-    module = ModuleType(name)
-    vars(module).update(content, __path__=[])
-    return module
