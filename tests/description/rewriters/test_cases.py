@@ -15,6 +15,7 @@ from case_files import Case, CaseError, all_cases, load_cases
 from lxml import etree
 
 from multibot_rewrite import Rewrite, RewriteRefused, rewrite, strip
+from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import POSTFIX, Policy, make_naming
@@ -23,7 +24,7 @@ from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.meeting import SAME_TEXT
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.readback.meeting import LOOKUP, SHARED_CODES
-from multibot_rewrite.description.rewriters.forms import Declared
+from multibot_rewrite.description.rewriters.forms import IN_FRONT, Declared
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection, load_vocabulary
 from multibot_rewrite.description.steps.apply import fill
@@ -295,8 +296,10 @@ def inserted(rewriter: VocabularySection) -> set[str]:
 
 
 def literals(rewriter: VocabularySection) -> set[str]:
-    """What the consumer falls back to or hard-wires, private topics aside."""
-    stated = {site.default.rpartition("?")[2] for site in rewriter.sites}
+    """What the consumer falls back to or hard-wires, but for private topics, frames of the world, and
+    what stands in front of names: no postfix reaches that, and it is reported (MB422)."""
+    said = (it for it in rewriter.sites if it.form not in IN_FRONT)
+    stated = {site.default.rpartition("?")[2] for site in said} - {*WORLD_FRAMES}
     defaults = {default for default in stated if "/../" not in default}
     # Where rules stand: not in a plugin of ROS 1, nor in what has no <ros>.
     takes_rules = rewriter.ros != "1" and any("remapping" in it.path for it in rewriter.sites)
