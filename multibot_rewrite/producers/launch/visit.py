@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import cache
 from inspect import getsource
+from types import FunctionType, MethodType
 from typing import Any
 
 from multibot_rewrite.producers.launch.describe import (
@@ -104,8 +105,9 @@ def _failed(entity: Any, error: BaseException, here: Visit) -> None:
     reason = failure(error)
     # What a function of a launch file names that cannot be asked.
     function = getattr(entity, "_OpaqueFunction__function", getattr(entity, "function", None))
-    with suppress(OSError, TypeError):
-        reason = f"{reason}{started_by(getsource(function))}"  # type: ignore[arg-type]
+    if isinstance(function, FunctionType | MethodType):
+        with suppress(OSError):
+            reason = f"{reason}{started_by(getsource(function))}"
     if here.later and is_unset(error):
         reason = f"{reason.partition(';')[0]}; {_ENDED}"
     message = f"{here.later} {reason}".strip()

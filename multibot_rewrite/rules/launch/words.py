@@ -17,6 +17,7 @@ from math import isclose, pi
 import yaml
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import IN_SUBSTITUTION, lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
@@ -41,6 +42,7 @@ from multibot_rewrite.rules.description.files import reading
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.table_checks import RULE_WITHOUT_NAME
 from multibot_rewrite.system.records import Place
+from multibot_rewrite.system.tool_nodes import last_word
 
 _ANGLES = ("--roll", "--pitch", "--yaw")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")
@@ -136,22 +138,26 @@ def not_there(launched: Launched) -> Iterator[Finding]:
 
 def _of_no_node(launched: Launched) -> Iterator[Finding]:
     """By the nodes that run. What a launch makes of a file is no file of the user."""
-    nodes = {it.full_name for it in launched.nodes} | {it.name for it in launched.system.nodes}
-    found: dict[Place, tuple[str, list[str]]] = {}
+    every = {it.full_name for it in launched.nodes} | {it.name for it in launched.system.nodes}
+    nodes = lists_by_key((last_word(it), it) for it in every)
+    started = lists_by_key(((it.place, it.program), it.full_name) for it in launched.nodes)
+    readers: dict[tuple[str, str], list[str]] = defaultdict(list)
     for node in (it for it in launched.graph.nodes if not it.container):
-        by_place = (it for it in launched.nodes if it.place == node.place)
-        names = [
-            it.full_name for it in by_place if it.program == f"{node.package}/{node.executable}"
-        ]
-        for text in (it for it in node.parameters if it.file and names):
-            with suppress(InputError):
-                sections = raw_sections(document_of(text.file, text.text))
-                for reader in names:
-                    if section := meant_for(sections, reader, nodes):
-                        place = Place(text.file, line_of(section.keys[0]))
-                        found.setdefault(place, (section.path, []))[1].append(reader)
-    for place, (path, readers) in found.items():
-        yield at(of_no_node, place, *said_of_section(path, readers))
+        names = started.get((node.place, f"{node.package}/{node.executable}"), ())
+        for it in (one for one in node.parameters if one.file and names):
+            readers[it.file, it.text] += names
+    found: dict[Place, tuple[str, list[str]]] = {}
+    for (file, text), names in readers.items():
+        with suppress(InputError):
+            sections = raw_sections(document_of(file, text))
+            by_word = lists_by_key((last_word(it.path), it) for it in sections)
+            for reader in names:
+                word = last_word(reader)
+                if section := meant_for(by_word.get(word, ()), reader, nodes.get(word, ())):
+                    place = Place(file, line_of(section.keys[0]))
+                    found.setdefault(place, (section.path, []))[1].append(reader)
+    for place, (path, names) in found.items():
+        yield at(of_no_node, place, *said_of_section(path, names))
 
 
 of_no_node = OF_NO_NODE._replace(check=_of_no_node)
@@ -164,13 +170,16 @@ def _placeholders(launched: Launched) -> Iterator[Finding]:
     """Those in parameter files as nodes get them, and in the words that start them; what has blanks
     besides is a text. The share folder of a package that is not here is asked for as it starts."""
     given: list[tuple[Place, str]] = []
+    files: dict[tuple[str, str], Place] = {}
     for it in launched.graph.nodes:
         given += [(it.place, one) for one in chain(it.arguments, *it.remappings)]
-        for text in it.parameters:
-            with suppress(yaml.YAMLError):
-                for one in yaml.scan(text.text):
-                    line = Place(text.file, one.start_mark.line + 1) if text.file else it.place
-                    given += [(line, one.value)] if isinstance(one, yaml.ScalarToken) else []
+        for given_file in it.parameters:
+            files.setdefault((given_file.file, given_file.text), it.place)
+    for (file, text), start in files.items():
+        with suppress(yaml.YAMLError):
+            for one in yaml.scan(text) if _LEFT.search(text) else ():
+                line = Place(file, one.start_mark.line + 1) if file else start
+                given += [(line, one.value)] if isinstance(one, yaml.ScalarToken) else []
     told = set()
     started = {it.place.file for it in launched.graph.nodes}
     for place, value in given:

@@ -93,7 +93,10 @@ def _version(text: str) -> tuple[int, ...]:
     return tuple(map(int, text.split(".")))
 
 
+_FOLDER = os.path.dirname(__file__)
+
+
 def table_text(file: str) -> str:
     """A table as it is written; ``pathlib`` would be loaded for it alone."""
-    with open(os.path.join(os.path.dirname(__file__), file), encoding="utf-8") as table:
+    with open(os.path.join(_FOLDER, file), encoding="utf-8") as table:
         return table.read()
