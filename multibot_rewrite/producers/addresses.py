@@ -50,10 +50,11 @@ def of_hardware(
         held = [(_known().get(it[0]) or _of_value(it[1]), *it) for it in values]
         if of_networks:
             held = [(it[0] or (DEVICE if is_of_network(it[2]) else ""), *it[1:]) for it in held]
-        if section is not None and says_what_it_opens(section):
-            held = [*_opened_by(system, section), *(it for it in held if it[0] == CALIBRATION)]
-        elif any(kind == DEVICE and text in NOWHERE for kind, _, text in held):
+        if any(kind == DEVICE and text in NOWHERE for kind, _, text in held):
             continue
+        if section is not None and says_what_it_opens(section):
+            own = [*_opened_by(system, section)]
+            held = [*own, *(it for it in held if own and it[0] == CALIBRATION)]
         else:
             held = [it for it in held if it[0] and it[2] not in NOWHERE]
         yield from dict.fromkeys(Address(*it, node, place) for it in held)

@@ -188,7 +188,7 @@ def test_brackets_and_colons_are_shown_as_they_are() -> None:
             "hardware topic_based_ros2_control/TopicBasedSystem",
         ),
         ("joint", "element joint"),
-        ("depth_camera", "sensor camera"),
+        ("depth_camera", "sensor depth_camera"),
         ("ros_settings", "block ros_settings"),
     ],
 )

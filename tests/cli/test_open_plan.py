@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 CLOSED = FILES["ekf.yaml"]
 OPEN = CLOSED.replace("imu0: imu/data", "imu0: imu_0/data")
 SAID = (
-    "MG303 /ekf_filter_node of robot1 subscribes to /imu_0/data, which no node publishes; "
+    "MG303 /ekf_filter_node of robot1 subscribes to /imu_0/data, which no known node publishes; "
     "/ros_gz_bridge publishes /imu/data (pass the rule /imu_0/data:=/imu/data, or write /imu/data in "
     "its parameters; see "
 )

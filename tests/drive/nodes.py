@@ -62,9 +62,11 @@ def nodes_of(given: Reader) -> Iterator[Node]:
         what = programs.node_of(it["executable"])
         rules = [tuple(rule) for rule in it["rules"]] + rules_in(it["arguments"])
         space = dict(rules).get("__ns") or "/" + it["namespace"].strip("/")
-        name = dict(rules).get("__node") or it["name"] or what
+        # A rule may be for the one node of a process that its code calls so.
+        of_node = dict(rules).get(f"{what}:__node")
+        name = dict(rules).get("__node") or it["name"] or of_node or what
         fqn = f"{space.rstrip('/')}/{name}"
-        plain = tuple(rule for rule in rules if not rule[0].startswith("__"))
+        plain = tuple(rule for rule in rules if not rule[0].rpartition(":")[2].startswith("__"))
         values = {**programs.defaults(what, given.release)}
         values |= programs.parameters_of(fqn, sections_of(it))
         values |= {"": it["arguments"]} if it["arguments"] else {}

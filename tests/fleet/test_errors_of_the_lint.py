@@ -94,7 +94,7 @@ MAY_BE = [it.code for it in RULES.values() if may_stop(it) and URDF in it.format
 # A system of the world is moved from the description to the world.
 ELSEWHERE = {"MB160"}
 # The rewrite refuses them, whatever is ignored.
-REFUSED = {"MB101", "MB102", "MB103", "MB109", "MB201", "MB420", "MB424"}
+REFUSED = {"MB101", "MB102", "MB103", "MB109", "MB201", "MB244", "MB420", "MB424"}
 
 
 def errors(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, set[str]]:

@@ -13,7 +13,6 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.description.readback.xml import read_xml
 
 _DECLARED = lazy_compile(rb"<xacro:arg\s[^<]*?\bname\s*=\s*[\"']\s*([^\"'<\s]+)")
 _READ = lazy_compile(rb"\$\(arg\s+([^\s)]+)|\bxacro\.arg\(\s*[\"']([^\"']+)")
@@ -52,6 +51,8 @@ def joined(known: Iterable[KnownArguments]) -> KnownArguments:
 
 def defaults_in(text: bytes) -> dict[str, str]:
     """Return the defaults of the arguments that a file declares, but in a condition or a macro."""
+    from multibot_rewrite.description.readback.xml import read_xml  # kept answers need no lxml
+
     root = read_xml(text, "")
     own = (it for it in root.iterchildren("*") if str(it.tag).rpartition("}")[2] == "arg")
     return {it.get("name", ""): it.get("default", "") for it in own if "default" in it.attrib}

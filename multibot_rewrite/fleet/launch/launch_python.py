@@ -73,8 +73,8 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
     made = functions(it.robots)
     for own in made:
         yield ("", "", *_function(own))
-    calls = {name: _call(own, name) for own in made for name in own.calls}
-    names = (f"    {value(robot.name)}: {calls[robot.name]}," for robot in it.robots)
+    calls = {name: own for own in made for name in own.calls}
+    names = (row for robot in it.robots for row in _call(calls[robot.name], robot.name))
     yield "", "", "ROBOTS = {", *names, "}"
     if it.domains:
         # As an environment has them.
@@ -137,12 +137,18 @@ def _function(it: Function) -> Iterator[str]:
     yield from _robot(it.starts)
 
 
-def _call(it: Function, name: str) -> str:
-    """Return what starts a robot in the table of robots."""
+def _call(it: Function, name: str) -> Iterator[str]:
+    """Yield the lines of the table of robots that say what starts one."""
     if len(it.calls) == 1:
-        return it.title
-    given = (f"{key}={own}" for key, own in zip(it.parameters, it.calls[name], strict=True))
-    return f"partial({', '.join((it.title, value(name), *given))})"
+        yield f"    {value(name)}: {it.title},"
+        return
+    named = (f"{key}={own}" for key, own in zip(it.parameters, it.calls[name], strict=True))
+    given = (it.title, value(name), *named)
+    row = f"    {value(name)}: partial({', '.join(given)}),"
+    if len(row) <= WIDTH:
+        yield row
+    else:
+        yield from (f"    {value(name)}: partial(", *(f"        {one}," for one in given), "    ),")
 
 
 def _robot(it: RobotStarts) -> Iterator[str]:

@@ -11,6 +11,7 @@ from lxml import etree
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.readback.parameters import default_of, holds
 from multibot_rewrite.description.rewriters.forms import FORMS, IN_FRONT, LONGEST
+from multibot_rewrite.description.rewriters.vocabulary.grammar import SPAWNED
 
 
 def claim(attribute: str) -> Any:
@@ -148,7 +149,8 @@ MODEL = """<sdf><model name="m"{}><link name="one"/><link name="two"/><plugin na
         ("{link}", "base"),
         ("{sensor}/x", "eye/x"),
         ("{model}/x", "{model}/x"),
-        ("{model}/{way}/x", "{model}/left/x"),
+        # What stands for the model's name is no text that a user writes.
+        ("{model}/{way}/x", f"{SPAWNED}left/x"),
         ("x/{way}", "x/left"),
         ("x/{none}", ""),
     ],

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from multibot_rewrite.base.findings.finding import NOTE, URDF, WARNING, rule
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.producers.addresses import of_hardware
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.description.multirobot.topics import AS_WRITTEN, process_wide_plugins
 from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
@@ -34,6 +33,10 @@ def _one_device(subject: Subject) -> Iterator[Problem]:
     a name or value hold, where it is the same for every robot."""
     root = subject.document.root
     params = [*root.iterfind("ros2_control/hardware/param")]
+    if root.find("ros2_control") is None:
+        return
+    from multibot_rewrite.producers.addresses import of_hardware  # most descriptions have none
+
     starts = starts_of(subject, params)
     held = {(it.get("name", ""), (it.text or "").strip()): it for it in params}
     for it in of_hardware(root, "", NOWHERE, subject.tree.vocabulary, of_networks=True):
