@@ -10,7 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.description.checks.numbers import number, value_of
-from multibot_rewrite.description.rewriters.text import kept_joints
+from multibot_rewrite.description.rewriters.text import end_of, kept_joints
 
 MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 WORLD = "world"
@@ -110,15 +110,13 @@ def _firsts(things: Sequence[_Named]) -> dict[str, _Named]:
 
 
 def _joint(element: _Element) -> Joint:
-    parts = {it.tag: it for it in reversed(element)}
-    parent, child = parts.get("parent"), parts.get("child")
     return Joint(
         element.get("name", ""),
         element.get("type", ""),
-        "" if parent is None else parent.get("link", ""),
-        "" if child is None else child.get("link", ""),
+        end_of(element, "parent"),
+        end_of(element, "child"),
         element,
-        parts,
+        {it.tag: it for it in reversed(element)},
     )
 
 

@@ -8,6 +8,7 @@ from itertools import islice
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError, ProofError
 from multibot_rewrite.base.naming import NAMESPACE, TWIN, Naming, spelled
 from multibot_rewrite.description.checks.hazards import ALONE
@@ -89,14 +90,11 @@ def shared_with(
             "does not have"
         )
     found = [*_changed(document, reading, robot, naming, vocabulary)]
-    of_plugins: dict[int, list[RuntimeName]] = {}
-    for it in meeting.same_for_all(reading.names, robot, naming):
-        if it.of_controllers:
-            of_plugins.setdefault(it.number, []).append(it)
-            continue
+    shared = list(meeting.same_for_all(reading.names, robot, naming))
+    for it in (it for it in shared if not it.of_controllers):
         element, message = it.element_in(document.root), meeting.said(ALL, it)
         found.append(Problem(element, message, None, meeting.advice(it), (), meeting.code_of(it)))
-    for names in of_plugins.values():
+    for names in lists_by_key((it.number, it) for it in shared if it.of_controllers).values():
         plugin = names[0].element_in(document.root)
         found.append(_of_controllers(plugin, names, naming, vocabulary.release))
     yield from found
