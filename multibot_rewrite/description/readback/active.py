@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.releases import ROS_1, ROS_2
 from multibot_rewrite.description.readback.parameters import given_at, holds
@@ -150,9 +151,7 @@ class ActivePart(NamedTuple):
 
 def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
     """All of a description, kind by kind."""
-    every: dict[str, list[_Element]] = {"plugin": [], "sensor": [], "include": []}
-    for element in root.iter(*every):
-        every[str(element.tag)].append(element)
+    every = lists_by_key((str(it.tag), it) for it in root.iter("plugin", "sensor", "include"))
     for plugin in every["plugin"]:
         inside = _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors())
         if is_loaded(plugin) and not inside:

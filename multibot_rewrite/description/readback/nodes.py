@@ -218,8 +218,7 @@ def rules_of(plugin: _Element) -> Iterator[RemapRule]:
 
 def _rules(home: _Element) -> Iterator[ReadRule]:
     """The rules in <argument>, which come first, and those in <remapping>."""
-    texts = [*_remap_arguments(home), *home.iterfind("remapping")]
-    for element in texts:
+    for element in (*_remap_arguments(home), *home.iterfind("remapping")):
         rule = parse_remap(text_of(element))
         if rule is not None:
             line: int = element.sourceline or 0  # type: ignore[assignment]

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.readback.xml import child_text, is_on, values_at
@@ -82,14 +83,10 @@ def given_at(host: _Element, path: str) -> list[str]:
 
 def switched_off(host: _Element, section: VocabularySection) -> dict[str, str]:
     """The wired topics that no parameter of theirs turns on, and which would."""
-    on: set[str] = set()
-    off: dict[str, list[str]] = {}
-    for parameter, topic, is_set in _switches(host, section):
-        if is_set:
-            on.add(topic)
-        else:
-            off.setdefault(topic, []).append(parameter)
-    return {topic: " or ".join(names) for topic, names in off.items() if topic not in on}
+    found = list(_switches(host, section))
+    on = {topic for _, topic, is_set in found if is_set}
+    off = lists_by_key((topic, parameter) for parameter, topic, _ in found if topic not in on)
+    return {topic: " or ".join(names) for topic, names in off.items()}
 
 
 def sends_odometry(host: _Element, section: VocabularySection) -> bool:
@@ -112,21 +109,19 @@ def completed(host: _Element, default: str) -> str:
 
 
 def _named(host: _Element, word: str) -> str:
-    if word in ("link", "sensor"):
-        return _first_link(host) if word == "link" else _sensor(host)
+    if word == "link":
+        return _first_link(host)
+    if word == "sensor":
+        sensor = next(host.iterancestors("sensor"), None)
+        return sensor.get("name", "") if sensor is not None else ""
     return MODEL[:-1] if word == "model" else child_text(host, word) or ""
-
-
-def _sensor(host: _Element) -> str:
-    sensor = next(host.iterancestors("sensor"), None)
-    return sensor.get("name", "") if sensor is not None else ""
 
 
 def _first_link(host: _Element) -> str:
     model = around(host)
-    links = [it.get("name", "") for it in model.iter("link")]
     if model.tag == "model":
-        return model.get("canonical_link") or next(iter(links), "")
+        every = (it.get("name", "") for it in model.iter("link"))
+        return model.get("canonical_link") or next(every, "")
     links = [it.get("name", "") for it in model.iterchildren("link")]
     above = {}
     for joint in model.iterchildren("joint"):

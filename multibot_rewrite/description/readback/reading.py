@@ -236,21 +236,16 @@ def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
         yield RuntimeName(kind, value, tag, host.number, path)
 
 
-def _own_model(root: _Element) -> str:
-    """Return the name of the robot's model in the file; its spawner may give it another one."""
-    model = root if root.tag == "robot" else next(root.iter("model"), root)
-    return model.get("name", "")
-
-
 def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
     """Names that a plugin or system looks up in the whole world, of things that this file has; the
     robot's own model in front of them is another one, where it keeps its name."""
     kind, tag = host.section.unique, str(host.element.tag)
     (every,) = vocabulary.find("element", tag)
     sites = [it for it in (*every.sites, *host.section.sites) if it.role != "keep"]
+    model = root if root.tag == "robot" else next(root.iter("model"), root)
     for site in (it for it in sites if it.form == "scoped"):
         for value in dict.fromkeys(parameters.values_of(host.element, site)):
-            if "::" in value and value.partition("::")[0] == _own_model(root):
+            if "::" in value and value.partition("::")[0] == model.get("name", ""):
                 yield RuntimeName("model", value, tag, host.number, site.path)
     if not kind:
         return
