@@ -145,12 +145,11 @@ def _asked(host: etree._Element, section: VocabularySection) -> Iterator[_Asked]
 
 
 def _names(claim: Claim, node: _Node, process_wide: bool) -> Iterator[NamePart]:
-    flag = _flag(claim.element) if claim.site.form == "argument" else ""
-    parts = remap(claim.value, claim.site.kinds, {})
-    if flag in ("", *_REMAPS):
-        yield from parts
+    if claim.site.form == "argument" and _flag(claim.element) not in ("", *_REMAPS):
+        return
+    yield from remap(claim.value, claim.site.kinds, {})
     rule = split_remap(claim.value.strip())
-    if rule is None or flag not in ("", *_REMAPS) or rule.source.startswith(("__", "~")):
+    if rule is None or rule.source.startswith(("__", "~")):
         return
     if process_wide or rule.node in ("", node.name):
         lead = len(claim.value) - len(claim.value.lstrip())

@@ -210,14 +210,12 @@ def scope_of(element: etree._Element) -> etree._Element | None:
 
     A model's own pose is looked up among its siblings.
     """
-    if element.tag == "pose" and _is_model(element.getparent()):
-        element = element.getparent()  # type: ignore[assignment]
-        return next(element.iterancestors("model", "robot"), None)
-    return element if _is_model(element) else next(element.iterancestors("model", "robot"), None)
-
-
-def _is_model(element: etree._Element | None) -> bool:
-    return element is not None and element.tag == "model"
+    parent = element.getparent()
+    if element.tag == "pose" and parent is not None and parent.tag == "model":
+        element = parent
+    elif element.tag == "model":
+        return element
+    return next(element.iterancestors("model", "robot"), None)
 
 
 def in_scope(
