@@ -133,8 +133,6 @@ def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             continue
         flavours = tree.vocabulary.of_every_ros("plugin", section.names[0])
         theirs = {tag for other in flavours if other.ros == "1" for tag in other.tags}
-        if not theirs:
-            continue
         known = section.tags | host.node.children.keys()
         left = sorted({str(child.tag) for child in host.element} & (theirs - known))
         if left:
