@@ -106,21 +106,16 @@ def _value(place: str, path: str, words: list[str]) -> Iterator[Value]:
         raise VocabularyError(f"{place}: {path} {type_} is no type, use one of {', '.join(TYPES)}")
     if releases and not is_release_words(releases):
         raise VocabularyError(f"{place}: {path} releases={releases} names no releases")
-    name, is_attribute = _name(path)
+    # What it is called where values are looked up.
+    name, is_attribute, _ = path.partition("@")
+    if path.startswith(_NAMED):
+        name, is_attribute = path[len(_NAMED) : -1], ""
     read = options.get("read", "").partition("@")[0]
     choices = options["one"].split("|") if "one" in options else ()
     limits = _range(place, options)
     checked = options.get("checked", read)
     own = (name, "any" if is_attribute else type_, read, releases, "required" in options)
     yield Value(*own, tuple(choices), options.get("unit", ""), *limits, checked)
-
-
-def _name(path: str) -> tuple[str, bool]:
-    """What a path is called where values are looked up, and whether it ends in an attribute."""
-    if path.startswith(_NAMED):
-        return path[len(_NAMED) : -1], False
-    name, at, _ = path.partition("@")
-    return name, bool(at)
 
 
 def _range(place: str, options: Mapping[str, str]) -> tuple[float | None, float | None, bool]:
