@@ -38,9 +38,7 @@ def doubtful(inventory: Inventory) -> list[Claim]:
         claim
         for claim in inventory.claims
         if claim.site.role == "uses"
-        and not (
-            claim.site.whole_value_kind and claim.value in declared[claim.site.whole_value_kind]
-        )
+        and claim.value not in declared.get(claim.site.whole_value_kind, ())
     ]
 
 
@@ -55,9 +53,8 @@ def loose_ends(
         if any(claim.value in declared.get(kind, ()) for kind in site.kinds):
             continue
         for part in names_in(claim, declared):
-            if part.text in shared or is_keyword(part.text):
-                continue
-            if not kind_of(part, site.role, declared):
+            is_known = part.text in shared or is_keyword(part.text)
+            if not is_known and not kind_of(part, site.role, declared):
                 yield Loose(claim, part)
 
 

@@ -5,9 +5,10 @@ topics and services that it names, as a section has them: ``odom=pkg/msg/Name``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import VocabularyError
 from multibot_rewrite.base.releases import is_release_words
@@ -51,8 +52,8 @@ class Values(NamedTuple):
     of_ros_1: bool
     is_open: bool
     rows: Mapping[str, Value]
-    blocks: Mapping[str, tuple[str, ...]]
-    blocks_of: Mapping[str, tuple[str, ...]]
+    blocks: Mapping[str, Sequence[str]]
+    blocks_of: Mapping[str, Sequence[str]]
 
 
 def is_typed(word: str) -> bool:
@@ -81,12 +82,9 @@ def values_of(
     rows: dict[str, Value] = {}
     for it in found:
         rows.setdefault(it.name, it)
-    blocks: dict[str, tuple[str, ...]] = {"": ()}
-    blocks_of: dict[str, tuple[str, ...]] = {}
-    for path in rows:
-        above, _, name = path.rpartition("/")
-        blocks_of[name] = (*blocks_of.get(name, ()), above)
-        blocks[above] = (*blocks.get(above, ()), name)
+    places = [path.rpartition("/") for path in rows]
+    blocks = {"": [], **lists_by_key((above, name) for above, _, name in places)}
+    blocks_of = lists_by_key((name, above) for above, _, name in places)
     return Values(names, of_ros_1, is_open, rows, blocks, blocks_of)
 
 
