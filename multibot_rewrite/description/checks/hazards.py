@@ -36,9 +36,8 @@ if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
 
 
-# Of a plugin that opens what is the world's, and the elements that it belongs in.
+# Of a plugin that opens what is the world's.
 WORLD = "world"
-WITH_WORLD = (WORLD, "gui")
 # Says which of them no robot loads any more.
 LEFT = "MF847"
 # What a plugin reads the description from: names that no other robot's plugin may read.
@@ -185,7 +184,7 @@ def world_systems(inventory: Inventory) -> Iterator[Problem]:
     """Systems of the whole world that each robot loads again; in a world they are where they belong."""
     for section, host in _known_hosts(inventory):
         above = host.element.getparent()
-        if WORLD not in section.opens or (above is not None and above.tag in WITH_WORLD):
+        if WORLD not in section.opens or (above is not None and above.tag in (WORLD, "gui")):
             continue
         key = system_key(host.element)
         why = section.about or "what it opens is the world's"

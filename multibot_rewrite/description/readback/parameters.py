@@ -50,13 +50,15 @@ def _applies(host: _Element, site: SiteRow) -> bool:
 
 def default_of(host: _Element, default: str) -> str:
     """``x``; ``a=true,b=?x``: x where these siblings have these texts; ``topic/../x``: the value of
-    a sibling with its last segment replaced; ``{model}/x``: x below what the model is spawned as."""
+    a sibling with its last segment replaced; ``{model}/x``: x below what the model is spawned as, with
+    ``MODEL`` for that. Empty where a name of the description is not there."""
     conditions, asked, default = default.rpartition("?")
     if asked and not holds(host, conditions):
         return ""
     sibling, derived, last = default.partition("/../")
     if not derived:
-        return completed(host, default)
+        words = {it: _named(host, it) for it in _SLOT.findall(default)}
+        return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
     topic = child_text(host, sibling) or ""
     return f"{topic.rpartition('/')[0]}/{last}" if "/" in topic else last if topic else ""
 
@@ -101,13 +103,6 @@ def _switches(host: _Element, section: VocabularySection) -> Iterator[tuple[str,
         yield parameter, topic, is_on(child_text(host, parameter), usual=bool(usual))
 
 
-def completed(host: _Element, default: str) -> str:
-    """The default with the names of the description, ``MODEL`` for that of the model, which the spawner
-    gives; empty where a name is not there."""
-    words = {it: _named(host, it) for it in _SLOT.findall(default)}
-    return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
-
-
 def _named(host: _Element, word: str) -> str:
     if word == "link":
         return _first_link(host)
@@ -134,11 +129,6 @@ def _first_link(host: _Element) -> str:
 def around(host: _Element) -> _Element:
     """The model or URDF that a plugin stands in."""
     return next(host.iterancestors("model", "robot"), host)
-
-
-def is_nested(model: _Element) -> bool:
-    """Is it a model in a model, which robot_state_publisher does not read?"""
-    return next(model.iterancestors("model"), None) is not None
 
 
 def wired_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[WiredTopic, str]]:

@@ -135,8 +135,10 @@ def _of_first_senders(
     sent |= {models[it] for it in partly}
     first: dict[_Element, int] = {}
     for number in sorted(numbers - partly):
-        if models[number] not in sent and not parameters.is_nested(models[number]):
-            first.setdefault(models[number], number)
+        model = models[number]
+        # robot_state_publisher does not read a model in a model.
+        if model not in sent and next(model.iterancestors("model"), None) is None:
+            first.setdefault(model, number)
     return tuple(it for it in missed if it.number in partly or it.number in first.values())
 
 
