@@ -6,7 +6,6 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterator
 from itertools import chain
-from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, locate
@@ -43,11 +42,11 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
         used_namespaces(inventory, tree),
         hazards(inventory, renames),
     )
+    notes = chain(other_ros(inventory, tree), other_releases(inventory, tree))
     found = [
         *to_findings(document, errors, ERROR),
         *to_findings(document, warnings, WARNING),
-        *to_findings(document, other_ros(inventory, tree), NOTE),
-        *to_findings(document, other_releases(inventory, tree), NOTE),
+        *to_findings(document, notes, NOTE),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
 
@@ -55,37 +54,30 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
 def leftover_xacro(inventory: Inventory) -> Iterator[Problem]:
     """The first element or substitution that only xacro understands."""
     document = inventory.document
-    source = document.source
     hint = "expand it first: name the file ….xacro, or run xacro"
     elements = document.elements if uses_xacro(document) else ()
     element = next((it for it in elements if "/xacro}" in str(it.tag)), None)
     if element is not None:
         message = f"xacro element <{str(element.tag).rpartition('}')[2]}>"
         yield Problem(element, message, None, hint, (), "MB105")
-    elif _may_substitute(source):
-        # Claimed or not; comments do not count.
-        for it in document.elements:
-            values = (*it.values(), it.text or "", *(child.tail or "" for child in it))
-            found = next((value for value in values if _SUBSTITUTION.search(str(value))), None)
-            if found is not None:
-                message = f"xacro substitution {' '.join(str(found).split())!r}"
-                yield Problem(it, message, None, hint, (), "MB105")
-                return
+        return
+    # A cheap look before the search: in many files comments alone hold a substitution.
+    source = document.source
+    rest = without_comments(source) if b"${" in source or b"$(arg" in source else b""
+    if b"${" not in rest and b"$(arg" not in rest:
+        return
+    # Claimed or not; comments do not count.
+    for it in document.elements:
+        values = (*it.values(), it.text or "", *(child.tail or "" for child in it))
+        found = next((value for value in values if _SUBSTITUTION.search(str(value))), None)
+        if found is not None:
+            message = f"xacro substitution {' '.join(str(found).split())!r}"
+            yield Problem(it, message, None, hint, (), "MB105")
+            return
 
 
 # An expression or an argument of xacro; ``${}`` has none.
 _SUBSTITUTION = lazy_compile(r"\$\{\s*[^\s{}]|\$\(arg\s+[^\s()]")
-
-
-def _may_substitute(source: bytes) -> bool:
-    """A cheap look before the search: in many files comments alone hold a substitution."""
-    if b"$" not in source or (b"${" not in source and b"$(arg" not in source):
-        return False
-    rest = without_comments(source)
-    return b"${" in rest or b"$(arg" in rest
-
-
-_TAG = attrgetter("tag")
 
 
 def uses_xacro(document: Document) -> bool:
@@ -93,7 +85,7 @@ def uses_xacro(document: Document) -> bool:
     spaces = document.root.nsmap.items()
     prefixes = {f"<{prefix}:" for prefix, uri in spaces if prefix and "/xacro" in uri}
     seen = any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})
-    return seen and any("xacro" in str(tag) for tag in set(map(_TAG, document.elements)))
+    return seen and any("xacro" in str(tag) for tag in {it.tag for it in document.elements})
 
 
 def worlds(inventory: Inventory) -> Iterator[Problem]:
@@ -141,8 +133,6 @@ def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             continue
         flavours = tree.vocabulary.of_every_ros("plugin", section.names[0])
         theirs = {tag for other in flavours if other.ros == "1" for tag in other.tags}
-        if not theirs:
-            continue
         known = section.tags | host.node.children.keys()
         left = sorted({str(child.tag) for child in host.element} & (theirs - known))
         if left:

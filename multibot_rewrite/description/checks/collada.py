@@ -29,36 +29,32 @@ _TINY = 1e-12
 
 
 class _File(NamedTuple):
-    """What is kept of a file: the corners of each geometry as columns, and the tree without them."""
+    """What is kept of a file: the corners of each geometry as columns, and the nodes of its scene."""
 
     corners: dict[str, tuple[Sequence[float], ...]]
     nodes: dict[str, _Element]
-    root: _Element
 
 
 def collada_box(data: bytes) -> Extent | None:
     """The box around the scene of a file, in metres; None where it cannot be told."""
+    corners = {}
+    stream = iterparse(BytesIO(data), tag=_READ_AT_ONCE, resolve_entities=False)
     try:
-        file = _read(data)
-        unit = float(_attribute(file.root, "{*}asset/{*}unit", "meter") or 1.0)
-        scene = _target(_attribute(file.root, "{*}scene/{*}instance_visual_scene", "url"))
+        for _, it in stream:
+            if it.tag.endswith("}geometry"):
+                corners[it.get("id", "")] = _corners(it)
+            it.clear()
+        root = stream.root
+        nodes = {it.get("id", ""): it for it in root.iter("{*}node", "{*}visual_scene")}
+        file = _File(corners, nodes)
+        unit = float(_attribute(root, "{*}asset/{*}unit", "meter") or 1.0)
+        scene = _target(_attribute(root, "{*}scene/{*}instance_visual_scene", "url"))
         scaled = tuple(tuple(unit * it for it in row) for row in _SAME)
         boxes = list(_boxes(file, file.nodes[scene], scaled, count()))
     except (XMLSyntaxError, ValueError, KeyError, IndexError, RecursionError):
         return None
     known = boxes and all(isfinite(sum(it.low) + sum(it.high)) for it in boxes)
     return around(boxes) if known else None
-
-
-def _read(data: bytes) -> _File:
-    corners = {}
-    stream = iterparse(BytesIO(data), tag=_READ_AT_ONCE, resolve_entities=False)
-    for _, it in stream:
-        if it.tag.endswith("}geometry"):
-            corners[it.get("id", "")] = _corners(it)
-        it.clear()
-    nodes = stream.root.iter("{*}node", "{*}visual_scene")
-    return _File(corners, {it.get("id", ""): it for it in nodes}, stream.root)
 
 
 def _corners(geometry: _Element) -> tuple[Sequence[float], ...]:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Container, Iterator
 from functools import partial
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 from lxml.etree import _Element
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.naming import (
     FRAME_KINDS,
     NAMESPACE,
@@ -36,9 +36,8 @@ if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
 
 
-# Of a plugin that opens what is the world's, and the elements that it belongs in.
+# Of a plugin that opens what is the world's.
 WORLD = "world"
-WITH_WORLD = (WORLD, "gui")
 # Says which of them no robot loads any more.
 LEFT = "MF847"
 # What a plugin reads the description from: names that no other robot's plugin may read.
@@ -149,16 +148,15 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     Jazzy each manager has its own, gz_ros2_control_plugin.cpp ``options.arguments``)."""
     if not controller_way(inventory.release).process_wide:
         return
+    wide = [(section, host) for section, host in _known_hosts(inventory) if section.process_wide]
     if naming.topics != NAMESPACE:
-        for section, host in _known_hosts(inventory):
-            if not section.process_wide:
-                continue
+        for section, host in wide:
             plugin = section.names[0]
             message = f"remap rules of {plugin} apply to the whole process, also to other robots"
             hint = "with several robots in one Gazebo use --topics namespace"
             yield _host(host, "MB426", message, hint)
         return
-    inside = {host.element for section, host in _known_hosts(inventory) if section.process_wide}
+    inside = {host.element for _, host in wide}
     for claim in inventory.claims if inside else ():
         rule = split_remap(claim.value) if claim.site.form in ("remap", "argument") else None
         if rule is None or inside.isdisjoint(claim.element.iterancestors()):
@@ -186,7 +184,7 @@ def world_systems(inventory: Inventory) -> Iterator[Problem]:
     """Systems of the whole world that each robot loads again; in a world they are where they belong."""
     for section, host in _known_hosts(inventory):
         above = host.element.getparent()
-        if WORLD not in section.opens or (above is not None and above.tag in WITH_WORLD):
+        if WORLD not in section.opens or (above is not None and above.tag in (WORLD, "gui")):
             continue
         key = system_key(host.element)
         why = section.about or "what it opens is the world's"
@@ -259,13 +257,10 @@ def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     of pinocchio's configuration vector."""
     if renames.naming.affix != POSTFIX or "joint" not in renames.naming.separators:
         return
-    siblings: dict[str, list[str]] = defaultdict(list)
-    declared = inventory.declared["joint"]
     # Those of an SRDF are in its URDF.
-    for name, claim in declared.items() if inventory.format != SRDF else ():
-        parent = next(claim.element.iterchildren("parent"), None)
-        if parent is not None:
-            siblings[parent.get("link", "")].append(name)
+    declared = inventory.declared["joint"] if inventory.format != SRDF else {}
+    parents = ((name, claim.element.find("parent")) for name, claim in declared.items())
+    siblings = lists_by_key((it.get("link", ""), name) for name, it in parents if it is not None)
     for link, names in siblings.items():
         old = sorted(names)
         if not any(map(str.startswith, old[1:], old)) and not renames.naming.own:
@@ -274,12 +269,9 @@ def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
         orders = [sorted(names, key=partial(renames.spelled, robot, "joint")) for robot in "\0~"]
         new = next((order for order in orders if order != old), None)
         if new is not None:
-            yield about(
-                inventory.declared["joint"][new[0]],
-                "MB405",
-                f"the postfix changes the order of the joints below link {link!r} to {', '.join(new)}",
-                "urdfdom sorts joints by name; use --affix prefix to keep the order",
-            )
+            order = f"the order of the joints below link {link!r} to {', '.join(new)}"
+            hint = "urdfdom sorts joints by name; use --affix prefix to keep the order"
+            yield about(declared[new[0]], "MB405", f"the postfix changes {order}", hint)
 
 
 IGNORED, IN_USE = "MB419", "MB429"

@@ -10,7 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.description.checks.numbers import number, value_of
-from multibot_rewrite.description.rewriters.text import kept_joints
+from multibot_rewrite.description.rewriters.text import end_of, kept_joints
 
 MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 WORLD = "world"
@@ -69,8 +69,8 @@ class Robot(NamedTuple):
     joints: tuple[Joint, ...]
     link: Mapping[str, Link]
     joint: Mapping[str, Joint]
-    above: Mapping[str, tuple[Joint, ...]]
-    below: Mapping[str, tuple[Joint, ...]]
+    above: Mapping[str, Sequence[Joint]]
+    below: Mapping[str, Sequence[Joint]]
     body: Mapping[str, str]
 
 
@@ -79,8 +79,8 @@ def read_robot(root: _Element) -> Robot:
     tops = list(root) if root.tag == "robot" else []
     links = tuple(_link(it) for it in tops if it.tag == "link")
     joints = tuple(_joint(it) for it in tops if it.tag == "joint")
-    above = _by_name((it.child, it) for it in joints)
-    below = _by_name((it.parent, it) for it in joints)
+    above = lists_by_key((it.child, it) for it in joints if it.child)
+    below = lists_by_key((it.parent, it) for it in joints if it.parent)
     return Robot(
         *(links, joints, _firsts(links), _firsts(joints), above, below),
         _bodies(links, above, below, kept_joints(root)),
@@ -110,27 +110,20 @@ def _firsts(things: Sequence[_Named]) -> dict[str, _Named]:
 
 
 def _joint(element: _Element) -> Joint:
-    parts = {it.tag: it for it in reversed(element)}
-    parent, child = parts.get("parent"), parts.get("child")
     return Joint(
         element.get("name", ""),
         element.get("type", ""),
-        "" if parent is None else parent.get("link", ""),
-        "" if child is None else child.get("link", ""),
+        end_of(element, "parent"),
+        end_of(element, "child"),
         element,
-        parts,
+        {it.tag: it for it in reversed(element)},
     )
-
-
-def _by_name(pairs: Iterable[tuple[str, Joint]]) -> dict[str, tuple[Joint, ...]]:
-    found = lists_by_key((name, joint) for name, joint in pairs if name)
-    return {name: tuple(joints) for name, joints in found.items()}
 
 
 def _bodies(
     links: Iterable[Link],
-    above: Mapping[str, tuple[Joint, ...]],
-    below: Mapping[str, tuple[Joint, ...]],
+    above: Mapping[str, Sequence[Joint]],
+    below: Mapping[str, Sequence[Joint]],
     kept: frozenset[str],
 ) -> dict[str, str]:
     body = {it.name: it.name for it in links if it.name not in above}

@@ -8,6 +8,7 @@ from itertools import islice
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError, ProofError
 from multibot_rewrite.base.naming import NAMESPACE, TWIN, Naming, spelled
 from multibot_rewrite.description.checks.hazards import ALONE
@@ -89,14 +90,11 @@ def shared_with(
             "does not have"
         )
     found = [*_changed(document, reading, robot, naming, vocabulary)]
-    of_plugins: dict[int, list[RuntimeName]] = {}
-    for it in meeting.same_for_all(reading.names, robot, naming):
-        if it.of_controllers:
-            of_plugins.setdefault(it.number, []).append(it)
-            continue
+    shared = list(meeting.same_for_all(reading.names, robot, naming))
+    for it in (it for it in shared if not it.of_controllers):
         element, message = it.element_in(document.root), meeting.said(ALL, it)
         found.append(Problem(element, message, None, meeting.advice(it), (), meeting.code_of(it)))
-    for names in of_plugins.values():
+    for names in lists_by_key((it.number, it) for it in shared if it.of_controllers).values():
         plugin = names[0].element_in(document.root)
         found.append(_of_controllers(plugin, names, naming, vocabulary.release))
     yield from found
@@ -142,9 +140,9 @@ def _changed(
             "they were the same topic"
         )
         left = next((name.path for name in (it, other) if name in reading.other_ends), "")
-        hint = (
-            f"{left} stays as it is: {BY_HAND}" if left else f"write both the same way, or {BESIDE}"
-        )
+        hint = f"write both the same way, or {BESIDE}"
+        if left:
+            hint = f"{left} stays as it is: {BY_HAND}"
         yield Problem(it.element_in(document.root), message, None, hint, (), PARTED)
     for it, *pair in meeting.undescribed(before, reading):
         image, asked, info = (name.replace(robot, ROBOT) for name in (it.name, *pair))
@@ -165,20 +163,18 @@ def _of_controllers(
     element: _Element, names: Sequence[RuntimeName], naming: Naming, release: str
 ) -> Problem:
     """What the controllers of a plugin would share, though the plugin has rules for it."""
-    shared = ", ".join(it.name for it in names)
+    shared = [it.name for it in names]
     message = (
-        f"{ALL} have {shared} of their controllers, which take no rules of this plugin on {release}"
+        f"{ALL} have {', '.join(shared)} of their controllers, which take no rules of this plugin "
+        f"on {release}"
     )
-    rules = " ".join(f"-r {_rule(it.name, naming)}" for it in names)
+    # What each robot calls it; ROBOT stands for its name.
+    own = [it.strip("/") for it in shared]
+    if naming.topics != NAMESPACE:
+        own = [spelled(naming, ROBOT, "topic", it) for it in shared]
+    rules = " ".join(f"-r {name}:={to}" for name, to in zip(shared, own, strict=True))
     hint = (
         f'start each controller with its spawner and --controller-ros-args "{rules}"; multibot plan'
         " and build print the lines"
     )
     return Problem(element, message, None, hint, (), meeting.NOT_TAKEN)
-
-
-def _rule(name: str, naming: Naming) -> str:
-    """The rule that gives each robot a name of its own; ROBOT stands for its name."""
-    if naming.topics == NAMESPACE:
-        return f"{name}:={name.strip('/')}"
-    return f"{name}:={spelled(naming, ROBOT, 'topic', name)}"

@@ -229,17 +229,15 @@ def kept(element: etree._Element, attribute: str, tree: Tree, known: Nodes) -> S
 def node_of(element: etree._Element, tree: Tree, known: Nodes) -> TreeNode | None:
     """The node of the tree that serves an element."""
     if element not in known:
-        known[element] = _node_of(element, tree, known)
+        parent = element.getparent()
+        above = None if parent is None else node_of(parent, tree, known)
+        node = above.children.get(str(element.tag)) if above else None
+        if parent is None:
+            node = tree.formats.get(tree.format_of(element))
+        elif node is not None and node.select is not None:
+            node = node.select(element)
+        known[element] = node
     return known[element]
-
-
-def _node_of(element: etree._Element, tree: Tree, known: Nodes) -> TreeNode | None:
-    parent = element.getparent()
-    if parent is None:
-        return tree.formats.get(tree.format_of(element))
-    above = node_of(parent, tree, known)
-    node = above.children.get(str(element.tag)) if above else None
-    return node.select(element) if node is not None and node.select is not None else node
 
 
 def as_problem(mention: Mention) -> Problem:

@@ -97,22 +97,19 @@ def _joints(member: _Element, robot: Robot) -> Collection[str]:
     if member.tag == "joint":
         return (text_of(member),)
     if member.tag == "link":
-        return [joint.name for joint in robot.above.get(text_of(member), ())] or _virtual(member)
+        link = text_of(member)
+        # The joint above the root link is a virtual one.
+        virtual = member.getroottree().getroot().iterchildren("virtual_joint")
+        return [joint.name for joint in robot.above.get(link, ())] or [
+            text_of(it) for it in virtual if text_of(it, "child_link") == link
+        ]
     if member.tag == "chain":
         return chain(robot, text_of(member, "base_link"), text_of(member, "tip_link")) or ()
     return ()
-
-
-def _virtual(link: _Element) -> Collection[str]:
-    """The joint above the root link."""
-    joints = link.getroottree().getroot().iterchildren("virtual_joint")
-    return [text_of(it) for it in joints if text_of(it, "child_link") == text_of(link)]
 
 
 def links_of(name: str, groups: Groups, robot: Robot) -> Collection[str]:
     """The links of a group: those that its joints move, and those it names itself."""
     joints = joints_of(name, groups, robot)
     moved = {robot.joint[it].child for it in joints if it in robot.joint}
-    group = groups.get(name)
-    named = group.iterchildren("link") if group is not None else ()
-    return moved.union(text_of(it) for it in named)
+    return moved.union(text_of(it) for it in _members(groups, name) if it.tag == "link")

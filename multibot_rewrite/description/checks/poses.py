@@ -168,21 +168,16 @@ def pose_in(origin: _Element | None) -> Pose | None:
         return HERE
     if origin.get("quat_xyzw") is not None:
         return pose_of(origin)
-    return _pose(origin.get("xyz", "0 0 0"), origin.get("rpy", "0 0 0"))
+    return _pose(origin.get("xyz", ZERO), origin.get("rpy", ZERO))
 
 
 @lru_cache(maxsize=1024)  # several rules ask for the same ones
 def _pose(xyz: str, rpy: str) -> Pose | None:
-    at, turn = vector(xyz), _matrix(rpy)
-    return None if at is None or turn is None else Pose(at, turn)
-
-
-@lru_cache(maxsize=1024)
-def _matrix(rpy: str) -> Matrix | None:
-    angles = vector(rpy)
-    if angles is None:
+    at, angles = vector(xyz), vector(rpy)
+    if at is None or angles is None:
         return None
-    return matrix_of_quaternion(quaternion_of_rpy(angles)) if any(angles) else STRAIGHT
+    is_turned = any(angles)
+    return Pose(at, matrix_of_quaternion(quaternion_of_rpy(angles)) if is_turned else STRAIGHT)
 
 
 def sdf_pose(text: str) -> Pose | None:

@@ -22,8 +22,6 @@ SRDF_ROBOT = "element srdf.robot"
 _SRDF_THEMES = (("@name", "MB802"), ("disable_", "MB807"), ("enable_", "MB807"))
 _SRDF = {"link": "MB803", "joint": "MB804", "group": "MB805"}
 _LINK, JOINT = "MB202", "MB211"
-# Only SDF has scopes.
-_SCOPE = "MB219"
 
 
 class Loose(NamedTuple):
@@ -40,9 +38,7 @@ def doubtful(inventory: Inventory) -> list[Claim]:
         claim
         for claim in inventory.claims
         if claim.site.role == "uses"
-        and not (
-            claim.site.whole_value_kind and claim.value in declared[claim.site.whole_value_kind]
-        )
+        and claim.value not in declared.get(claim.site.whole_value_kind, ())
     ]
 
 
@@ -57,25 +53,23 @@ def loose_ends(
         if any(claim.value in declared.get(kind, ()) for kind in site.kinds):
             continue
         for part in names_in(claim, declared):
-            if part.text in shared or is_keyword(part.text):
-                continue
-            if not kind_of(part, site.role, declared):
+            is_known = part.text in shared or is_keyword(part.text)
+            if not is_known and not kind_of(part, site.role, declared):
                 yield Loose(claim, part)
 
 
 def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Problem]:
     """A problem for each, with the code for where it is."""
     guesses = Guesses()
-    for it in loose:
-        claim, part = it
+    for claim, part in loose:
+        site = claim.site
         known = (known for kind in part.kinds for known in declared.get(kind, ()))
         message = f"{where(claim)} names the {' or '.join(part.kinds)} {part.text!r}, "
         found = (kind for kind in sorted(CLOSED_KINDS) if part.text in declared.get(kind, ()))
         other = next(found, "")
         message += f"which is a {other}" if other else "which is not declared"
-        code, hint = _code(claim.site, part), guesses.hint(part.text, known)
+        code, hint = _code(site, part), guesses.hint(part.text, known)
         # A description is rejected for such a name in a joint, and in most of ros2_control.
-        site = claim.site
         of_system = site.section == "element ros2_control" and not site.path.startswith("hardware/")
         is_fatal = of_system or site.section == "element joint"
         mild = code in (_LINK, JOINT) and not is_fatal
@@ -84,7 +78,7 @@ def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Pro
 
 def _code(site: SiteRow, part: NamePart) -> str:
     if site.form in ("scoped", "member"):
-        return _SCOPE
+        return "MB219"  # Only SDF has scopes.
     other = JOINT if part.kinds[0] == "joint" else _LINK
     if site.section != SRDF_ROBOT:
         return other

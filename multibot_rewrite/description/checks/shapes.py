@@ -19,13 +19,12 @@ from multibot_rewrite.description.checks.poses import (
     Pose,
     dot,
     link_poses,
-    matrix_of_quaternion,
     minus,
     origin_of,
     placed,
     plus,
     point_in,
-    quaternion_of_rpy,
+    pose_of_six,
     scaled,
 )
 
@@ -48,17 +47,14 @@ def extent_of(shape: _Element, pose: Pose) -> Extent | None:
     if half is None:
         return None
     if shape.tag == "sphere" or pose.matrix is STRAIGHT:
-        reach = half
-    else:
-        x, y, z = half
-        reach = _three(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
-    return Extent(minus(pose.at, reach), plus(pose.at, reach))
+        return Extent(minus(pose.at, half), plus(pose.at, half))
+    return placed_box(Extent(scaled(half, -1), half), pose)
 
 
 def placed_box(box: Extent, pose: Pose) -> Extent:
     """The box around a box at a pose."""
-    centre, half = point_in(pose, box.middle), minus(box.high, box.middle)
-    x, y, z = half
+    centre = point_in(pose, box.middle)
+    x, y, z = minus(box.high, box.middle)
     reach = _three(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
     return Extent(minus(centre, reach), plus(centre, reach))
 
@@ -147,17 +143,15 @@ def reach_of(root: _Element) -> float:
 def filled_by(root: _Element) -> float:
     """What a robot surely fills, however it is turned: half of how far it reaches, in SDF from the
     origin of its model. Two overlap where they are nearer than both fill."""
-    return (reach_of(root) or _reach(_posed_links_of_sdf(root))) / 2
+    if reach := reach_of(root):
+        return reach / 2
+    # The first model of an SDF, but for links whose pose another frame decides.
+    model = root if root.tag == "model" else next(root.iter("model"), None)
+    posed = ((it, _sdf_pose(it)) for it in (() if model is None else model.iterchildren("link")))
+    return _reach([(it, pose, _sdf_pose) for it, pose in posed if pose is not None]) / 2
 
 
 _Placed = tuple[_Element, Pose, Callable[[_Element], Pose | None]]
-
-
-def _posed_links_of_sdf(root: _Element) -> list[_Placed]:
-    """The same of the first model of an SDF, but for links whose pose another frame decides."""
-    model = root if root.tag == "model" else next(root.iter("model"), None)
-    links = () if model is None else model.iterchildren("link")
-    return [(it, pose, _sdf_pose) for it in links if (pose := _sdf_pose(it)) is not None]
 
 
 def _sdf_pose(element: _Element) -> Pose | None:
@@ -168,8 +162,7 @@ def _sdf_pose(element: _Element) -> Pose | None:
     values = numbers(written.text or "0 0 0 0 0 0")
     if written.attrib or values is None or len(values) != 6:
         return None
-    x, y, z, *rpy = values
-    return Pose((x, y, z), matrix_of_quaternion(quaternion_of_rpy(_three(rpy))))
+    return pose_of_six(values)
 
 
 def _reach(links: Sequence[_Placed]) -> float:

@@ -151,12 +151,11 @@ def _shown(inventory: Inventory, found: list[UsedName]) -> str:
     by_kind: dict[str, UsedName] = {}
     for name in found:
         by_kind.setdefault(name.kind, name)
-    first = [_with_line(inventory, name) for name in list(by_kind.values())[:SHOWN]]
+    source = inventory.document.source
+    first = [
+        f"{name.kind} {name.text!r} (line {locate(source, name.claim.start)[0]})"
+        for name in list(by_kind.values())[:SHOWN]
+    ]
     rest = len(found) - len(first)
     *parts, last = [*first, *([plural(rest, "more name")] if rest else [])]
     return f"{', '.join(parts)} and {last}" if parts else last
-
-
-def _with_line(inventory: Inventory, name: UsedName) -> str:
-    line, _ = locate(inventory.document.source, name.claim.start)
-    return f"{name.kind} {name.text!r} (line {line})"

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.nearest import SLIP, Guesses
 from multibot_rewrite.base.releases import CLASSIC, ROS_1, ROS_2, lacks_classic
 from multibot_rewrite.description.checks.problem import Problem
@@ -64,11 +65,11 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 def _by_ros(parts: Iterable[ActivePart], vocabulary: Vocabulary) -> dict[str, list[ActivePart]]:
     """Return the plugins that ROS 1 and ROS 2 both have, by the ROS as whose they are read; none where
     the document's is known."""
-    found: dict[str, list[ActivePart]] = {}
-    for it in parts:
-        if it.section and len(vocabulary.find(PLUGIN, library_key(it.name))) > 1:
-            found.setdefault(it.section.ros, []).append(it)
-    return found
+    return lists_by_key(
+        (it.section.ros, it)
+        for it in parts
+        if it.section and len(vocabulary.find(PLUGIN, library_key(it.name))) > 1
+    )
 
 
 def is_unknown(section: VocabularySection) -> bool:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.releases import ROS_1, ROS_2
 from multibot_rewrite.description.readback.parameters import given_at, holds
@@ -86,12 +87,6 @@ def hardware_section(system: _Element, vocabulary: Vocabulary) -> VocabularySect
     return next(iter(vocabulary.find("hardware", hardware_class(system))), None)
 
 
-def sensor_sections(sensor: _Element, vocabulary: Vocabulary) -> list[VocabularySection]:
-    """What is known about every sensor, and about those of this type."""
-    type_ = sensor.get("type", "").strip()
-    return [*vocabulary.find("element", "sensor"), *vocabulary.find("sensor", type_)]
-
-
 PLUGIN, HARDWARE, SENSOR, INCLUDE = "plugin", "hardware class", "sensor type", "included model"
 # A number is an address of which it is known how that of the next robot is made.
 ADDRESS, NUMBER, FILE = "address", "number", "file"
@@ -150,15 +145,15 @@ class ActivePart(NamedTuple):
 
 def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
     """All of a description, kind by kind."""
-    every: dict[str, list[_Element]] = {"plugin": [], "sensor": [], "include": []}
-    for element in root.iter(*every):
-        every[str(element.tag)].append(element)
+    every = lists_by_key((str(it.tag), it) for it in root.iter("plugin", "sensor", "include"))
     for plugin in every["plugin"]:
         inside = _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors())
         if is_loaded(plugin) and not inside:
             section, known = plugin_section(plugin, vocabulary)
             yield ActivePart(PLUGIN, plugin, plugin_name(plugin), section if known else None)
-    yield from hardware_parts(root, vocabulary)
+    for system in root.iter("ros2_control"):
+        if class_ := hardware_class(system):
+            yield ActivePart(HARDWARE, system, class_, hardware_section(system, vocabulary))
     for sensor in every["sensor"]:
         type_ = sensor.get("type", "").strip()
         if type_ and _is_simulated(sensor):
@@ -168,13 +163,6 @@ def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]
         uri = child_text(include, "uri")
         if uri and next(include.iterancestors("model", "gazebo"), None) is not None:
             yield ActivePart(INCLUDE, include, uri, None)
-
-
-def hardware_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
-    """The hardware classes of a description."""
-    for system in root.iter("ros2_control"):
-        if class_ := hardware_class(system):
-            yield ActivePart(HARDWARE, system, class_, hardware_section(system, vocabulary))
 
 
 def is_loaded(plugin: _Element) -> bool:

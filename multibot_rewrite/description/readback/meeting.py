@@ -9,10 +9,11 @@ finds it in a system that runs.
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.naming import NAMESPACE, Naming, is_keyword, is_of_world
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.description.readback import active
@@ -220,10 +221,8 @@ def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, Runti
     """Each end that lost the first of those that it met, with that one, as they are now: what is left
     as it was by the vocabulary counts as well."""
     now = _by_place((*after.names, *after.other_ends))
-    of_topic: dict[tuple[str, str], list[Place]] = defaultdict(list)
-    for place, name in _by_place((*before.names, *before.other_ends)).items():
-        if place in now:
-            of_topic[name.kind, name.name].append(place)
+    was = _by_place((*before.names, *before.other_ends))
+    of_topic = lists_by_key(((it.kind, it.name), at) for at, it in was.items() if at in now)
     for places in of_topic.values():
         first = now[places[0]]
         yield from ((now[it], first) for it in places[1:] if now[it].name != first.name)
@@ -238,9 +237,7 @@ def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, 
     """
     now = _by_place(after.names)
     was = _by_place(before.names)
-    infos: dict[str, list[Place]] = defaultdict(list)
-    for place, name in was.items():
-        infos[name.name].append(place)
+    infos = lists_by_key((name.name, place) for place, name in was.items())
     new = {it.name for it in now.values()}
     cameras = {(it.tag, it.number) for it in before.names if it.name == _info_of(it.name)}
     for place, name in was.items():
@@ -262,7 +259,6 @@ def _by_place(names: Iterable[RuntimeName]) -> Mapping[Place, RuntimeName]:
     for it in names:
         if it.kind in (TOPIC, SERVICE) and not it.of_controllers:
             place = it.tag, it.number, it.path, it.kind
-            key = (*place, seen[place])
-            found[key] = it
+            found[(*place, seen[place])] = it
             seen[place] += 1
     return found

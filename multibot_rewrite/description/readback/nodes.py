@@ -41,11 +41,7 @@ TOPIC, SERVICE, ACTION = "topic", "service", "action"
 BELOW = "topics below"
 TF_TOPICS = ("/tf", "/tf_static")
 REMAP_FLAGS = ("-r", "--remap")
-# The parameter that names the manager of a plugin of ros2_control.
-_MANAGER_NAME = "controller_manager_name"
 PUBLISHES, SERVES = "publishes", "serves"
-# Parent and child.
-PAIR = 2
 # Joints of arms turn twice at most from end to end; wheels are without limits, or with those of 1e16.
 _SOME_TURNS = 10 * pi
 
@@ -133,7 +129,7 @@ def node_of(
     rules = tuple(it for it in rules if not it.rule.source.startswith("__"))
     frames = tuple(frames_of(plugin, section))
     # The parent and the child of the transform of odometry that it sends are its first two frames.
-    of_odometry = "/tf" in section.publishes and len(frames) >= PAIR
+    of_odometry = "/tf" in section.publishes and len(frames) >= 2
     sends = of_odometry and sends_odometry(plugin, section)
     return ReadNode(
         section,
@@ -157,7 +153,7 @@ def node_of(
 
 def _manager(plugin: _Element, section: VocabularySection, name: str, namespace: str) -> str:
     """Its node is the manager; Classic's plugin is a node of its own besides."""
-    site = next((it for it in section.sites if it.path == _MANAGER_NAME), None)
+    site = next((it for it in section.sites if it.path == "controller_manager_name"), None)
     if site is None:
         return ""
     called = next(iter(values_of(plugin, site)), "") if _has_own_name(section) else name
@@ -218,8 +214,7 @@ def rules_of(plugin: _Element) -> Iterator[RemapRule]:
 
 def _rules(home: _Element) -> Iterator[ReadRule]:
     """The rules in <argument>, which come first, and those in <remapping>."""
-    texts = [*_remap_arguments(home), *home.iterfind("remapping")]
-    for element in texts:
+    for element in (*_remap_arguments(home), *home.iterfind("remapping")):
         rule = parse_remap(text_of(element))
         if rule is not None:
             line: int = element.sourceline or 0  # type: ignore[assignment]

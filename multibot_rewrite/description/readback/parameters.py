@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.readback.xml import child_text, is_on, values_at
@@ -49,13 +50,15 @@ def _applies(host: _Element, site: SiteRow) -> bool:
 
 def default_of(host: _Element, default: str) -> str:
     """``x``; ``a=true,b=?x``: x where these siblings have these texts; ``topic/../x``: the value of
-    a sibling with its last segment replaced; ``{model}/x``: x below what the model is spawned as."""
+    a sibling with its last segment replaced; ``{model}/x``: x below what the model is spawned as, with
+    ``MODEL`` for that. Empty where a name of the description is not there."""
     conditions, asked, default = default.rpartition("?")
     if asked and not holds(host, conditions):
         return ""
     sibling, derived, last = default.partition("/../")
     if not derived:
-        return completed(host, default)
+        words = {it: _named(host, it) for it in _SLOT.findall(default)}
+        return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
     topic = child_text(host, sibling) or ""
     return f"{topic.rpartition('/')[0]}/{last}" if "/" in topic else last if topic else ""
 
@@ -82,14 +85,10 @@ def given_at(host: _Element, path: str) -> list[str]:
 
 def switched_off(host: _Element, section: VocabularySection) -> dict[str, str]:
     """The wired topics that no parameter of theirs turns on, and which would."""
-    on: set[str] = set()
-    off: dict[str, list[str]] = {}
-    for parameter, topic, is_set in _switches(host, section):
-        if is_set:
-            on.add(topic)
-        else:
-            off.setdefault(topic, []).append(parameter)
-    return {topic: " or ".join(names) for topic, names in off.items() if topic not in on}
+    found = list(_switches(host, section))
+    on = {topic for _, topic, is_set in found if is_set}
+    off = lists_by_key((topic, parameter) for parameter, topic, _ in found if topic not in on)
+    return {topic: " or ".join(names) for topic, names in off.items()}
 
 
 def sends_odometry(host: _Element, section: VocabularySection) -> bool:
@@ -104,29 +103,20 @@ def _switches(host: _Element, section: VocabularySection) -> Iterator[tuple[str,
         yield parameter, topic, is_on(child_text(host, parameter), usual=bool(usual))
 
 
-def completed(host: _Element, default: str) -> str:
-    """The default with the names of the description, ``MODEL`` for that of the model, which the spawner
-    gives; empty where a name is not there."""
-    words = {it: _named(host, it) for it in _SLOT.findall(default)}
-    return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
-
-
 def _named(host: _Element, word: str) -> str:
-    if word in ("link", "sensor"):
-        return _first_link(host) if word == "link" else _sensor(host)
+    if word == "link":
+        return _first_link(host)
+    if word == "sensor":
+        sensor = next(host.iterancestors("sensor"), None)
+        return sensor.get("name", "") if sensor is not None else ""
     return MODEL[:-1] if word == "model" else child_text(host, word) or ""
-
-
-def _sensor(host: _Element) -> str:
-    sensor = next(host.iterancestors("sensor"), None)
-    return sensor.get("name", "") if sensor is not None else ""
 
 
 def _first_link(host: _Element) -> str:
     model = around(host)
-    links = [it.get("name", "") for it in model.iter("link")]
     if model.tag == "model":
-        return model.get("canonical_link") or next(iter(links), "")
+        every = (it.get("name", "") for it in model.iter("link"))
+        return model.get("canonical_link") or next(every, "")
     links = [it.get("name", "") for it in model.iterchildren("link")]
     above = {}
     for joint in model.iterchildren("joint"):
@@ -139,11 +129,6 @@ def _first_link(host: _Element) -> str:
 def around(host: _Element) -> _Element:
     """The model or URDF that a plugin stands in."""
     return next(host.iterancestors("model", "robot"), host)
-
-
-def is_nested(model: _Element) -> bool:
-    """Is it a model in a model, which robot_state_publisher does not read?"""
-    return next(model.iterancestors("model"), None) is not None
 
 
 def wired_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[WiredTopic, str]]:

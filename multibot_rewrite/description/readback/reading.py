@@ -135,9 +135,10 @@ def _of_first_senders(
     sent |= {models[it] for it in partly}
     first: dict[_Element, int] = {}
     for number in sorted(numbers - partly):
-        if models[number] not in sent:
-            first.setdefault(models[number], number)
-    first = {model: it for model, it in first.items() if not parameters.is_nested(model)}
+        model = models[number]
+        # robot_state_publisher does not read a model in a model.
+        if model not in sent and next(model.iterancestors("model"), None) is None:
+            first.setdefault(model, number)
     return tuple(it for it in missed if it.number in partly or it.number in first.values())
 
 
@@ -176,7 +177,7 @@ def _of_hosts(
 ) -> Iterator[RuntimeName]:
     for host in hosts:
         if host.number not in nodes or _is_of_either(host):
-            yield from _topics(*host, tag, vocabulary.release)
+            yield from _topics(host, tag, vocabulary.release)
         yield from _frames(host, tag)
         yield from _lookups(root, host, vocabulary)
         yield from _opened(host, tag)
@@ -192,9 +193,12 @@ def _is_of_either(host: _Host) -> bool:
 
 def _of_sensors(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
     for number, sensor in enumerate(root.iter("sensor")):
-        for section in active.sensor_sections(sensor, vocabulary):
-            yield from _topics(sensor, number, section, "sensor", vocabulary.release)
-            yield from _opened(_Host(sensor, number, section), "sensor")
+        # What is known about every sensor, and about those of this type.
+        of_type = vocabulary.find("sensor", sensor.get("type", "").strip())
+        for section in (*vocabulary.find("element", "sensor"), *of_type):
+            host = _Host(sensor, number, section)
+            yield from _topics(host, "sensor", vocabulary.release)
+            yield from _opened(host, "sensor")
 
 
 def _of_elements(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
@@ -203,7 +207,8 @@ def _of_elements(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName
             continue
         (section,) = vocabulary.find("element", tag)
         for number, element in enumerate(root.iter(tag.rpartition(".")[2])):
-            yield from _topics(element, number, section, element.tag, vocabulary.release)
+            host = _Host(element, number, section)
+            yield from _topics(host, element.tag, vocabulary.release)
 
 
 def _links(root: _Element) -> Iterator[RuntimeName]:
@@ -214,12 +219,10 @@ def _links(root: _Element) -> Iterator[RuntimeName]:
             yield RuntimeName(FRAME, link.get("name", "").strip(), "link", number, "@name")
 
 
-def _topics(
-    host: _Element, number: int, section: VocabularySection, tag: str, release: str
-) -> Iterator[RuntimeName]:
+def _topics(host: _Host, tag: str, release: str) -> Iterator[RuntimeName]:
     """Topics that are no ROS 2 node's: below the namespace that the plugin puts in front."""
-    for kind, name, path in resolved(host, section, release):
-        yield RuntimeName(kind, name, tag, number, path)
+    for kind, name, path in resolved(host.element, host.section, release):
+        yield RuntimeName(kind, name, tag, host.number, path)
 
 
 def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
@@ -236,21 +239,16 @@ def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
         yield RuntimeName(kind, value, tag, host.number, path)
 
 
-def _own_model(root: _Element) -> str:
-    """Return the name of the robot's model in the file; its spawner may give it another one."""
-    model = root if root.tag == "robot" else next(root.iter("model"), root)
-    return model.get("name", "")
-
-
 def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
     """Names that a plugin or system looks up in the whole world, of things that this file has; the
     robot's own model in front of them is another one, where it keeps its name."""
     kind, tag = host.section.unique, str(host.element.tag)
     (every,) = vocabulary.find("element", tag)
     sites = [it for it in (*every.sites, *host.section.sites) if it.role != "keep"]
+    model = root if root.tag == "robot" else next(root.iter("model"), root)
     for site in (it for it in sites if it.form == "scoped"):
         for value in dict.fromkeys(parameters.values_of(host.element, site)):
-            if "::" in value and value.partition("::")[0] == _own_model(root):
+            if "::" in value and value.partition("::")[0] == model.get("name", ""):
                 yield RuntimeName("model", value, tag, host.number, site.path)
     if not kind:
         return

@@ -69,12 +69,23 @@ def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
 
 def _names(left: str, links: Links, lumped: Lumped, spell: Respell) -> dict[tuple[str, int], str]:
     """Name of each collision that ends in link ``left``, by link and index."""
-    found = {}
+    found: dict[tuple[str, int], str] = {}
     there = spell("link", left)
-    for number, (link, place, own) in enumerate(_merged(left, links, lumped, spell)):
-        start = spell("shape", own) if own else spell("link", link)
-        name = f"{start}_collision" + (f"_{number}" if number else "")
-        found[link, place] = name if name.startswith(there) else f"{there}{LUMP}{name}"
+    waiting = [left]
+    seen = set()
+    while waiting:
+        link = waiting.pop()
+        if link in seen or link not in links:
+            continue
+        seen.add(link)
+        for place, collision in enumerate(links[link].iterchildren("collision")):
+            own = collision.get("name", "")
+            start = spell("shape", own) if own else spell("link", link)
+            name = f"{start}_collision" + (f"_{len(found)}" if found else "")
+            found[link, place] = name if name.startswith(there) else f"{there}{LUMP}{name}"
+        # urdfdom sorts sibling joints by name: children come in the order of their new spelling.
+        below = sorted((spell("joint", joint), child) for joint, child in lumped.get(link, ()))
+        waiting += [child for _, child in reversed(below)]
     return found
 
 
@@ -89,23 +100,3 @@ def _lumped(root: etree._Element) -> Lumped:
         if parent is not None and child is not None and parent.get("link") != "world":
             lumped[parent.get("link", "")].append((joint.get("name", ""), child.get("link", "")))
     return lumped
-
-
-def _merged(link: str, links: Links, lumped: Lumped, spell: Respell) -> list[tuple[str, int, str]]:
-    """(link, index, own name) of all collisions ``link`` holds at the end.
-
-    urdfdom sorts sibling joints by name, so the children come in the order of their new spelling.
-    """
-    result = []
-    waiting = [link]
-    seen = set()
-    while waiting:
-        name = waiting.pop()
-        if name in seen or name not in links:
-            continue
-        seen.add(name)
-        found = links[name].iterchildren("collision")
-        result += [(name, place, item.get("name", "")) for place, item in enumerate(found)]
-        below = sorted((spell("joint", joint), child) for joint, child in lumped.get(name, ()))
-        waiting += [child for _, child in reversed(below)]
-    return result

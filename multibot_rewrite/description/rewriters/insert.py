@@ -9,7 +9,6 @@ from typing import NamedTuple
 from lxml import etree
 
 from multibot_rewrite.base.loose_xml import ESCAPES
-from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
 from multibot_rewrite.base.rosnames import SERVICE_SCHEME, TOPIC_SCHEME, expand
 from multibot_rewrite.description.rewriters.forms import Declared
@@ -168,20 +167,16 @@ def _defaults(
             continue
         spelling = spell_default(site, wanted, declared, naming)
         new = respelled(wanted, spelling, ROBOT_SLOT)
-        if not of_model and new == _without(site, default, naming):
+        # What the consumer has where nothing is inserted: a sensor may be renamed itself.
+        is_sensor = site.default == SENSOR
+        unset = spelled(naming, ROBOT_SLOT, "sensor", default) if is_sensor else default
+        if not of_model and new == unset:
             continue
         kind = spelling[0].kind if spelling else site.kinds[0]
-        shared = not of_model and _without(site, default, naming) == default
+        shared = not of_model and unset == default
         old = default.replace(MODEL, SHOWN) if of_model else default
         made = _insertion(host, path, kind, old, new)._replace(shared=shared)
         yield made if there is None else _filling(made, there, path)
-
-
-def _without(site: SiteRow, default: str, naming: Naming) -> str:
-    """What the consumer has where nothing is inserted: a sensor may be renamed itself."""
-    if site.default != SENSOR:
-        return default
-    return spelled(naming, ROBOT_SLOT, "sensor", default)
 
 
 def query(step: str) -> str:

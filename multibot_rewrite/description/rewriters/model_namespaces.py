@@ -45,13 +45,11 @@ def below_models(claims: list[Claim], source: bytes, release: str) -> list[Claim
     made = []
     for claim in claims:
         site = claim.site
-        if not site.below_model or site.kinds[0] not in TOPIC_KINDS:
-            made.append(claim)
-        elif not has_release(site.below_model, release):
-            made += [] if is_model_namespace(site) else [claim]
-        elif stands_below(claim):
+        is_topic = site.below_model and site.kinds[0] in TOPIC_KINDS
+        is_read = is_topic and has_release(site.below_model, release)
+        if is_read and stands_below(claim):
             made.append(claim._replace(site=_subtopic(site)))
-        else:
+        elif is_read or not (is_topic and is_model_namespace(site)):
             made.append(claim)
     return made
 

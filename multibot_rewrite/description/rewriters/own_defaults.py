@@ -8,7 +8,6 @@ canonical), gazebo_ros_pkgs ros2 gazebo_ros_camera.cpp (``camera_name`` is the s
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
 from lxml import etree
@@ -26,7 +25,6 @@ MODEL, SENSOR = SPAWNED, "{sensor}"
 # The same for a reader.
 SHOWN = f"{OF_MODEL}/"
 WORLD = "world"
-BOOLEANS = {"true": True, "false": False}
 _SLOT = lazy_compile(r"\{(\w+)\}")
 Hosts = Iterable[tuple[etree._Element, VocabularySection]]
 
@@ -47,27 +45,21 @@ def default_of(host: etree._Element, default: str, naming: Naming) -> str:
 def _holds(host: etree._Element, condition: str) -> bool:
     child, _, wanted = condition.partition("=")
     text = text_at(host, child)
-    if wanted in BOOLEANS:
-        return is_true(text) == BOOLEANS[wanted]
+    if wanted in ("true", "false"):
+        return is_true(text) == (wanted == "true")
     return text == wanted
 
 
 def filled(host: etree._Element, default: str) -> str:
     """The default with its names in place, ``MODEL`` for that of the model; empty where one is not
     there."""
-    missing = False
-
-    def put(slot: re.Match[str]) -> str:
-        nonlocal missing
-        text = MODEL[:-1] if slot[1] == "model" else _own(host, slot[1])
-        missing = missing or not text
-        return text
-
-    text = _SLOT.sub(put, default)
-    return "" if missing else text
+    words = {it: _own(host, it) for it in _SLOT.findall(default)}
+    return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
 
 
 def _own(host: etree._Element, word: str) -> str:
+    if word == "model":
+        return MODEL[:-1]
     if word == "sensor":
         sensor = next(host.iterancestors("sensor"), None)
         return "" if sensor is None else sensor.get("name", "")
@@ -102,9 +94,8 @@ def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
     second = set()
     for host in senders:
         model = model_of(host)
-        if host not in given and (
-            model in taken or (next(model.iterancestors("model"), None) is not None)
-        ):
+        is_nested = next(model.iterancestors("model"), None) is not None
+        if host not in given and (model in taken or is_nested):
             second.add(host)
         taken.add(model)
     return frozenset(second)

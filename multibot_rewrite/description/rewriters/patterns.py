@@ -128,8 +128,7 @@ def _row(pieces: deque[str], depth: int) -> _Piece:
     while pieces and pieces[0] not in "|)":
         piece = _atom(pieces.popleft(), pieces, depth)
         while pieces and _is_count(pieces[0]):
-            count = pieces.popleft()
-            piece = _times(piece, *_counts(count))
+            piece = _times(piece, *_counts(pieces.popleft()))
             # As few as possible: the same names.
             if pieces and pieces[0] == "?":
                 pieces.popleft()

@@ -109,20 +109,16 @@ def rules_in(home: etree._Element | None) -> list[RemapRule]:
 def named(host: etree._Element, section: VocabularySection) -> tuple[str, str]:
     """The name and namespace of a plugin's node, under the rules for these."""
     home = ros_home(host, section)
-    name = _own_name(host, section)
+    # Beside a helper in the plugin's namespace the node is where a rule for its own name places it.
+    sites = section.sites if section.helper else ()
+    site = next((it for it in sites if it.kinds[:1] == ("node",) and it.default), None)
+    own = host.get("name", "").strip() or section.names[0].replace("-", "_")
+    name = own if site is None else text_at(host, site.path) or site.default
     namespace = "" if home is None else text_at(home, "namespace")
     try:
         return remapped_node(name, namespace, rules_in(home))
     except UsageError:  # a placeholder, or what rcl refuses
         return name, namespace
-
-
-def _own_name(host: etree._Element, section: VocabularySection) -> str:
-    """Beside a helper in the plugin's namespace the node is where a rule for its own name places it."""
-    sites = section.sites if section.helper else ()
-    for site in (it for it in sites if it.kinds[:1] == ("node",) and it.default):
-        return text_at(host, site.path) or site.default
-    return host.get("name", "").strip() or section.names[0].replace("-", "_")
 
 
 def _flag(argument: etree._Element) -> str:
@@ -145,12 +141,11 @@ def _asked(host: etree._Element, section: VocabularySection) -> Iterator[_Asked]
 
 
 def _names(claim: Claim, node: _Node, process_wide: bool) -> Iterator[NamePart]:
-    flag = _flag(claim.element) if claim.site.form == "argument" else ""
-    parts = remap(claim.value, claim.site.kinds, {})
-    if flag in ("", *_REMAPS):
-        yield from parts
+    if claim.site.form == "argument" and _flag(claim.element) not in ("", *_REMAPS):
+        return
+    yield from remap(claim.value, claim.site.kinds, {})
     rule = split_remap(claim.value.strip())
-    if rule is None or flag not in ("", *_REMAPS) or rule.source.startswith(("__", "~")):
+    if rule is None or rule.source.startswith(("__", "~")):
         return
     if process_wide or rule.node in ("", node.name):
         lead = len(claim.value) - len(claim.value.lstrip())

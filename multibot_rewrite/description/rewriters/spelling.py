@@ -97,10 +97,21 @@ def _of_parts(
 
 
 def names_in(claim: Claim, declared: Declared) -> tuple[NamePart, ...]:
-    """The names in a claimed value; none where it is in the scope of another model."""
+    """The names in a claimed value; none where it is in the scope of another model. The kind of a
+    scoped one is decided where the file has it as several."""
     site = claim.site
     parts = FORMS[site.form](claim.value, site.kinds, declared)
-    return in_scope(claim.element, parts, declared) if site.form == "scoped" else parts
+    if site.form != "scoped" or not parts:
+        return parts
+    *models, last = parts
+    kinds = [kind for kind in last.kinds if last.text in declared.get(kind, ())]
+    if len(kinds) < 2:
+        return parts
+    scope = scope_of(claim.element)
+    for model in models:
+        scope = _child(scope, "model", model.text)
+    here = [kind for kind in kinds if _child(scope, kind, last.text) is not None]
+    return (*models, last._replace(matched=tuple(here[:1])))
 
 
 def is_reached(claim: Claim, naming: Naming) -> bool:
@@ -210,31 +221,12 @@ def scope_of(element: etree._Element) -> etree._Element | None:
 
     A model's own pose is looked up among its siblings.
     """
-    if element.tag == "pose" and _is_model(element.getparent()):
-        element = element.getparent()  # type: ignore[assignment]
-        return next(element.iterancestors("model", "robot"), None)
-    return element if _is_model(element) else next(element.iterancestors("model", "robot"), None)
-
-
-def _is_model(element: etree._Element | None) -> bool:
-    return element is not None and element.tag == "model"
-
-
-def in_scope(
-    element: etree._Element, parts: tuple[NamePart, ...], declared: Declared
-) -> tuple[NamePart, ...]:
-    """``parts`` of a scoped name, the last one's kind decided where the file has it as several."""
-    if not parts:
-        return parts
-    last = parts[-1]
-    kinds = [kind for kind in last.kinds if last.text in declared.get(kind, ())]
-    if len(kinds) < 2:
-        return parts
-    scope = scope_of(element)
-    for part in parts[:-1]:
-        scope = _child(scope, "model", part.text)
-    here = [kind for kind in kinds if _child(scope, kind, last.text) is not None]
-    return (*parts[:-1], last._replace(matched=tuple(here[:1])))
+    parent = element.getparent()
+    if element.tag == "pose" and parent is not None and parent.tag == "model":
+        element = parent
+    elif element.tag == "model":
+        return element
+    return next(element.iterancestors("model", "robot"), None)
 
 
 def _child(scope: etree._Element | None, tag: str, name: str) -> etree._Element | None:

@@ -248,8 +248,7 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
         raise VocabularyError(f"{place}: {key}: is {value!r}, use {choice}")
     if key in ("releases", "model_namespace") and not is_release_words(value):
         raise VocabularyError(f"{place}: {key}: {_no_releases(value)}")
-    wrong = [word for word in words[1:] if key == "switches" and not _SWITCH.fullmatch(word)]
-    if wrong:
+    if wrong := [it for it in words[1:] if key == "switches" and not _SWITCH.fullmatch(it)]:
         raise VocabularyError(f"{place}: switches: {wrong[0]!r} is not PARAMETER=TOPIC[=on]")
     opened = [word for word in words[1:] if key == "opens" and word not in _BARE_OPENS]
     if wrong := [word for word in opened if not _OPENS.fullmatch(word)]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import SiteRow, VocabularyError
 from multibot_rewrite.base.releases import RELEASES, has_release, is_release_words, share_release
 from multibot_rewrite.description.rewriters.vocabulary.grammar import (
@@ -217,10 +218,10 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
 
     Raises VocabularyError where both say something of one path or set one setting differently.
     """
-    there: dict[str, list[SiteRow]] = {}
-    for site in first.sites:
-        there.setdefault(site.path, []).append(site)
-    new = [it for it in second.sites if not _same_block(it, there.get(it.path, ()))]
+    there = lists_by_key((site.path, site) for site in first.sites)
+    # Of two sections with one block: its lines are not there twice.
+    of_blocks = {(it.section, it.path) for it in first.sites if it.section[:6] == "block "}
+    new = [it for it in second.sites if (it.section, it.path) not in of_blocks]
     for site in new:
         if any(share_release(site.releases, it.releases) for it in there.get(site.path, ())):
             raise VocabularyError(
@@ -244,12 +245,6 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
         tags=first.tags | second.tags,
         opens=tuple(dict.fromkeys((*first.opens, *second.opens))),
     )
-
-
-def _same_block(site: SiteRow, others: Iterable[SiteRow]) -> bool:
-    """Two sections with one block: its lines are not there twice."""
-    is_block = site.section[:6] == "block "
-    return is_block and any(site.section == it.section for it in others)
 
 
 def _either(first: VocabularySection, second: VocabularySection, setting: str) -> str:

@@ -5,9 +5,10 @@ topics and services that it names, as a section has them: ``odom=pkg/msg/Name``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import VocabularyError
 from multibot_rewrite.base.releases import is_release_words
@@ -51,8 +52,8 @@ class Values(NamedTuple):
     of_ros_1: bool
     is_open: bool
     rows: Mapping[str, Value]
-    blocks: Mapping[str, tuple[str, ...]]
-    blocks_of: Mapping[str, tuple[str, ...]]
+    blocks: Mapping[str, Sequence[str]]
+    blocks_of: Mapping[str, Sequence[str]]
 
 
 def is_typed(word: str) -> bool:
@@ -81,12 +82,9 @@ def values_of(
     rows: dict[str, Value] = {}
     for it in found:
         rows.setdefault(it.name, it)
-    blocks: dict[str, tuple[str, ...]] = {"": ()}
-    blocks_of: dict[str, tuple[str, ...]] = {}
-    for path in rows:
-        above, _, name = path.rpartition("/")
-        blocks_of[name] = (*blocks_of.get(name, ()), above)
-        blocks[above] = (*blocks.get(above, ()), name)
+    places = [path.rpartition("/") for path in rows]
+    blocks = {"": [], **lists_by_key((above, name) for above, _, name in places)}
+    blocks_of = lists_by_key((name, above) for above, _, name in places)
     return Values(names, of_ros_1, is_open, rows, blocks, blocks_of)
 
 
@@ -106,21 +104,16 @@ def _value(place: str, path: str, words: list[str]) -> Iterator[Value]:
         raise VocabularyError(f"{place}: {path} {type_} is no type, use one of {', '.join(TYPES)}")
     if releases and not is_release_words(releases):
         raise VocabularyError(f"{place}: {path} releases={releases} names no releases")
-    name, is_attribute = _name(path)
+    # What it is called where values are looked up.
+    name, is_attribute, _ = path.partition("@")
+    if path.startswith(_NAMED):
+        name, is_attribute = path[len(_NAMED) : -1], ""
     read = options.get("read", "").partition("@")[0]
     choices = options["one"].split("|") if "one" in options else ()
     limits = _range(place, options)
     checked = options.get("checked", read)
     own = (name, "any" if is_attribute else type_, read, releases, "required" in options)
     yield Value(*own, tuple(choices), options.get("unit", ""), *limits, checked)
-
-
-def _name(path: str) -> tuple[str, bool]:
-    """What a path is called where values are looked up, and whether it ends in an attribute."""
-    if path.startswith(_NAMED):
-        return path[len(_NAMED) : -1], False
-    name, at, _ = path.partition("@")
-    return name, bool(at)
 
 
 def _range(place: str, options: Mapping[str, str]) -> tuple[float | None, float | None, bool]:
