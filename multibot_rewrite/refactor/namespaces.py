@@ -15,12 +15,12 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, ROS_KINDS, Naming, make_naming
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.part import in_one_line
 from multibot_rewrite.description.readback.xml import read_xml
-from multibot_rewrite.description.rewriters.insert import Insertion
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import Template
@@ -156,8 +156,6 @@ def _fault(
 
 def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]]:
     """Depth, tag, attributes and text of each element: all that its readers see."""
-    root = read_xml(data, "")
-    every = (it for it in root.iter("*"))
     return [
         (
             sum(1 for _ in it.iterancestors()),
@@ -165,7 +163,7 @@ def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]
             tuple(sorted((str(name), str(value)) for name, value in it.attrib.items())),
             "".join((it.text or "", *(one.tail or "" for one in it))).strip(),
         )
-        for it in every
+        for it in read_xml(data, "").iter("*")
     ]
 
 
@@ -203,18 +201,14 @@ def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
 
 def _needs(template: Template) -> dict[etree._Element, _Added]:
     """What is added to which element."""
-    groups: dict[etree._Element, list[Insertion]] = defaultdict(list)
-    texts: dict[etree._Element, str] = {}
-    for item in template.plan.insertions:
-        if item.filled is None:
-            groups[item.parent].append(item)
-        else:
-            texts[item.filled] = item.new
+    items = template.plan.insertions
+    groups = lists_by_key((it.parent, it) for it in items if it.filled is None)
+    texts = {it.filled: it.new for it in items if it.filled is not None}
     renames = zip(template.inventory.claims, template.plan.renames.values, strict=True)
     for claim, spelling in renames:
         if spelling and not claim.value:
             texts[claim.element] = spelling[0].affix.spell("", ROBOT_SLOT)
-    made = {it: _Added(tuple(elements_of(items, ""))) for it, items in groups.items()}
+    made = {it: _Added(tuple(elements_of(own, ""))) for it, own in groups.items()}
     return made | {it: _Added((), text) for it, text in texts.items()}
 
 

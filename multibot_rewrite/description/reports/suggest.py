@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import VocabularyError
 from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.base.wording import clip
@@ -98,10 +99,7 @@ def suggest(inventory: Inventory) -> list[SuggestedSection]:
             hosts.setdefault((thing.type, name, "" if name else thing.name), []).append(host)
     sections = []
     for (type_, name, label), group in hosts.items():
-        seen: dict[str, list[str]] = {}
-        for host in group:
-            for path, value in _values(host.element, host.node, ""):
-                seen.setdefault(path, []).append(value)
+        seen = lists_by_key(it for host in group for it in _values(host.element, host.node, ""))
         known = [it.node.section for it in group if it.node.section is not None]
         blocks = [b for it in known if it.type == "plugin" for b in it.blocks]
         rows = tuple(_row(path, values, inventory.declared) for path, values in seen.items())

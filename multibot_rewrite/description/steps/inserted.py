@@ -152,14 +152,13 @@ def removals(document: Document, robot: str) -> list[Edit]:
     if not mine:
         return []
     starts = dict(zip(document.root.iter("*"), document.starts, strict=True))
-    return [edit for marker in mine for edit in _removals(document, marker, starts)]
-
-
-def _removals(document: Document, marker: Marker, starts: dict[etree._Element, int]) -> list[Edit]:
-    try:
-        return list(_removal(document, marker, starts))
-    except ValueError:  # an end tag is not where this module writes it
-        raise _edited(document, marker) from None
+    edits: list[Edit] = []
+    for marker in mine:
+        try:
+            edits += _removal(document, marker, starts)
+        except ValueError:  # an end tag is not where this module writes it
+            raise _edited(document, marker) from None
+    return edits
 
 
 def _removal(

@@ -138,17 +138,14 @@ def _directive(source: bytes, part: TagPart) -> Directive | None:
     if not comment[1]:
         faults = [DirectiveFault(part.start, f"there is no colon after {MARK.decode()!r}")]
     elif word not in (IGNORE, IGNORE_FILE):
-        faults = [_unknown_word(word, part.start)]
+        near = nearest(word.lower(), (IGNORE, IGNORE_FILE))
+        hint = f"did you mean {near!r}?" if near else _HOW
+        what = f"unknown word {word!r}" if word else "the comment is empty"
+        faults = [DirectiveFault(part.start, what, hint)]
     codes = [] if faults and faults[0].start == part.start else codes
     end = source.find(b"\n", part.end)
     lines = source.rfind(b"\n", 0, part.start) + 1, (len(source) if end < 0 else end)
     return Directive(part.start, part.end, word, tuple(codes), tuple(faults), lines)
-
-
-def _unknown_word(word: str, start: int) -> DirectiveFault:
-    near = nearest(word.lower(), (IGNORE, IGNORE_FILE))
-    hint = f"did you mean {near!r}?" if near else _HOW
-    return DirectiveFault(start, f"unknown word {word!r}" if word else "the comment is empty", hint)
 
 
 def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[CodeName], list[DirectiveFault]]:

@@ -136,24 +136,20 @@ def _excluded(given: KeyValue) -> tuple[str, ...]:
 def _argument_sets(given: KeyValue) -> tuple[ArgumentSet, ...]:
     if not isinstance(given.value, list):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write tables [[xacro]]")
-    each = (
-        given._replace(where=f"{given.where}, number {number}", value=value)
-        for number, value in enumerate(given.value, 1)
-    )
-    return tuple(it for one in each for it in _argument_set(one))
-
-
-def _argument_set(given: KeyValue) -> Iterator[ArgumentSet]:
-    parts = dict(_table_of(given))
-    for key in parts:
-        if key not in ("files", "arguments"):
-            raise UsageError(f"{given.where}: unknown key {key!r}, use files, arguments")
-    if "arguments" not in parts:
-        raise UsageError(f"{given.where}: no arguments, write arguments = {{name = 'value'}}")
-    arguments = tuple((name, _argument(it)) for name, it in _table_of(parts["arguments"]))
-    files = _text(parts["files"]) if "files" in parts else ""
-    patterns = anchored(files, given.folder, given.where) if files else (EVERY_FILE,)
-    yield from (ArgumentSet(pattern, arguments) for pattern in patterns)
+    found: list[ArgumentSet] = []
+    for number, value in enumerate(given.value, 1):
+        one = given._replace(where=f"{given.where}, number {number}", value=value)
+        parts = dict(_table_of(one))
+        for key in parts:
+            if key not in ("files", "arguments"):
+                raise UsageError(f"{one.where}: unknown key {key!r}, use files, arguments")
+        if "arguments" not in parts:
+            raise UsageError(f"{one.where}: no arguments, write arguments = {{name = 'value'}}")
+        arguments = tuple((name, _argument(it)) for name, it in _table_of(parts["arguments"]))
+        files = _text(parts["files"]) if "files" in parts else ""
+        patterns = anchored(files, one.folder, one.where) if files else (EVERY_FILE,)
+        found += (ArgumentSet(pattern, arguments) for pattern in patterns)
+    return tuple(found)
 
 
 def _argument(given: KeyValue) -> str:

@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile, without_comments
 from multibot_rewrite.base.outside import is_file, real_path
 from multibot_rewrite.description.sources.known_arguments import KnownArguments, known_arguments
@@ -27,10 +28,8 @@ def included(paths: Sequence[str]) -> frozenset[str]:
     """Those of the files that a xacro file among them, or in their packages, includes, by the known end
     of its path."""
     files = {real_path(path): path for path in paths}
-    ends: dict[str, set[str]] = {}
-    for path in filter(_is_read, dict.fromkeys((*files.values(), *_beside(paths)))):
-        for asked in _asked_for(path):
-            ends.setdefault(os.path.basename(asked), set()).add(asked)
+    read = filter(_is_read, dict.fromkeys((*files.values(), *_beside(paths))))
+    ends = sets_by_key((os.path.basename(it), it) for path in read for it in _asked_for(path))
     loose = [it for its in ends.values() for it in its if "*" in it]
     return frozenset(
         path
