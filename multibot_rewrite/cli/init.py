@@ -75,10 +75,8 @@ def run(options: argparse.Namespace) -> int:
         made = ask_for_fleet(seen, wanted)
     else:
         wanted = wanted._replace(each=wanted.each or 2)
-        if seen.named:
-            made = _quietly(wanted, lambda it: as_named(seen, it))
-        else:
-            made = _quietly(wanted, lambda it: first_that_builds(seen, it))
+        build = as_named if seen.named else first_that_builds
+        made = _quietly(wanted, lambda it: build(seen, it))
     _check_arguments(made, wanted)
     whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it))
     robots = dict.fromkeys(it.path for it in (*seen.robots, *seen.alike))

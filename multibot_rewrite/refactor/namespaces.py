@@ -219,7 +219,7 @@ def _edits(
     end = tag_end(source, start)
     is_empty = source[end - 2 : end] == b"/>"
     # White space alone would be left in an element that had none.
-    lead = "" if added.text or is_empty else lead_of(source, start, end)
+    lead = "" if added.text or is_empty else lead_of(source, end)
     step = lead and f"{lead}  "
     inside = added.text + "".join(f"{step}{it}" for it in added.xml)
     test = f"<xacro:if value=\"${{{argument} != ''}}\">"

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from math import isfinite
-from operator import attrgetter
 from typing import NamedTuple
 
 from lxml import etree
@@ -29,7 +28,7 @@ from multibot_rewrite.description.checks.poses import (
 )
 from multibot_rewrite.description.joining import kept
 from multibot_rewrite.description.joining.blocks import (
-    OneSystem,
+    Once,
     one_system,
     other_looks,
     prefixed,
@@ -106,7 +105,7 @@ def _moved(part: ReadPart, joint: Joint, spec: Part, spans: Spans) -> Edit:
         raise InputError(f"{part.file}: <parent> of {joint.name!r}: write its link as plain text")
     edits = [Edit(*slot, spec.at.translate(ESCAPES).encode(), None)]
     edits += _turned(part, joint, spec.pose, spans)
-    new = b"".join(cut(source[:end], sorted(edits, key=lambda it: it.start)))[start:]
+    new = _edited(source[:end], edits)[start:]
     return kept.was(start, end, source[start:end], new)
 
 
@@ -136,7 +135,6 @@ def _origin(pose: Pose, given: Sequence[float] = ()) -> str:
 
 
 JOINED = "the joined description"
-_START = attrgetter("start")
 # So many ends of a robot are offered where none is named.
 _ENDS = 5
 
@@ -215,7 +213,7 @@ def _added(
     if mount.joint in robot.joint or mount.joint in part.robot.joint:
         what = f"joint {mount.joint!r} is there already; name the part otherwise"
         raise InputError(f"{part.file}: {what}")
-    system = one_system(joined, part.inventory) if spec.one_system else OneSystem()
+    system = one_system(joined, part.inventory) if spec.one_system else Once()
     twice = repeated(joined.document.root, spans)
     edits = [*mount.edits, *twice, *once.part, *system.part]
     made = _edited(text, [*edits, *own_spaces(joined.document, spans, edits)])
@@ -229,7 +227,7 @@ def _added(
 
 
 def _edited(text: bytes, edits: Iterable[Edit]) -> bytes:
-    return b"".join(cut(text, sorted(edits, key=_START)))
+    return b"".join(cut(text, sorted(edits, key=lambda it: it.start)))
 
 
 def _check_link(at: str, part: ReadPart, robot: Robot) -> None:

@@ -101,10 +101,12 @@ def suggest(inventory: Inventory) -> list[SuggestedSection]:
     for (type_, name, label), group in hosts.items():
         seen = lists_by_key(it for host in group for it in _values(host.element, host.node, ""))
         known = [it.node.section for it in group if it.node.section is not None]
-        blocks = [b for it in known if it.type == "plugin" for b in it.blocks]
+        blocks = dict.fromkeys(b for it in known if it.type == "plugin" for b in it.blocks)
         rows = tuple(_row(path, values, inventory.declared) for path, values in seen.items())
-        sections.append(SuggestedSection(type_, name, label, tuple(dict.fromkeys(blocks)), rows))
-    return [it for it in sections if it.type == "plugin" or _has_params(it)]
+        has_params = any("param" in split_path(it.path)[0][-1] for it in rows if it.path[0] != "@")
+        if type_ == "plugin" or has_params:
+            sections.append(SuggestedSection(type_, name, label, tuple(blocks), rows))
+    return sections
 
 
 def loaded_by(host: Host) -> Loaded | None:
@@ -129,10 +131,6 @@ def _can_head(type_: str, name: str) -> bool:
         return read_header("", f"{type_} {name}]") == (type_, name)
     except VocabularyError:
         return False
-
-
-def _has_params(section: SuggestedSection) -> bool:
-    return any("param" in split_path(row.path)[0][-1] for row in section.rows if row.path[0] != "@")
 
 
 def _values(element: _Element, node: tree.TreeNode | None, path: str) -> Iterator[tuple[str, str]]:

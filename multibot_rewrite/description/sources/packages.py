@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from itertools import islice
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import outside
 
@@ -108,16 +109,12 @@ def sources_around(file: str) -> str:
 def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
     """Packages below some folders by name, each with its folders; a folder of that name counts where no
     manifest has it."""
-    named: dict[str, tuple[str, ...]] = {}
-    called: dict[str, tuple[str, ...]] = {}
-    for folder, is_package in _folders(roots):
-        if is_package:
-            name = _package_name(folder)
-            named[name] = (*named.get(name, ()), folder)
-        else:
-            name = os.path.basename(folder)
-            called[name] = (*called.get(name, ()), folder)
-    return called | named
+    folders = list(_folders(roots))
+    named = lists_by_key((_package_name(it), it) for it, is_package in folders if is_package)
+    called = lists_by_key(
+        (os.path.basename(it), it) for it, is_package in folders if not is_package
+    )
+    return {name: tuple(its) for name, its in (called | named).items()}
 
 
 def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:

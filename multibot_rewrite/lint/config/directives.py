@@ -84,9 +84,9 @@ def read_directives(source: bytes) -> list[Directive]:
     """The ``urdf-lint:`` comments of a file, in order."""
     parts = list(_parts(source))
     ends = _element_ends(parts)
-    sometimes = [(parts[at].start, end) for at, end in ends.items() if parts[at].name in _SOMETIMES]
+    spans = ((parts[at], end) for at, end in ends.items())
+    sometimes = sorted((it.start, end) for it, end in spans if it.name in _SOMETIMES)
     # Their starts in order, and how far those up to each one go.
-    sometimes.sort()
     reached = ([it[0] for it in sometimes], [*accumulate((it[1] for it in sometimes), max)])
     tags = [it for it in parts if it.kind in (_OPEN, _EMPTY)]
     below = _elements_below(source, parts, ends)

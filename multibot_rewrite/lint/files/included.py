@@ -10,7 +10,7 @@ from fnmatch import fnmatchcase
 from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile, without_comments
 from multibot_rewrite.base.outside import is_file, real_path
-from multibot_rewrite.description.sources.known_arguments import KnownArguments, known_arguments
+from multibot_rewrite.description.sources.known_arguments import known_arguments
 from multibot_rewrite.description.sources.packages import package_folder, package_of
 from multibot_rewrite.lint.files.named import descriptions_below, text_of_file
 from multibot_rewrite.lint.files.pairing import named_urdfs
@@ -70,12 +70,6 @@ def _beside(paths: Sequence[str]) -> Iterator[str]:
         yield from descriptions_below(folder)
 
 
-def known_elsewhere(paths: Sequence[str]) -> KnownArguments | None:
-    """The arguments that any of several xacro files knows; None where there are not several."""
-    files = list(filter(_is_read, paths))
-    return known_arguments(map(text_of_file, files)) if len(files) > 1 else None
-
-
 def _is_read(path: str) -> bool:
     # A pipe would never end.
     return path.endswith(".xacro") and is_file(path)
@@ -104,5 +98,6 @@ def set_among(paths: Sequence[str], settings: Settings) -> Settings:
     settings = settings._replace(included=included(paths))
     if len(paths) == 1:
         return settings
-    known = known_elsewhere(paths) if settings.arguments else None
+    files = [it for it in paths if _is_read(it)] if settings.arguments else []
+    known = known_arguments(map(text_of_file, files)) if len(files) > 1 else None
     return settings._replace(urdfs=named_urdfs(paths, settings.included), elsewhere=known)
