@@ -26,6 +26,7 @@ _FROM = rb"<param\s+from=\"[^\"]*%s\""
 _IMPORTS = {
     "DeclareLaunchArgument": "launch.actions",
     "LaunchConfiguration": "launch.substitutions",
+    "ParameterFile": "launch_ros.parameter_descriptions",
 }
 
 
@@ -162,7 +163,7 @@ def _of_python(
     for one in chain.from_iterable(files.values()):
         edits.append(it.insert(it.begin(one), "ParameterFile("))
         edits.append(it.insert(it.end(one), ", allow_substs=True)"))
-    edits += _imports(it, [*_IMPORTS, *(["ParameterFile"] if files else [])])
+    edits += _imports(it, [name for name in _IMPORTS if files or name != "ParameterFile"])
     data = edited({path: source}, edits)[path]
     return LaunchEdit(data, (), tuple(files), space is not None)
 
@@ -226,8 +227,7 @@ def _imports(it: _Text, used: Iterable[str]) -> Iterator[SourceEdit]:
     froms = [one for one in ast.walk(it.tree) if isinstance(one, ast.ImportFrom)]
     known = {name.asname or name.name for one in froms for name in one.names}
     last = [one for one in it.tree.body if isinstance(one, (ast.Import, ast.ImportFrom))][-1]
-    homes = {**_IMPORTS, "ParameterFile": "launch_ros.parameter_descriptions"}
-    text = "".join(f"\nfrom {homes[name]} import {name}" for name in used if name not in known)
+    text = "".join(f"\nfrom {_IMPORTS[name]} import {name}" for name in used if name not in known)
     if text:
         yield it.insert(it.end(last), text)
 

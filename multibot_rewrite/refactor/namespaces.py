@@ -186,7 +186,6 @@ def _written(change: ValueEdit, argument: str) -> bytes:
 def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
     """What is added where an element is written, for each element that it makes."""
     found: dict[Spot, set[_Added]] = defaultdict(set)
-    wanted: set[Spot] = set()
     for it in every:
         read, document = it.found.read, it.template.inventory.document
         assert read is not None
@@ -195,8 +194,7 @@ def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
             if origin := read.origins.of(number):
                 spot = os.path.realpath(origin.file), origin.start
                 found[spot].add(needs.get(element, _Added()))
-                wanted |= {spot} if element in needs else set()
-    return {spot: found[spot] for spot in wanted}
+    return {spot: added for spot, added in found.items() if added != {_Added()}}
 
 
 def _needs(template: Template) -> dict[etree._Element, _Added]:

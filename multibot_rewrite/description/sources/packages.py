@@ -61,7 +61,7 @@ def is_for_ros_1(file: str) -> bool:
     own = _own_package(os.path.dirname(os.path.abspath(file)))
     if own is None:
         return False
-    text = _manifest(own[1], 65536)
+    text = _start_of(os.path.join(own[1], MANIFEST), 65536)
     return b"catkin" in text and b"ament" not in text
 
 
@@ -152,10 +152,6 @@ def entries(folder: str) -> frozenset[str]:
         return frozenset()
 
 
-def _manifest(folder: str, most: int) -> bytes:
-    return _start_of(os.path.join(folder, MANIFEST), most)
-
-
 def _start_of(path: str, most: int) -> bytes:
     """Return the start of a file; empty where it cannot be read, or is a pipe, which nobody named."""
     try:
@@ -166,7 +162,7 @@ def _start_of(path: str, most: int) -> bytes:
 
 
 def _package_name(folder: str) -> str:
-    found = _NAME.search(_manifest(folder, 8192))
+    found = _NAME.search(_start_of(os.path.join(folder, MANIFEST), 8192))
     return found[1].decode("utf-8", "replace") if found else os.path.basename(folder)
 
 
