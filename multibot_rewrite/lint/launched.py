@@ -48,11 +48,8 @@ _TEXT = re.compile(r"<\?xml|<robot|<sdf")
 
 def named_findings(launched: Launched) -> list[Finding]:
     """What is wrong with the files that a launch file names, each once."""
-    found = (
-        *(*_descriptions(launched), *_loaded_again(launched), *_parameters(launched)),
-        *(*_values(launched), *bridge_findings(launched)),
-    )
-    return list(dict.fromkeys(found))
+    every = (_descriptions, _loaded_again, _parameters, _values, bridge_findings)
+    return list(dict.fromkeys(it for findings in every for it in findings(launched)))
 
 
 def _descriptions(launched: Launched) -> Iterator[Finding]:
@@ -110,8 +107,7 @@ def _values(launched: Launched) -> Iterator[Finding]:
             beside = _beside(it.place, "launch.yaml")
             for one in lint_data(beside, text.encode(), settings):
                 level = WARNING if one.level == NOTE else one.level
-                own = one._replace(level=level, column=1)
-                yield own._replace(file=it.place.file, line=it.place.line)
+                yield one._replace(level=level, file=it.place.file, line=it.place.line, column=1)
 
 
 def _beside(place: Place, name: str) -> str:

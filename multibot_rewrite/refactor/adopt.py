@@ -295,9 +295,8 @@ def _changes(it: Description) -> Iterator[ValueEdit]:
         for at in places:
             yield change_of(document, claim, at, at, TRIED)
     # The name that Gazebo makes of a collision begins with that of its link.
-    for claim, text in respell_collisions(
-        document.root, claims, declared, respeller(renames, TRIED)
-    ):
+    respell = respeller(renames, TRIED)
+    for claim, text in respell_collisions(document.root, claims, declared, respell):
         if text == f"{TRIED}{claim.value}":
             yield change_of(document, claim, 0, 0, TRIED)
 
@@ -327,10 +326,9 @@ def _fault(
         more = {argument: prefix} if prefix else {}
         given = Expanding(how.reach, {**how.arguments, **it.arguments, **more})
         made, _ = read_text(it.path, given, after)
-        if made != wanted and not prefix:
-            raise InputError(
-                f"{it.words}: {_ALONE}; without it has {first_difference(made, wanted)}"
-            )
         if made != wanted:
-            return f"with {argument}:={prefix} it has {first_difference(made, wanted)}"
+            other = first_difference(made, wanted)
+            if not prefix:
+                raise InputError(f"{it.words}: {_ALONE}; without it has {other}")
+            return f"with {argument}:={prefix} it has {other}"
     return ""

@@ -62,9 +62,8 @@ class _Added(NamedTuple):
 def spacing() -> Naming:
     """The naming below a namespace: what ROS calls things, no frame and no joint."""
     naming = make_naming("frames-per-robot", PREFIX)
-    return naming._replace(
-        separators={kind: it for kind, it in naming.separators.items() if kind in ROS_KINDS}
-    )
+    kept = {kind: it for kind, it in naming.separators.items() if kind in ROS_KINDS}
+    return naming._replace(separators=kept)
 
 
 def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: Tree) -> Namespaced:
@@ -124,9 +123,8 @@ def space_proved(
         why = _fault(it, after, {}, space.argument, how)
         if not why and not it.found.arguments:
             given = {prefix: tried}
-            data, _ = read_text(
-                it.found.path, Expanding(how.reach, {**how.arguments, **given}), after
-            )
+            beside = Expanding(how.reach, {**how.arguments, **given})
+            data, _ = read_text(it.found.path, beside, after)
             why = _fault(_spaced(it.found, data, tree), after, given, space.argument, how)
         if why:
             wrong[it.found.path] = Left(it.found.words, f"its ROS names are not proved: {why}")

@@ -156,9 +156,8 @@ def driven(system: _Element) -> Sequence[_Element]:
 def has_all(system: _Element, others: Iterable[_Element]) -> bool:
     """Has one of some systems all that another one drives?"""
     wanted = [plain(it) for it in driven(system)]
-    return any(
-        all(it in [plain(one) for one in driven(other)] for it in wanted) for other in others
-    )
+    every = ([plain(it) for it in driven(other)] for other in others)
+    return any(all(it in own for it in wanted) for own in every)
 
 
 def _hardware(system: _Element) -> tuple[object, ...]:

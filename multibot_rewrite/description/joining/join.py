@@ -105,8 +105,7 @@ def _moved(part: ReadPart, joint: Joint, spec: Part, spans: Spans) -> Edit:
         raise InputError(f"{part.file}: <parent> of {joint.name!r}: write its link as plain text")
     edits = [Edit(*slot, spec.at.translate(ESCAPES).encode(), None)]
     edits += _turned(part, joint, spec.pose, spans)
-    new = _edited(source[:end], edits)[start:]
-    return kept.was(start, end, source[start:end], new)
+    return kept.was(start, end, source[start:end], _edited(source[:end], edits)[start:])
 
 
 def _turned(part: ReadPart, joint: Joint, pose: Sequence[float], spans: Spans) -> Iterator[Edit]:
@@ -190,9 +189,8 @@ def _check_given(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
         raise UsageError(f"two parts are called {twice!r}; give one a name or prefix of its own")
     for it in given:
         pose = tuple(it.part.pose)
-        if len(pose) != 6 or not all(
-            isinstance(one, int | float) and isfinite(one) for one in pose
-        ):
+        are_numbers = all(isinstance(one, int | float) and isfinite(one) for one in pose)
+        if len(pose) != 6 or not are_numbers:
             raise UsageError(f"{it.file}: a pose is six numbers: x y z roll pitch yaw")
 
 
@@ -217,9 +215,8 @@ def _added(
     twice = repeated(joined.document.root, spans)
     edits = [*mount.edits, *twice, *once.part, *system.part]
     made = _edited(text, [*edits, *own_spaces(joined.document, spans, edits)])
-    more = kept.section(
-        kept.KeptText(part.name, part.prefix, names, made), start, end + len(made) - len(text)
-    )
+    own = kept.KeptText(part.name, part.prefix, names, made)
+    more = kept.section(own, start, end + len(made) - len(text))
     base = _edited(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
     notes = (*mount.notes, *once.notes, *system.notes)

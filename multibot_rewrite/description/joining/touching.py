@@ -132,18 +132,15 @@ def _with_files(root: _Element, files: Mapping[str, str]) -> Iterator[tuple[str,
         name = link.get("name", "")
         for it in link.findall("visual"):
             link.remove(it)
-        meshes = list(link.iterfind("collision/geometry/mesh"))
-        paths = [_path(it.get("filename", ""), files.get(name, "")) for it in meshes]
-        lost = next(
-            (mesh for mesh, path in zip(meshes, paths, strict=True) if not os.path.isfile(path)),
-            None,
-        )
+        meshes = link.iterfind("collision/geometry/mesh")
+        paths = [(it, _path(it.get("filename", ""), files.get(name, ""))) for it in meshes]
+        lost = next((mesh for mesh, path in paths if not os.path.isfile(path)), None)
         if lost is not None:
             yield name, f"the mesh {lost.get('filename', '')} is not there"
             for it in link.findall("collision"):
                 link.remove(it)
             continue
-        for mesh, path in zip(meshes, paths, strict=True):
+        for mesh, path in paths:
             mesh.set("filename", path)
 
 

@@ -181,9 +181,8 @@ def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
     if best.by_tag or best.form == "remap":
         return SuggestedRow(path, value, best)
     others = [kind for it in made if not it.by_tag and it.form != "remap" for kind in it.kinds]
-    return SuggestedRow(
-        path, value, best._replace(kinds=tuple(dict.fromkeys((*best.kinds, *others))))
-    )
+    kinds = tuple(dict.fromkeys((*best.kinds, *others)))
+    return SuggestedRow(path, value, best._replace(kinds=kinds))
 
 
 def tag_kind(path: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -121,16 +121,12 @@ def _seconds(given: KeyValue) -> float:
 
 def _per_file(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
     return tuple(
-        (pattern, _codes(it))
-        for key, it in _table_of(given)
-        for pattern in with_folders(anchored(key, given.folder, given.where))
+        (pattern, _codes(it)) for key, it in _table_of(given) for pattern in _patterns(key, given)
     )
 
 
 def _excluded(given: KeyValue) -> tuple[str, ...]:
-    return tuple(
-        it for key in _texts(given) for it in with_folders(anchored(key, given.folder, given.where))
-    )
+    return tuple(it for key in _texts(given) for it in _patterns(key, given))
 
 
 def _argument_sets(given: KeyValue) -> tuple[ArgumentSet, ...]:
@@ -219,7 +215,7 @@ def _check_pattern(pattern: str, where: str) -> None:
         raise UsageError(f"{where}: {pattern!r} leads out of the folder, write the whole path")
 
 
-def with_folders(patterns: Iterable[str]) -> Iterator[str]:
-    """A pattern that matches a folder is for everything in it."""
-    for it in patterns:
+def _patterns(pattern: str, given: KeyValue) -> Iterator[str]:
+    """Those of whole paths for a pattern; one that matches a folder is for everything in it."""
+    for it in anchored(pattern, given.folder, given.where):
         yield from (it, f"{it}/*") if not it.endswith("/") else (f"{it}*",)

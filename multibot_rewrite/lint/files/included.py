@@ -56,9 +56,8 @@ def _includes_itself(real: str) -> bool:
 def _included_by(path: str) -> Iterator[str]:
     """The files that a file includes, where only packages are to be filled in."""
     for name in _INCLUDE.findall(without_comments(text_of_file(path))):
-        text = _PACKAGE.sub(
-            lambda it: package_folder(it[1], path, ()), name.decode("utf-8", "replace")
-        )
+        asked = name.decode("utf-8", "replace")
+        text = _PACKAGE.sub(lambda it: package_folder(it[1], path, ()), asked)
         if "$" not in text:
             yield real_path(os.path.join(os.path.dirname(path), text))
 

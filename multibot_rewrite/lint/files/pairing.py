@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import redirect_stderr
 from functools import partial
 from glob import escape
@@ -148,7 +148,5 @@ def reach_of(settings: Settings) -> Reach:
 
 def _names(srdf: Inventory) -> set[str]:
     """The links and joints an SRDF uses, those it declares aside."""
-    own: Iterable[str] = srdf.declared["joint"]
     uses = (it for it in srdf.claims if it.site.role == "uses" and it.site.whole_value_kind)
-    used = {it.value.strip() for it in uses}
-    return used.difference(own)
+    return {it.value.strip() for it in uses} - srdf.declared["joint"].keys()
