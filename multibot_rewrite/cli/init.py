@@ -75,10 +75,8 @@ def run(options: argparse.Namespace) -> int:
         made = ask_for_fleet(seen, wanted)
     else:
         wanted = wanted._replace(each=wanted.each or 2)
-        if seen.named:
-            made = _quietly(wanted, lambda it: as_named(seen, it))
-        else:
-            made = _quietly(wanted, lambda it: first_that_builds(seen, it))
+        build = as_named if seen.named else first_that_builds
+        made = _quietly(wanted, lambda it: build(seen, it))
     _check_arguments(made, wanted)
     whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it))
     robots = dict.fromkeys(it.path for it in (*seen.robots, *seen.alike))
@@ -194,7 +192,7 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
     wanted = _with_names(wanted) if len(robots) == 1 else _with_count(wanted)
     if not wanted.named:
         release = release_of(robots, seen.found, wanted)
-        word = _one_of("ROS release", release.why, RELEASES, release)
+        word = _one_of("ROS release", RELEASES, release)
         wanted = wanted._replace(release=word, named=True)
     named = wanted.launch
     wanted = _with_launch(robots[0], wanted, seen.found) if len(robots) == 1 else wanted
@@ -208,7 +206,7 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
     if wanted.simulator:
         return made
     simulator = made.keys["simulator"]
-    word = _one_of("Simulator", simulator.why, SIMULATORS, simulator)
+    word = _one_of("Simulator", SIMULATORS, simulator)
     if word == simulator.value:
         return made
     layout = str(made.keys["layout"].value)
@@ -323,7 +321,7 @@ def _in_layout(made: Proposal) -> Proposal:
     layout = made.keys["layout"]
     for it in LAYOUTS:
         say(f"  {it.name}: {it.about}", PROGRAM)
-    word = _one_of("Layout", layout.why, [it.name for it in LAYOUTS], layout)
+    word = _one_of("Layout", [it.name for it in LAYOUTS], layout)
     return made if word == layout.value else in_layout(made, Choice(word, MEANT))
 
 
@@ -345,8 +343,8 @@ def _is_length(text: str) -> bool:
     return re.fullmatch(r"\d{1,4}(\.\d+)?", text) is not None and float(text) > 0
 
 
-def _one_of(what: str, why: str, words: Sequence[str], default: Choice) -> str:
-    return _ask(f"{what} ({why})", str(default.value), words)
+def _one_of(what: str, words: Sequence[str], default: Choice) -> str:
+    return _ask(f"{what} ({default.why})", str(default.value), words)
 
 
 def _valid(question: str, default: str, fits: Callable[[str], bool]) -> str:

@@ -57,8 +57,7 @@ def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -
     """The description, with the files that belong to it beside it."""
     moveit = ((f"_{name}", data) for name, data in made.moveit.items())
     first = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers), (".rviz", made.rviz))
-    beside = (*first, *moveit)
-    more = [(ending, data) for ending, data in beside if data]
+    more = [(ending, data) for ending, data in (*first, *moveit) if data]
     if more and not goes_to_file(options):
         raise UsageError("several files are made: name the description with -o robot.urdf")
     if not goes_to_file(options):

@@ -88,9 +88,8 @@ def framed(options: argparse.Namespace, graph: System) -> Framed | None:
             return None
         plan = _fleet(options, file) if file else _plan(options)
         scene = scene_of(plan, graph)
-        return to_frame(
-            scene, _meshes(scene), title_of(scene.robots, plan.fleet.naming.layout.name)
-        )
+        title = title_of(scene.robots, plan.fleet.naming.layout.name)
+        return to_frame(scene, _meshes(scene), title)
     except MultibotError as error:
         note(options, f"note: the report does not show the robots in 3D: {error}")
         return None

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Change
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves, make_naming
 from multibot_rewrite.base.releases import release_told
@@ -193,7 +194,9 @@ def rewrite_all(
 def _with_own_ports(made: Iterator[Rewrite]) -> Iterator[Rewrite]:
     """Of several robots each has ports of its own, where it is known what they are for."""
     first = next(made, None)
-    if first is None or not _has_ports(first.template):
+    served = first.template.inventory.served if first else ()
+    words = (word for _, section in served for word in section.opens)
+    if first is None or not any(split_opens(it).step for it in words):
         return chain(() if first is None else (first,), made)
     every = [first, *made]
     if len(every) == 1:
@@ -207,11 +210,6 @@ def _with_own_ports(made: Iterator[Rewrite]) -> Iterator[Rewrite]:
         )
         for it, text in zip(every, texts, strict=True)
     )
-
-
-def _has_ports(template: Template) -> bool:
-    sections = (section for _, section in template.inventory.served)
-    return any(split_opens(word).step for section in sections for word in section.opens)
 
 
 def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterator[Rewrite]:
@@ -235,11 +233,9 @@ def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterato
 
 def rewrite_jobs(jobs: Mapping[str, Job], again: bool = False) -> Iterator[Rewrite]:
     """Rewrite the job of each robot, in their order; raises as ``rewrite_all``."""
-    groups: dict[int, list[str]] = {}
     if not jobs:
         return iter(())
-    for robot, job in jobs.items():
-        groups.setdefault(id(job), []).append(robot)
+    groups = lists_by_key((id(job), robot) for robot, job in jobs.items())
     if len(groups) == 1:
         return rewrite_job(next(iter(jobs.values())), tuple(jobs), again)
     made = {

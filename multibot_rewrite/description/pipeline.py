@@ -157,9 +157,8 @@ def strip(
     _stop_on_errors(found)
     places = NOWHERE
     if before:
-        places = own_places(
-            collect(read_document(before, file), tree, layout=naming.read_as), naming
-        )
+        own = collect(read_document(before, file), tree, layout=naming.read_as)
+        places = own_places(own, naming)
     stripped = b"".join(cut(source, strip_edits(inventory, naming, robot, places)))
     again = prepare(stripped, file, naming, tree, stripped_names(urdf_declarations, naming, robot))
     if fill(again.pieces, robot) != source:

@@ -66,10 +66,10 @@ def _descriptions(folder: str) -> list[str]:
 
 def named_in_package(kind: str, data: bytes, path: str, settings: Settings) -> NamedFile:
     """The file as rules ask it; raises InputError for one that its reader rejects."""
-    file = read_named(kind, data, path, _context({}, settings))
+    file = read_named(kind, data, path, context_of({}, settings))
     looked = file.others or any(it.kind in _DECLARED for it in file.names)
     robots = robots_of(path, settings) if looked else None
-    context = _context(robots.declared if robots else {}, settings)
+    context = context_of(robots.declared if robots else {}, settings)
     # Whether a key of MoveIt is a name rests on what is declared.
     file = read_named(kind, data, path, context) if kind == MOVEIT else file
     return file._replace(
@@ -82,7 +82,8 @@ def named_in_package(kind: str, data: bytes, path: str, settings: Settings) -> N
     )
 
 
-def _context(declared: Declared, settings: Settings) -> Context:
+def context_of(declared: Declared, settings: Settings) -> Context:
+    """What a reader asks: the names that are declared, as they are written where no robot is given."""
     every = {it: declared.get(it, {}) for kinds in KINDS.values() for it in kinds}
     naming = settings.naming if settings.robots else _AS_WRITTEN
     names = CompanionNames(every, naming, "")

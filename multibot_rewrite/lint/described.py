@@ -53,9 +53,6 @@ def _only_sent(it: Finding, document: Document) -> str:
 
 def _is_below_gazebo(it: Finding, document: Document) -> bool:
     starts = zip(document.elements, document.starts, strict=True)
-    before = [
-        top
-        for top, at in starts
-        if top.getparent() is document.root and locate(document.source, at)[0] <= it.line
-    ]
+    tops = ((top, at) for top, at in starts if top.getparent() is document.root)
+    before = [top for top, at in tops if locate(document.source, at)[0] <= it.line]
     return bool(before) and before[-1].tag == "gazebo"

@@ -70,9 +70,8 @@ def _is_made_beside(path: str, name: str) -> bool:
     """Does another file of the package make a macro, property or argument of that name?"""
     own = package_of(path)
     folder = own[1] if own else os.path.dirname(os.path.abspath(path))
-    made = re.compile(
-        rb"<xacro:(?:macro|property|arg)\s[^<>]*name=[\"']%s[\"']" % re.escape(name).encode()
-    )
+    called = re.escape(name).encode()
+    made = re.compile(rb"<xacro:(?:macro|property|arg)\s[^<>]*name=[\"']%s[\"']" % called)
     others = (it for it in descriptions_below(folder) if it != os.path.abspath(path))
     return any(made.search(text_of_file(it)) for it in others)
 

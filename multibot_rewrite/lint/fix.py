@@ -128,10 +128,8 @@ def _meaning(element: _Element) -> Meaning:
 def _half_spheres(link: _Element) -> Iterator[Meaning]:
     """What stands for the ends of a link's capsules, after all else."""
     for shape, holder in capsules(link):
-        pose, length = (
-            poses.pose_of(next(holder.iterchildren("origin"), None)),
-            number(shape.get("length")),
-        )
+        pose = poses.pose_of(next(holder.iterchildren("origin"), None))
+        length = number(shape.get("length"))
         sphere = _plain("sphere", {"radius": shape.get("radius", "")})
         materials = [_meaning(it) for it in holder.iterchildren("material")]
         for end in ends_of(pose, length) if pose and length else ():

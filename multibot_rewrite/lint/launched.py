@@ -18,15 +18,12 @@ from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import ROS_2
-from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.named_file import BRIDGE, PARAMS, kind_of
-from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
-from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.lint.beside import context_of
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.described import in_use, may_stop
 from multibot_rewrite.producers.ends import BRIDGE_FILE
@@ -47,16 +44,12 @@ _OF_VALUES = ("MB110", "MB111", "MB120")
 _FOR_ALL = "/**:"
 # A description is no parameter to look into.
 _TEXT = re.compile(r"<\?xml|<robot|<sdf")
-_NAMING = make_naming("tf-per-robot")
 
 
 def named_findings(launched: Launched) -> list[Finding]:
     """What is wrong with the files that a launch file names, each once."""
-    found = (
-        *(*_descriptions(launched), *_loaded_again(launched), *_parameters(launched)),
-        *(*_values(launched), *bridge_findings(launched)),
-    )
-    return list(dict.fromkeys(found))
+    every = (_descriptions, _loaded_again, _parameters, _values, bridge_findings)
+    return list(dict.fromkeys(it for findings in every for it in findings(launched)))
 
 
 def _descriptions(launched: Launched) -> Iterator[Finding]:
@@ -114,8 +107,7 @@ def _values(launched: Launched) -> Iterator[Finding]:
             beside = _beside(it.place, "launch.yaml")
             for one in lint_data(beside, text.encode(), settings):
                 level = WARNING if one.level == NOTE else one.level
-                own = one._replace(level=level, column=1)
-                yield own._replace(file=it.place.file, line=it.place.line)
+                yield one._replace(level=level, file=it.place.file, line=it.place.line, column=1)
 
 
 def _beside(place: Place, name: str) -> str:
@@ -173,11 +165,9 @@ def _told(it: Run) -> Iterator[_Told]:
 def _of_bridge(
     told: _Told, release: str, known: Mapping[str, bridges.GzTopic]
 ) -> Iterable[Finding]:
-    every: Declared = {it: {} for kinds in KINDS.values() for it in kinds}
-    names = CompanionNames(every, _NAMING, "")
-    text = told.text.encode()
+    context = context_of({}, Settings(distro=release))
     try:
-        file = read_named(BRIDGE, text, told.file, Context(names, names, {}, release))
+        file = read_named(BRIDGE, told.text.encode(), told.file, context)
     except InputError:
         return ()
     file = file._replace(memo={bridges.GzTopics: bridges.GzTopics(known)} if known else {})

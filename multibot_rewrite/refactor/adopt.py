@@ -10,7 +10,7 @@ an argument for a namespace where plugins and sensors have names of ROS (``names
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import redirect_stderr
 from io import StringIO
 from itertools import chain
@@ -106,14 +106,14 @@ def adopt(
     package = read_package(folder, tree, how)
     job = _Job(folder, package, tree, how, dict(package.unread))
     arguments = {it.path: _arguments(it, job) for it in package.descriptions}
-    already = {path: name for path, its in arguments.items() if (name := _first(its, _is_prefix))}
+    already = {path: name for path, its in arguments.items() if (name := _prefix_of(its))}
     found = list(_as_xacros((it for it in package.descriptions if it.path not in already), job))
     if not found and not already:
         nothing = f"{folder}: there is no description of a robot in it"
         raise InputError(next(iter(job.unread.values()), nothing))
     if not found:
         return Adopted("", {}, {}, (), (), job.unread, already)
-    own = {path: _first(its, _is_space) for path, its in arguments.items()}
+    own = {path: _space_of(its) for path, its in arguments.items()}
     found = list(_configured(found, job))
     made = _with_files_beside(_with_namespace(found, own, job), found, job)
     return made._replace(unread=job.unread, already=already)
@@ -237,21 +237,21 @@ def _arguments(it: Description, job: _Job) -> Sequence[Argument]:
     return found.arguments
 
 
-def _first(arguments: Iterable[Argument], is_meant: Callable[[Argument], bool]) -> str:
-    """The name of the first one that is meant; empty if there is none."""
-    return next((it.name for it in arguments if is_meant(it)), "")
+def _space_of(arguments: Iterable[Argument]) -> str:
+    """The argument that is a namespace of plugins, or in one; empty if there is none."""
+    return next(
+        (it.name for it in arguments if any(one.kind == "namespace" for one in it.uses)), ""
+    )
 
 
-def _is_space(it: Argument) -> bool:
-    """Is it a namespace of plugins, or in one?"""
-    return any(use.kind == "namespace" for use in it.uses)
-
-
-def _is_prefix(it: Argument) -> bool:
-    """Is it before links, for each robot another word? ``world`` and some that were forgotten may lack
-    it."""
-    links = (use for use in it.uses if (use.kind, use.how) == ("link", PREFIX))
-    return bool(it.value) and any(2 * use.names >= use.total for use in links)
+def _prefix_of(arguments: Iterable[Argument]) -> str:
+    """The argument that is before links, for each robot another word; empty if there is none. ``world``
+    and some that were forgotten may lack it."""
+    for it in arguments:
+        links = (use for use in it.uses if (use.kind, use.how) == ("link", PREFIX))
+        if it.value and any(2 * use.names >= use.total for use in links):
+            return it.name
+    return ""
 
 
 def _as_xacros(descriptions: Iterable[Description], job: _Job) -> Iterator[Description]:
@@ -295,9 +295,8 @@ def _changes(it: Description) -> Iterator[ValueEdit]:
         for at in places:
             yield change_of(document, claim, at, at, TRIED)
     # The name that Gazebo makes of a collision begins with that of its link.
-    for claim, text in respell_collisions(
-        document.root, claims, declared, respeller(renames, TRIED)
-    ):
+    respell = respeller(renames, TRIED)
+    for claim, text in respell_collisions(document.root, claims, declared, respell):
         if text == f"{TRIED}{claim.value}":
             yield change_of(document, claim, 0, 0, TRIED)
 
@@ -327,10 +326,9 @@ def _fault(
         more = {argument: prefix} if prefix else {}
         given = Expanding(how.reach, {**how.arguments, **it.arguments, **more})
         made, _ = read_text(it.path, given, after)
-        if made != wanted and not prefix:
-            raise InputError(
-                f"{it.words}: {_ALONE}; without it has {first_difference(made, wanted)}"
-            )
         if made != wanted:
-            return f"with {argument}:={prefix} it has {first_difference(made, wanted)}"
+            other = first_difference(made, wanted)
+            if not prefix:
+                raise InputError(f"{it.words}: {_ALONE}; without it has {other}")
+            return f"with {argument}:={prefix} it has {other}"
     return ""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 import os
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from itertools import accumulate, chain
 from typing import NamedTuple
 
@@ -26,6 +26,7 @@ _FROM = rb"<param\s+from=\"[^\"]*%s\""
 _IMPORTS = {
     "DeclareLaunchArgument": "launch.actions",
     "LaunchConfiguration": "launch.substitutions",
+    "ParameterFile": "launch_ros.parameter_descriptions",
 }
 
 
@@ -144,8 +145,10 @@ def _of_python(
     lines = list(accumulate(map(len, source.splitlines(keepends=True)), initial=0))
     it = _Text(path, source, tree, lines)
     every, of_xacro = _both(argument, space)
-    commands = list(_lists_of(tree, "Command", _runs_xacro))
-    actions = next(_lists_of(tree, "LaunchDescription", lambda _: True), None)
+    # ``["xacro ", ...]`` or ``[FindExecutable(name="xacro"), " ", ...]``.
+    called = (it for it in _lists_of(tree, "Command") if it.elts)
+    commands = [it for it in called if _XACRO.search(ast.unparse(it.elts[0]))]
+    actions = next(_lists_of(tree, "LaunchDescription"), None)
     if not commands or actions is None or not actions.elts:
         return LaunchEdit(None, (_left(path, source),))
     given = "".join(f', " {name}:=", LaunchConfiguration("{name}")' for name in of_xacro)
@@ -160,7 +163,7 @@ def _of_python(
     for one in chain.from_iterable(files.values()):
         edits.append(it.insert(it.begin(one), "ParameterFile("))
         edits.append(it.insert(it.end(one), ", allow_substs=True)"))
-    edits += _imports(it, [*_IMPORTS, *(["ParameterFile"] if files else [])])
+    edits += _imports(it, [name for name in _IMPORTS if files or name != "ParameterFile"])
     data = edited({path: source}, edits)[path]
     return LaunchEdit(data, (), tuple(files), space is not None)
 
@@ -224,21 +227,18 @@ def _imports(it: _Text, used: Iterable[str]) -> Iterator[SourceEdit]:
     froms = [one for one in ast.walk(it.tree) if isinstance(one, ast.ImportFrom)]
     known = {name.asname or name.name for one in froms for name in one.names}
     last = [one for one in it.tree.body if isinstance(one, (ast.Import, ast.ImportFrom))][-1]
-    homes = {**_IMPORTS, "ParameterFile": "launch_ros.parameter_descriptions"}
-    text = "".join(f"\nfrom {homes[name]} import {name}" for name in used if name not in known)
+    text = "".join(f"\nfrom {_IMPORTS[name]} import {name}" for name in used if name not in known)
     if text:
         yield it.insert(it.end(last), text)
 
 
-def _lists_of(
-    tree: ast.Module, called: str, is_meant: Callable[[ast.List], bool]
-) -> Iterator[ast.List]:
+def _lists_of(tree: ast.Module, called: str) -> Iterator[ast.List]:
     """The literal lists that are the first argument of calls of a name."""
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not node.args:
             continue
         first = node.args[0]
-        if _called(node) == called and isinstance(first, ast.List) and is_meant(first):
+        if _called(node) == called and isinstance(first, ast.List):
             yield first
 
 
@@ -246,11 +246,6 @@ def _called(node: ast.Call) -> str:
     """The last word of what is called."""
     named = node.func.attr if isinstance(node.func, ast.Attribute) else node.func
     return named if isinstance(named, str) else getattr(named, "id", "")
-
-
-def _runs_xacro(words: ast.List) -> bool:
-    """``["xacro ", ...]`` or ``[FindExecutable(name="xacro"), " ", ...]``."""
-    return bool(words.elts) and bool(_XACRO.search(ast.unparse(words.elts[0])))
 
 
 def _left(path: str, source: bytes) -> Left:

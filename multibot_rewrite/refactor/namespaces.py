@@ -15,12 +15,12 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, ROS_KINDS, Naming, make_naming
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.part import in_one_line
 from multibot_rewrite.description.readback.xml import read_xml
-from multibot_rewrite.description.rewriters.insert import Insertion
 from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import Template
@@ -62,9 +62,8 @@ class _Added(NamedTuple):
 def spacing() -> Naming:
     """The naming below a namespace: what ROS calls things, no frame and no joint."""
     naming = make_naming("frames-per-robot", PREFIX)
-    return naming._replace(
-        separators={kind: it for kind, it in naming.separators.items() if kind in ROS_KINDS}
-    )
+    kept = {kind: it for kind, it in naming.separators.items() if kind in ROS_KINDS}
+    return naming._replace(separators=kept)
 
 
 def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: Tree) -> Namespaced:
@@ -124,9 +123,8 @@ def space_proved(
         why = _fault(it, after, {}, space.argument, how)
         if not why and not it.found.arguments:
             given = {prefix: tried}
-            data, _ = read_text(
-                it.found.path, Expanding(how.reach, {**how.arguments, **given}), after
-            )
+            beside = Expanding(how.reach, {**how.arguments, **given})
+            data, _ = read_text(it.found.path, beside, after)
             why = _fault(_spaced(it.found, data, tree), after, given, space.argument, how)
         if why:
             wrong[it.found.path] = Left(it.found.words, f"its ROS names are not proved: {why}")
@@ -156,8 +154,6 @@ def _fault(
 
 def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]]:
     """Depth, tag, attributes and text of each element: all that its readers see."""
-    root = read_xml(data, "")
-    every = (it for it in root.iter("*"))
     return [
         (
             sum(1 for _ in it.iterancestors()),
@@ -165,7 +161,7 @@ def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]
             tuple(sorted((str(name), str(value)) for name, value in it.attrib.items())),
             "".join((it.text or "", *(one.tail or "" for one in it))).strip(),
         )
-        for it in every
+        for it in read_xml(data, "").iter("*")
     ]
 
 
@@ -188,7 +184,6 @@ def _written(change: ValueEdit, argument: str) -> bytes:
 def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
     """What is added where an element is written, for each element that it makes."""
     found: dict[Spot, set[_Added]] = defaultdict(set)
-    wanted: set[Spot] = set()
     for it in every:
         read, document = it.found.read, it.template.inventory.document
         assert read is not None
@@ -197,24 +192,19 @@ def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
             if origin := read.origins.of(number):
                 spot = os.path.realpath(origin.file), origin.start
                 found[spot].add(needs.get(element, _Added()))
-                wanted |= {spot} if element in needs else set()
-    return {spot: found[spot] for spot in wanted}
+    return {spot: added for spot, added in found.items() if added != {_Added()}}
 
 
 def _needs(template: Template) -> dict[etree._Element, _Added]:
     """What is added to which element."""
-    groups: dict[etree._Element, list[Insertion]] = defaultdict(list)
-    texts: dict[etree._Element, str] = {}
-    for item in template.plan.insertions:
-        if item.filled is None:
-            groups[item.parent].append(item)
-        else:
-            texts[item.filled] = item.new
+    items = template.plan.insertions
+    groups = lists_by_key((it.parent, it) for it in items if it.filled is None)
+    texts = {it.filled: it.new for it in items if it.filled is not None}
     renames = zip(template.inventory.claims, template.plan.renames.values, strict=True)
     for claim, spelling in renames:
         if spelling and not claim.value:
             texts[claim.element] = spelling[0].affix.spell("", ROBOT_SLOT)
-    made = {it: _Added(tuple(elements_of(items, ""))) for it, items in groups.items()}
+    made = {it: _Added(tuple(elements_of(own, ""))) for it, own in groups.items()}
     return made | {it: _Added((), text) for it, text in texts.items()}
 
 
@@ -225,7 +215,7 @@ def _edits(
     end = tag_end(source, start)
     is_empty = source[end - 2 : end] == b"/>"
     # White space alone would be left in an element that had none.
-    lead = "" if added.text or is_empty else lead_of(source, start, end)
+    lead = "" if added.text or is_empty else lead_of(source, end)
     step = lead and f"{lead}  "
     inside = added.text + "".join(f"{step}{it}" for it in added.xml)
     test = f"<xacro:if value=\"${{{argument} != ''}}\">"

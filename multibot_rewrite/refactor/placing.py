@@ -9,13 +9,13 @@ of the macro. Then every other place that uses this piece has to take it from th
 from __future__ import annotations
 
 import os
-from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate
 from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.description.sources.expand import Expansion
 from multibot_rewrite.description.sources.trace import EXPRESSION, GIVEN, Piece
 from multibot_rewrite.description.steps.document import attribute_slots, tag_end
@@ -71,16 +71,14 @@ def placed(
             continue
         spot = name.made if name.used is None or name.used in deep else name.used
         if spot is None or (spot == name.made and spot in others):
-            made.left.append(_left(found[name.of], name.change, spot in stay))
+            it = found[name.of]
+            where = place_of(it.read, name.change.element) or it.path
+            why = "stays with other arguments or elsewhere" if spot in stay else "is put together"
+            made.left.append(Left(where, f"{name.change.value!r} {why}"))
             continue
         made.edits.append(SourceEdit(*spot, spot[1], written(name.change)))
         made.changes[name.of].append(name.change)
     return made
-
-
-def _left(it: Description, change: ValueEdit, stays: bool) -> Left:
-    why = "stays with other arguments or elsewhere" if stays else "is put together"
-    return Left(place_of(it.read, change.element) or it.path, f"{change.value!r} {why}")
 
 
 def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_Name]:
@@ -88,9 +86,7 @@ def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_
     assert it.read is not None
     read = it.read
     real = {file: os.path.realpath(file) for file in read.sources}
-    wanted: dict[tuple[int, str], dict[int, ValueEdit]] = defaultdict(dict)
-    for change in changes:
-        wanted[change.element, change.attribute][change.start] = change
+    wanted = dicts_by_key(((one.element, one.attribute), one.start, one) for one in changes)
     for number, element in enumerate(it.inventory.document.elements):
         for attribute, value in _values(element):
             mine = wanted.get((number, attribute), {})
@@ -159,9 +155,7 @@ def _made(
 
 def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
     """The spots of use at which no prefix can go: it comes from where the names are made."""
-    groups: dict[Spot | None, list[_Name]] = defaultdict(list)
-    for it in names:
-        groups[it.used].append(it)
+    groups = lists_by_key((it.used, it) for it in names)
     deep = {it for it, group in groups.items() if len({name.change is None for name in group}) > 1}
     while True:
         made = {it.made for it in names if it.change and it.used in deep}

@@ -58,7 +58,6 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "frame": ("frame",),
     "topic": ("topic", "subtopic"),
 }
-_HERE = Affix(0, "", "")
 _NAME = re.compile(r"[^\s<>&\"'{}$]+")
 _TEXTS = (".py", ".yaml", ".yml", ".xml", ".rviz", ".lua", ".cpp", ".hpp", ".h", ".xacro", ".srdf")
 MOST_MENTIONS = 50
@@ -84,7 +83,7 @@ class _Symbol(NamedTuple):
     @property
     def naming(self) -> Naming:
         """Puts a mark in front of this name and changes nothing else."""
-        own = {(kind, self.old): _HERE for kind in KINDS[self.kind]}
+        own = {(kind, self.old): Affix(0, "", "") for kind in KINDS[self.kind]}
         return make_naming()._replace(separators={}, own=own)
 
     def respelled(self, kind: str, name: str) -> str:

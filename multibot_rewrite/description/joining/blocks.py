@@ -38,9 +38,9 @@ _THINGS = ("plugin", "joint", "link", "frame", "model", "gripper", "sensor", "li
 class Once(NamedTuple):
     """The edits of a part and of what is before it, and what a person should know."""
 
-    part: tuple[Edit, ...]
-    joined: tuple[Edit, ...]
-    notes: tuple[str, ...]
+    part: tuple[Edit, ...] = ()
+    joined: tuple[Edit, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def said_once(joined: Inventory, part: Inventory) -> Once:
@@ -121,17 +121,8 @@ def _other_settings(plugin: _Element, other: _Element, part: Inventory) -> Itera
 _SYSTEM, _HARDWARE = "ros2_control", "hardware"
 
 
-class OneSystem(NamedTuple):
-    """The edits of a part, whose systems are left out, and of what is before it; ``notes`` are about
-    systems that stay."""
-
-    part: tuple[Edit, ...] = ()
-    joined: tuple[Edit, ...] = ()
-    notes: tuple[str, ...] = ()
-
-
-def one_system(joined: Inventory, part: Inventory) -> OneSystem:
-    """A part's systems put into earlier ones; one that has no like stays."""
+def one_system(joined: Inventory, part: Inventory) -> Once:
+    """A part's systems put into earlier ones; one that has no like stays, and a note says so."""
     spans, before = Spans(part.document), Spans(joined.document)
     gone: list[Edit] = []
     more: list[Edit] = []
@@ -148,7 +139,7 @@ def one_system(joined: Inventory, part: Inventory) -> OneSystem:
         end = before.end_of(list(first.iterchildren("*"))[-1])
         texts = (spans.text_of(one) for one in driven(it))
         more += [was(end, end, b"", b"\n    " + text) for text in texts]
-    return OneSystem(tuple(gone), tuple(more), tuple(notes))
+    return Once(tuple(gone), tuple(more), tuple(notes))
 
 
 def like(system: _Element, root: _Element) -> Iterator[_Element]:
@@ -165,9 +156,8 @@ def driven(system: _Element) -> Sequence[_Element]:
 def has_all(system: _Element, others: Iterable[_Element]) -> bool:
     """Has one of some systems all that another one drives?"""
     wanted = [plain(it) for it in driven(system)]
-    return any(
-        all(it in [plain(one) for one in driven(other)] for it in wanted) for other in others
-    )
+    every = ([plain(it) for it in driven(other)] for other in others)
+    return any(all(it in own for it in wanted) for own in every)
 
 
 def _hardware(system: _Element) -> tuple[object, ...]:

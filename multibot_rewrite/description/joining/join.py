@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from math import isfinite
-from operator import attrgetter
 from typing import NamedTuple
 
 from lxml import etree
@@ -29,7 +28,7 @@ from multibot_rewrite.description.checks.poses import (
 )
 from multibot_rewrite.description.joining import kept
 from multibot_rewrite.description.joining.blocks import (
-    OneSystem,
+    Once,
     one_system,
     other_looks,
     prefixed,
@@ -106,8 +105,7 @@ def _moved(part: ReadPart, joint: Joint, spec: Part, spans: Spans) -> Edit:
         raise InputError(f"{part.file}: <parent> of {joint.name!r}: write its link as plain text")
     edits = [Edit(*slot, spec.at.translate(ESCAPES).encode(), None)]
     edits += _turned(part, joint, spec.pose, spans)
-    new = b"".join(cut(source[:end], sorted(edits, key=lambda it: it.start)))[start:]
-    return kept.was(start, end, source[start:end], new)
+    return kept.was(start, end, source[start:end], _edited(source[:end], edits)[start:])
 
 
 def _turned(part: ReadPart, joint: Joint, pose: Sequence[float], spans: Spans) -> Iterator[Edit]:
@@ -136,7 +134,6 @@ def _origin(pose: Pose, given: Sequence[float] = ()) -> str:
 
 
 JOINED = "the joined description"
-_START = attrgetter("start")
 # So many ends of a robot are offered where none is named.
 _ENDS = 5
 
@@ -192,9 +189,8 @@ def _check_given(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
         raise UsageError(f"two parts are called {twice!r}; give one a name or prefix of its own")
     for it in given:
         pose = tuple(it.part.pose)
-        if len(pose) != 6 or not all(
-            isinstance(one, int | float) and isfinite(one) for one in pose
-        ):
+        are_numbers = all(isinstance(one, int | float) and isfinite(one) for one in pose)
+        if len(pose) != 6 or not are_numbers:
             raise UsageError(f"{it.file}: a pose is six numbers: x y z roll pitch yaw")
 
 
@@ -215,13 +211,12 @@ def _added(
     if mount.joint in robot.joint or mount.joint in part.robot.joint:
         what = f"joint {mount.joint!r} is there already; name the part otherwise"
         raise InputError(f"{part.file}: {what}")
-    system = one_system(joined, part.inventory) if spec.one_system else OneSystem()
+    system = one_system(joined, part.inventory) if spec.one_system else Once()
     twice = repeated(joined.document.root, spans)
     edits = [*mount.edits, *twice, *once.part, *system.part]
     made = _edited(text, [*edits, *own_spaces(joined.document, spans, edits)])
-    more = kept.section(
-        kept.KeptText(part.name, part.prefix, names, made), start, end + len(made) - len(text)
-    )
+    own = kept.KeptText(part.name, part.prefix, names, made)
+    more = kept.section(own, start, end + len(made) - len(text))
     base = _edited(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
     notes = (*mount.notes, *once.notes, *system.notes)
@@ -229,7 +224,7 @@ def _added(
 
 
 def _edited(text: bytes, edits: Iterable[Edit]) -> bytes:
-    return b"".join(cut(text, sorted(edits, key=_START)))
+    return b"".join(cut(text, sorted(edits, key=lambda it: it.start)))
 
 
 def _check_link(at: str, part: ReadPart, robot: Robot) -> None:

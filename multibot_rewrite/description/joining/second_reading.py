@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 from lxml.etree import _Element
@@ -89,9 +90,8 @@ def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
     if it.tag == "ros2_control":
         return has_all(it, like(it, root))
     if it.tag == "joint":
-        return (
-            mounted.is_without_world and end_of(it, "parent") == WORLD and _moved(it, mounted, root)
-        )
+        on_world = mounted.is_without_world and end_of(it, "parent") == WORLD
+        return on_world and _moved(it, mounted, root)
     if it.tag == "material":
         return any(other.get("name") == name for other in root.iterchildren("material"))
     return it.tag == "gazebo" and not it.get("reference") and _is_said(it, root)
@@ -131,10 +131,8 @@ def _is_at(joint: _Element, wanted: Pose) -> bool:
     found = pose_of(joint.find("origin"))
     if found is None:
         return False
-    pairs = zip((found.at, *found.matrix), (wanted.at, *wanted.matrix), strict=True)
-    return all(
-        abs(a - b) < _ROUNDED for one, other in pairs for a, b in zip(one, other, strict=True)
-    )
+    one, other = (chain(pose.at, *pose.matrix) for pose in (found, wanted))
+    return all(abs(a - b) < _ROUNDED for a, b in zip(one, other, strict=True))
 
 
 def _check_tree(root: _Element) -> None:

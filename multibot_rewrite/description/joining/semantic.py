@@ -12,7 +12,7 @@ without geometry between two others leave these adjacent).
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import combinations, product
 from typing import NamedTuple
@@ -21,6 +21,7 @@ from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description import pipeline
@@ -124,11 +125,9 @@ def xml_text(root: _Element) -> bytes:
 
 def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[tuple[str, str]]:
     """Pairs of links of two parts with nothing that has a shape between them."""
-    beside: dict[str, set[str]] = defaultdict(set)
-    for joint in described.iterchildren("joint"):
-        one, other = (end_of(joint, tag) for tag in ("parent", "child"))
-        beside[one].add(other)
-        beside[other].add(one)
+    joints = described.iterchildren("joint")
+    ends = [(end_of(it, "parent"), end_of(it, "child")) for it in joints]
+    beside = sets_by_key((*ends, *((child, parent) for parent, child in ends)))
     shaped = _shaped(described)
     for it in parts:
         own = set(it.part.robot.link)

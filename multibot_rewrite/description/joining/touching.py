@@ -20,6 +20,7 @@ from urllib.parse import unquote
 from lxml import etree
 from lxml.etree import _Element
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.description.sources.packages import package_folder
 
@@ -99,9 +100,8 @@ def _scene(
 
 def _numbered(pin: Any, model: Any, shapes: Any, pairs: Iterable[Pair]) -> dict[Pair, list[int]]:
     """The numbers of the pairs of shapes of each pair of links, which are added to the shapes."""
-    own: dict[str, list[int]] = {}
-    for at, it in enumerate(shapes.geometryObjects):
-        own.setdefault(model.frames[it.parentFrame].name, []).append(at)
+    every = enumerate(shapes.geometryObjects)
+    own = lists_by_key((model.frames[it.parentFrame].name, at) for at, it in every)
     numbers: dict[Pair, list[int]] = {}
     for one, other in pairs:
         for ends in product(own.get(one, ()), own.get(other, ())):
@@ -132,18 +132,15 @@ def _with_files(root: _Element, files: Mapping[str, str]) -> Iterator[tuple[str,
         name = link.get("name", "")
         for it in link.findall("visual"):
             link.remove(it)
-        meshes = list(link.iterfind("collision/geometry/mesh"))
-        paths = [_path(it.get("filename", ""), files.get(name, "")) for it in meshes]
-        lost = next(
-            (mesh for mesh, path in zip(meshes, paths, strict=True) if not os.path.isfile(path)),
-            None,
-        )
+        meshes = link.iterfind("collision/geometry/mesh")
+        paths = [(it, _path(it.get("filename", ""), files.get(name, ""))) for it in meshes]
+        lost = next((mesh for mesh, path in paths if not os.path.isfile(path)), None)
         if lost is not None:
             yield name, f"the mesh {lost.get('filename', '')} is not there"
             for it in link.findall("collision"):
                 link.remove(it)
             continue
-        for mesh, path in zip(meshes, paths, strict=True):
+        for mesh, path in paths:
             mesh.set("filename", path)
 
 

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import VocabularyError
 from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.base.wording import clip
@@ -98,15 +99,14 @@ def suggest(inventory: Inventory) -> list[SuggestedSection]:
             hosts.setdefault((thing.type, name, "" if name else thing.name), []).append(host)
     sections = []
     for (type_, name, label), group in hosts.items():
-        seen: dict[str, list[str]] = {}
-        for host in group:
-            for path, value in _values(host.element, host.node, ""):
-                seen.setdefault(path, []).append(value)
+        seen = lists_by_key(it for host in group for it in _values(host.element, host.node, ""))
         known = [it.node.section for it in group if it.node.section is not None]
-        blocks = [b for it in known if it.type == "plugin" for b in it.blocks]
+        blocks = dict.fromkeys(b for it in known if it.type == "plugin" for b in it.blocks)
         rows = tuple(_row(path, values, inventory.declared) for path, values in seen.items())
-        sections.append(SuggestedSection(type_, name, label, tuple(dict.fromkeys(blocks)), rows))
-    return [it for it in sections if it.type == "plugin" or _has_params(it)]
+        has_params = any("param" in split_path(it.path)[0][-1] for it in rows if it.path[0] != "@")
+        if type_ == "plugin" or has_params:
+            sections.append(SuggestedSection(type_, name, label, tuple(blocks), rows))
+    return sections
 
 
 def loaded_by(host: Host) -> Loaded | None:
@@ -131,10 +131,6 @@ def _can_head(type_: str, name: str) -> bool:
         return read_header("", f"{type_} {name}]") == (type_, name)
     except VocabularyError:
         return False
-
-
-def _has_params(section: SuggestedSection) -> bool:
-    return any("param" in split_path(row.path)[0][-1] for row in section.rows if row.path[0] != "@")
 
 
 def _values(element: _Element, node: tree.TreeNode | None, path: str) -> Iterator[tuple[str, str]]:
@@ -185,9 +181,8 @@ def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
     if best.by_tag or best.form == "remap":
         return SuggestedRow(path, value, best)
     others = [kind for it in made if not it.by_tag and it.form != "remap" for kind in it.kinds]
-    return SuggestedRow(
-        path, value, best._replace(kinds=tuple(dict.fromkeys((*best.kinds, *others))))
-    )
+    kinds = tuple(dict.fromkeys((*best.kinds, *others)))
+    return SuggestedRow(path, value, best._replace(kinds=kinds))
 
 
 def tag_kind(path: str) -> str:

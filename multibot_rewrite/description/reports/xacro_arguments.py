@@ -195,9 +195,8 @@ def _parts(inventory: Inventory) -> frozenset[str]:
 
 
 def _uses(inventory: Inventory) -> Iterator[Use]:
-    names = dict.fromkeys(
-        (it.kind or it.kinds[0], it.text) for found in inventory.names for it in found
-    )
+    every = chain.from_iterable(inventory.names)
+    names = dict.fromkeys((it.kind or it.kinds[0], it.text) for it in every)
     totals = Counter(kind for kind, _ in names)
     groups = lists_by_key(((kind, *_how(text)), text) for kind, text in names if _MARK in text)
     for (kind, how, separator), texts in groups.items():

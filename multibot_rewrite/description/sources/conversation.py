@@ -111,9 +111,8 @@ def converse(
         except TimeoutError:
             raise InputError(_ended(access.path, signal.SIGALRM, seconds), XACRO_FAILED) from None
         except (EOFError, ConnectionError):
-            raise InputError(
-                _ended(access.path, it.end(ended=True), seconds), XACRO_FAILED
-            ) from None
+            why = _ended(access.path, it.end(ended=True), seconds)
+            raise InputError(why, XACRO_FAILED) from None
         except _GARBAGE:
             said = "its process gave a wrong answer; a file that tampers with it is not expanded"
             raise InputError(f"{access.path}: xacro failed: {said}", XACRO_FAILED) from None

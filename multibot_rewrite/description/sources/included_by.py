@@ -43,9 +43,8 @@ def robot_instead(file: str) -> str:
     data = data_of_file(path)
     users = whole_robots(path) if has_xacro(data) else []
     what = "it defines macros; " if _MACRO.search(data) else ""
-    return (
-        f"{what}give {f'{users[0]}, which includes it' if users else 'the file that has the robot'}"
-    )
+    instead = f"{users[0]}, which includes it" if users else "the file that has the robot"
+    return f"{what}give {instead}"
 
 
 def includers(texts: Iterable[tuple[str, bytes]], *, composed: bool = False) -> dict[str, set[str]]:

@@ -261,10 +261,8 @@ def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]
     """Where nodes put the robot's name before links, no argument may."""
     links = sorted(text for kind, text in own if kind == "link")
     if job.naming.layout.at_run_time and links:
-        named = ", ".join(
-            f"{it}:={text}" for it, text in given.items() if words[0] in text or "{" in text
-        )
-        what = f"{job.file}: {named} puts the robot's name into the link {links[0]!r}"
+        named = [f"{it}:={text}" for it, text in given.items() if words[0] in text or "{" in text]
+        what = f"{job.file}: {', '.join(named)} puts the robot's name into the link {links[0]!r}"
         again = f"robot_state_publisher would add it once more in layout {job.naming.layout.name}"
         raise InputError(f"{what}, and {again}; leave it out, or take frames-per-robot")
 

@@ -11,6 +11,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DECLARED_KINDS, TWIN, Affix, OwnNames
@@ -150,11 +151,8 @@ def marked_texts(plain: Inventory, marked: Inventory) -> NameTexts:
 
 
 def _by_kind(inventory: Inventory) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
-    for names in inventory.names:
-        for name in names:
-            if name.kind not in DECLARED_KINDS:
-                found.setdefault(name.kind, []).append(name.text)
+    every = (it for names in inventory.names for it in names if it.kind not in DECLARED_KINDS)
+    found = lists_by_key((it.kind, it.text) for it in every)
     # A reference that an argument misses is of another kind without its declaration.
     return {**found, **{kind: list(names) for kind, names in inventory.declared.items()}}
 

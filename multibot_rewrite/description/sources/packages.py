@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from itertools import islice
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import outside
 
@@ -60,7 +61,7 @@ def is_for_ros_1(file: str) -> bool:
     own = _own_package(os.path.dirname(os.path.abspath(file)))
     if own is None:
         return False
-    text = _manifest(own[1], 65536)
+    text = _start_of(os.path.join(own[1], MANIFEST), 65536)
     return b"catkin" in text and b"ament" not in text
 
 
@@ -108,16 +109,12 @@ def sources_around(file: str) -> str:
 def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
     """Packages below some folders by name, each with its folders; a folder of that name counts where no
     manifest has it."""
-    named: dict[str, tuple[str, ...]] = {}
-    called: dict[str, tuple[str, ...]] = {}
-    for folder, is_package in _folders(roots):
-        if is_package:
-            name = _package_name(folder)
-            named[name] = (*named.get(name, ()), folder)
-        else:
-            name = os.path.basename(folder)
-            called[name] = (*called.get(name, ()), folder)
-    return called | named
+    folders = list(_folders(roots))
+    named = lists_by_key((_package_name(it), it) for it, is_package in folders if is_package)
+    called = lists_by_key(
+        (os.path.basename(it), it) for it, is_package in folders if not is_package
+    )
+    return {name: tuple(its) for name, its in (called | named).items()}
 
 
 def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
@@ -155,10 +152,6 @@ def entries(folder: str) -> frozenset[str]:
         return frozenset()
 
 
-def _manifest(folder: str, most: int) -> bytes:
-    return _start_of(os.path.join(folder, MANIFEST), most)
-
-
 def _start_of(path: str, most: int) -> bytes:
     """Return the start of a file; empty where it cannot be read, or is a pipe, which nobody named."""
     try:
@@ -169,7 +162,7 @@ def _start_of(path: str, most: int) -> bytes:
 
 
 def _package_name(folder: str) -> str:
-    found = _NAME.search(_manifest(folder, 8192))
+    found = _NAME.search(_start_of(os.path.join(folder, MANIFEST), 8192))
     return found[1].decode("utf-8", "replace") if found else os.path.basename(folder)
 
 

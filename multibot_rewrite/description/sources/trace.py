@@ -10,11 +10,11 @@ as written there only where the bytes read back as it.
 from __future__ import annotations
 
 import os
-from collections import defaultdict
 from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.description.steps.document import attribute_slots, start_offsets, tag_end
 
 if TYPE_CHECKING:
@@ -143,12 +143,12 @@ class Pieces:
     @cached_property
     def _rows(self) -> dict[tuple[int, str], list[tuple[int, ...]]]:
         numbers, words = self.trace.result.pieces, self.trace.result.words
-        rows: dict[tuple[int, str], list[tuple[int, ...]]] = defaultdict(list)
-        for at in range(0, len(numbers), EIGHT):
-            element, attribute, *row = numbers[at : at + EIGHT]
-            if 0 <= attribute < len(words):
-                rows[element, words[attribute]].append(tuple(row))
-        return rows
+        every = (numbers[at : at + EIGHT] for at in range(0, len(numbers), EIGHT))
+        return lists_by_key(
+            ((element, words[attribute]), tuple(row))
+            for element, attribute, *row in every
+            if 0 <= attribute < len(words)
+        )
 
     def _piece(self, text: str, row: tuple[int, ...]) -> Piece:
         _, file, element, word, offset, whole = row

@@ -145,13 +145,10 @@ def _format(document: Document, tree: Tree, likely: str) -> str:
 
 def _of_the_robot(claims: list[Claim]) -> list[Claim]:
     """Without the topics of the world that nothing else in the document has."""
-    heard = [it for it in claims if it.site.when == SENT]
-    if not heard:
+    if not any(it.site.when == SENT for it in claims):
         return claims
-    topics = (
-        it for it in claims if it.site.when != SENT and it.site.kinds[0] in naming.TOPIC_KINDS
-    )
-    sent = {it.value.strip("/ ") for it in topics}
+    others = (it for it in claims if it.site.when != SENT)
+    sent = {it.value.strip("/ ") for it in others if it.site.kinds[0] in naming.TOPIC_KINDS}
     return [it for it in claims if it.site.when != SENT or it.value.strip("/ ") in sent]
 
 

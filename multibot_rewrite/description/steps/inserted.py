@@ -15,11 +15,11 @@ instructions inside the root element.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import groupby
 from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.rewriters.insert import Insertion, query, without
@@ -53,10 +53,10 @@ def insertion_edits(document: Document, items: list[Insertion], release: str) ->
     if not items:
         return []
     starts = dict(zip(document.root.iter("*"), document.starts, strict=True))
+    groups = lists_by_key((starts[item.parent], item) for item in items)
     edits = []
-    for parent, group in groupby(sorted(items, key=lambda i: starts[i.parent]), lambda i: i.parent):
-        why = _why(these := list(group), release)
-        edits += _parent_edits(document.source, parent, starts[parent], these, why)
+    for start in sorted(groups):
+        edits += _parent_edits(document.source, start, groups[start], release)
     for item in items:
         if item.filled is not None:
             start, end, opening, close = fillable(document.source, starts[item.filled])
@@ -65,18 +65,16 @@ def insertion_edits(document: Document, items: list[Insertion], release: str) ->
     return edits
 
 
-def _parent_edits(
-    source: bytes, parent: etree._Element, start: int, items: list[Insertion], why: str
-) -> list[Edit]:
+def _parent_edits(source: bytes, start: int, items: list[Insertion], release: str) -> list[Edit]:
     end = tag_end(source, start)
     expanded = source[end - 2 : end] == b"/>"
-    lead = lead_of(source, start, end)
+    lead = lead_of(source, end)
     elements = elements_of([item for item in items if not item.step], lead)
     filled = [item.step for item in items if item.step]
     words = ["expanded"] if expanded else ["filled", *filled] if filled else []
     head = " ".join(["multibot", ROBOT_SLOT, f"+{len(elements)}", *words])
     added = "added, " if elements else ""
-    marker = f"<!-- {head} ({added}or {why}) -->"
+    marker = f"<!-- {head} ({added}or {_why(items, release)}) -->"
     text = "".join(lead + part for part in (marker, *elements))
     if expanded:
         name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>").decode()
@@ -86,9 +84,7 @@ def _parent_edits(
 
 def _why(items: list[Insertion], release: str) -> str:
     """What would be without the inserted elements, as a comment can hold it."""
-    texts: dict[str, list[Insertion]] = {}
-    for item in items:
-        texts.setdefault(without(item, release), []).append(item)
+    texts = lists_by_key((without(item, release), item) for item in items)
     parts = [f"{text} {_names(found)}" for text, found in texts.items()]
     # A comment may not hold "--", a YAML string may not hold a colon and a space.
     return ", and ".join(parts).replace("--", "- -").replace(": ", ":")
@@ -99,7 +95,7 @@ def _names(items: list[Insertion]) -> str:
     return ", ".join(dict.fromkeys(name.replace(SHOWN, "MODEL/") for name in names))
 
 
-def lead_of(source: bytes, start: int, end: int) -> str:
+def lead_of(source: bytes, end: int) -> str:
     """Line break and indentation of the parent's first child, as the file writes them."""
     space = source[end : len(source) - len(source[end:].lstrip())].decode()
     if "\n" in space and source[end + len(space) : end + len(space) + 2] != b"</":
@@ -152,14 +148,13 @@ def removals(document: Document, robot: str) -> list[Edit]:
     if not mine:
         return []
     starts = dict(zip(document.root.iter("*"), document.starts, strict=True))
-    return [edit for marker in mine for edit in _removals(document, marker, starts)]
-
-
-def _removals(document: Document, marker: Marker, starts: dict[etree._Element, int]) -> list[Edit]:
-    try:
-        return list(_removal(document, marker, starts))
-    except ValueError:  # an end tag is not where this module writes it
-        raise _edited(document, marker) from None
+    edits: list[Edit] = []
+    for marker in mine:
+        try:
+            edits += _removal(document, marker, starts)
+        except ValueError:  # an end tag is not where this module writes it
+            raise _edited(document, marker) from None
+    return edits
 
 
 def _removal(

@@ -6,7 +6,6 @@ A plan is for any robot: its edits have a slot for the robot's name.
 
 from __future__ import annotations
 
-from operator import itemgetter
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
@@ -20,7 +19,6 @@ from multibot_rewrite.description.steps.document import fillable, finding, place
 from multibot_rewrite.description.steps.inserted import insertion_edits, slot_edits
 from multibot_rewrite.description.steps.renames import RenameMap, make_renames, respeller
 
-_START = itemgetter(0)
 LAST = "~"
 
 not_editable = declare("MB104", "not-editable", ERROR, formats=("rewrite",))
@@ -55,7 +53,7 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
     added = insertions(inventory.served, declared, naming)
     edits += insertion_edits(document, added, inventory.release)
     # Stable: several edits at one place stay in the order they were made.
-    edits.sort(key=_START)
+    edits.sort(key=lambda it: it.start)
     return Plan(edits, renames, collisions, added, findings)
 
 

@@ -25,7 +25,15 @@ class Spans:
 
     def end_of(self, element: _Element) -> int:
         """The offset right after it."""
-        return self._silent.rindex(b">", 0, self._behind(element)) + 1
+        beside, above = next(element.itersiblings("*"), None), element.getparent()
+        # Where something else starts: nothing of the element is there or later.
+        if beside is not None:
+            behind = self._starts[beside]
+        elif above is None:
+            behind = len(self._silent)
+        else:
+            behind = self._silent.rindex(b"</", 0, self.end_of(above))
+        return self._silent.rindex(b">", 0, behind) + 1
 
     def of(self, element: _Element) -> tuple[int, int]:
         """Where it starts and ends."""
@@ -45,13 +53,3 @@ class Spans:
         """The first element that starts there or later."""
         at = bisect_left(self.document.starts, offset)
         return self.document.elements[at] if at < len(self.document.elements) else None
-
-    def _behind(self, element: _Element) -> int:
-        """Where something else starts: nothing of the element is there or later."""
-        beside = next(element.itersiblings("*"), None)
-        if beside is not None:
-            return self._starts[beside]
-        above = element.getparent()
-        if above is None:
-            return len(self._silent)
-        return self._silent.rindex(b"</", 0, self.end_of(above))

@@ -40,7 +40,6 @@ def strip_edits(
     """
     document = inventory.document
     edits = removals(document, robot)
-    claims = not_inserted(inventory.claims, edits)
     is_inserted = inside_of(edits)
     # Claims share the names of equal values, so few are different.
     known: dict[tuple[int, bool], list[tuple[int, int]]] = {}
@@ -58,6 +57,7 @@ def strip_edits(
     def unspell(kind: str, name: str) -> str:
         return unspelled(naming, kind, name, robot)
 
+    claims = [it for it in inventory.claims if not is_inserted(it)] if edits else inventory.claims
     for claim, old in respell_collisions(document.root, claims, inventory.declared, unspell):
         slot = value_slot(document.source, *claim[2:])
         if slot is not None:
@@ -88,12 +88,6 @@ def _without(
         found.append(tuple(it for number, it in enumerate(names) if (at, number) not in own))
         at += 1
     return found
-
-
-def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
-    """The claims that are not in inserted elements."""
-    is_inserted = inside_of(removed)
-    return [claim for claim in claims if not is_inserted(claim)] if removed else claims
 
 
 def inside_of(removed: Iterable[Edit]) -> Callable[[Claim], bool]:

@@ -228,7 +228,8 @@ _HERE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__
 def identity(settings: Settings) -> str:
     """A digest of the program, the vocabulary and the settings; raises VocabularyError, OSError."""
     where = (os.getcwd(), sys.version, os.uname().release, str(os.geteuid()))
-    folders = filter(None, (_HERE, *map(_folder_of, LIBRARIES)))
+    specs = filter(None, map(find_spec, LIBRARIES))
+    folders = filter(None, (_HERE, *(os.path.dirname(it.origin or "") for it in specs)))
     programs = sorted(it for folder in folders for it in _states(folder))
     paths = [*(it.path for it in installed()), *settings.vocabulary]
     # What is read beyond what is built in.
@@ -245,11 +246,6 @@ def plain(value: object) -> object:
     if isinstance(value, (tuple, list)):
         return [plain(it) for it in value]
     return value
-
-
-def _folder_of(library: str) -> str:
-    spec = find_spec(library)
-    return os.path.dirname(spec.origin) if spec and spec.origin else ""
 
 
 def _states(folder: str) -> Iterator[tuple[str, int, int]]:

@@ -52,11 +52,9 @@ def read_baseline(path: str) -> Baseline:
         for number, entry in enumerate(listed, 1):
             if not isinstance(entry, dict) or set(entry) != set(FIELDS):
                 raise ValueError(f"finding {number} does not have just {', '.join(FIELDS)}")
-            wrong = next(
-                (name for name, kind in FIELDS.items() if type(entry[name]) is not kind), None
-            )
-            if wrong is not None:
-                raise ValueError(f"{wrong!r} of finding {number} is {entry[wrong]!r}")
+            for name, kind in FIELDS.items():
+                if type(entry[name]) is not kind:
+                    raise ValueError(f"{name!r} of finding {number} is {entry[name]!r}")
             if entry["count"] < 1:
                 raise ValueError(f"'count' of finding {number} is {entry['count']}")
             counts[Key(entry["code"], entry["file"], entry["message"])] += entry["count"]

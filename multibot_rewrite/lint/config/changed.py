@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.child import git
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import UsageError
 
 _INCLUDE = re.compile(
@@ -136,21 +137,19 @@ def _is_changed(path: str, changes: Changes) -> bool:
     """Did the file itself change, or the one that a link leads to?"""
     folder, name = os.path.split(path)
     places = {os.path.realpath(path), os.path.join(os.path.realpath(folder), name)}
-    return any(_is_other(os.path.relpath(it, changes.top), changes) for it in places)
-
-
-def _is_other(name: str, changes: Changes) -> bool:
-    # A nested repository is listed as its folder.
-    parts = name.split(os.sep)
-    names = {os.sep.join(parts[:end]) for end in range(1, len(parts) + 1)}
-    return not names.isdisjoint(changes.changed) or names.isdisjoint(changes.tracked)
+    for it in places:
+        # A nested repository is listed as its folder.
+        parts = os.path.relpath(it, changes.top).split(os.sep)
+        names = {os.sep.join(parts[:end]) for end in range(1, len(parts) + 1)}
+        if not names.isdisjoint(changes.changed) or names.isdisjoint(changes.tracked):
+            return True
+    return False
 
 
 def _reads(paths: Iterable[str], changes: Changes) -> dict[str, tuple[str, ...]]:
     """For the files, and all that they include, patterns for the names of what each reads."""
-    there: dict[str, list[str]] = {}
-    for name in changes.tracked | changes.untracked:
-        there.setdefault(os.path.basename(name), []).append(os.path.join(changes.top, name))
+    every = changes.tracked | changes.untracked
+    there = lists_by_key((os.path.basename(it), os.path.join(changes.top, it)) for it in every)
     found: dict[str, tuple[str, ...]] = {}
     todo = list(paths)
     while todo:

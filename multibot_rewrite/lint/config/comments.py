@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.findings.selection import is_on, level_of
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import ATTRIBUTES, lazy_compile
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.lint.config.directives import (
@@ -75,10 +76,7 @@ def _apply(
     findings: Iterable[Finding], comments: Iterable[Comment]
 ) -> tuple[list[Finding], set[tuple[str, int]]]:
     """The findings that are left, and the codes that suppressed one, by file and offset."""
-    by_code: dict[str, list[tuple[Comment, CodeName]]] = {}
-    for comment in comments:
-        for code in comment.it.codes:
-            by_code.setdefault(code.text, []).append((comment, code))
+    by_code = lists_by_key((code.text, (it, code)) for it in comments for code in it.it.codes)
     left, used = [], set()
     for finding in findings:
         there = by_code.get(finding.code, ())
@@ -94,21 +92,18 @@ def _reaches(comment: Comment, finding: Finding) -> bool:
         return file_of(finding) == comment.file
     if finding.file == comment.file and _holds(comment, (finding.line, finding.column)):
         return True
+    spans = [comment.lines]
+    if comment.element:
+        spans.append((comment.element[0][0], comment.element[1][0]))
     calls = (_CALL.match(call) for call in finding.calls)
-    return any(it and it[1] == comment.file and _holds_line(comment, int(it[2])) for it in calls)
+    lines = [int(it[2]) for it in calls if it and it[1] == comment.file]
+    return any(first <= line <= last for line in lines for first, last in spans)
 
 
 def _holds(comment: Comment, at: Position) -> bool:
     first, last = comment.lines
     element = comment.element
     return first <= at[0] <= last or (element is not None and element[0] <= at < element[1])
-
-
-def _holds_line(comment: Comment, line: int) -> bool:
-    spans = [comment.lines]
-    if comment.element:
-        spans.append((comment.element[0][0], comment.element[1][0]))
-    return any(first <= line <= last for first, last in spans)
 
 
 def _selected(found: Iterable[Finding], code: str, settings: Settings) -> Iterator[Finding]:

@@ -105,18 +105,15 @@ def _configured(path: str, table: Mapping[str, object]) -> Configured:
         values[field] = READERS[key](KeyValue(f"{path}: {key}", folder, value))
     naming_options = {name: values.pop(name) for name in NAMING if name in values}
     own = {name: values.pop(name) for name in Configured._fields if name in values}
-    values["readable"] = tuple(it for it in values.get("roots", ()) if _is_below(it, folder))
+    # Those in the folder, wherever links lead.
+    whole = os.path.realpath(folder)
+    roots = ((it, os.path.realpath(it)) for it in values.get("roots", ()))
+    values["readable"] = tuple(it for it, at in roots if os.path.commonpath((at, whole)) == whole)
     result = Configured(Settings(**values), file=path, **own)
     try:
         return _named(result, naming_options)
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from None
-
-
-def _is_below(path: str, folder: str) -> bool:
-    """Is it in the folder, wherever links lead?"""
-    whole = os.path.realpath(folder)
-    return os.path.commonpath((os.path.realpath(path), whole)) == whole
 
 
 def _named(it: Configured, naming_options: Mapping[str, Any]) -> Configured:

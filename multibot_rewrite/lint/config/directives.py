@@ -84,9 +84,9 @@ def read_directives(source: bytes) -> list[Directive]:
     """The ``urdf-lint:`` comments of a file, in order."""
     parts = list(_parts(source))
     ends = _element_ends(parts)
-    sometimes = [(parts[at].start, end) for at, end in ends.items() if parts[at].name in _SOMETIMES]
+    spans = ((parts[at], end) for at, end in ends.items())
+    sometimes = sorted((it.start, end) for it, end in spans if it.name in _SOMETIMES)
     # Their starts in order, and how far those up to each one go.
-    sometimes.sort()
     reached = ([it[0] for it in sometimes], [*accumulate((it[1] for it in sometimes), max)])
     tags = [it for it in parts if it.kind in (_OPEN, _EMPTY)]
     below = _elements_below(source, parts, ends)
@@ -138,17 +138,14 @@ def _directive(source: bytes, part: TagPart) -> Directive | None:
     if not comment[1]:
         faults = [DirectiveFault(part.start, f"there is no colon after {MARK.decode()!r}")]
     elif word not in (IGNORE, IGNORE_FILE):
-        faults = [_unknown_word(word, part.start)]
+        near = nearest(word.lower(), (IGNORE, IGNORE_FILE))
+        hint = f"did you mean {near!r}?" if near else _HOW
+        what = f"unknown word {word!r}" if word else "the comment is empty"
+        faults = [DirectiveFault(part.start, what, hint)]
     codes = [] if faults and faults[0].start == part.start else codes
     end = source.find(b"\n", part.end)
     lines = source.rfind(b"\n", 0, part.start) + 1, (len(source) if end < 0 else end)
     return Directive(part.start, part.end, word, tuple(codes), tuple(faults), lines)
-
-
-def _unknown_word(word: str, start: int) -> DirectiveFault:
-    near = nearest(word.lower(), (IGNORE, IGNORE_FILE))
-    hint = f"did you mean {near!r}?" if near else _HOW
-    return DirectiveFault(start, f"unknown word {word!r}" if word else "the comment is empty", hint)
 
 
 def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[CodeName], list[DirectiveFault]]:

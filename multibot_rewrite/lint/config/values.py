@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -121,39 +121,31 @@ def _seconds(given: KeyValue) -> float:
 
 def _per_file(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
     return tuple(
-        (pattern, _codes(it))
-        for key, it in _table_of(given)
-        for pattern in with_folders(anchored(key, given.folder, given.where))
+        (pattern, _codes(it)) for key, it in _table_of(given) for pattern in _patterns(key, given)
     )
 
 
 def _excluded(given: KeyValue) -> tuple[str, ...]:
-    return tuple(
-        it for key in _texts(given) for it in with_folders(anchored(key, given.folder, given.where))
-    )
+    return tuple(it for key in _texts(given) for it in _patterns(key, given))
 
 
 def _argument_sets(given: KeyValue) -> tuple[ArgumentSet, ...]:
     if not isinstance(given.value, list):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write tables [[xacro]]")
-    each = (
-        given._replace(where=f"{given.where}, number {number}", value=value)
-        for number, value in enumerate(given.value, 1)
-    )
-    return tuple(it for one in each for it in _argument_set(one))
-
-
-def _argument_set(given: KeyValue) -> Iterator[ArgumentSet]:
-    parts = dict(_table_of(given))
-    for key in parts:
-        if key not in ("files", "arguments"):
-            raise UsageError(f"{given.where}: unknown key {key!r}, use files, arguments")
-    if "arguments" not in parts:
-        raise UsageError(f"{given.where}: no arguments, write arguments = {{name = 'value'}}")
-    arguments = tuple((name, _argument(it)) for name, it in _table_of(parts["arguments"]))
-    files = _text(parts["files"]) if "files" in parts else ""
-    patterns = anchored(files, given.folder, given.where) if files else (EVERY_FILE,)
-    yield from (ArgumentSet(pattern, arguments) for pattern in patterns)
+    found: list[ArgumentSet] = []
+    for number, value in enumerate(given.value, 1):
+        one = given._replace(where=f"{given.where}, number {number}", value=value)
+        parts = dict(_table_of(one))
+        for key in parts:
+            if key not in ("files", "arguments"):
+                raise UsageError(f"{one.where}: unknown key {key!r}, use files, arguments")
+        if "arguments" not in parts:
+            raise UsageError(f"{one.where}: no arguments, write arguments = {{name = 'value'}}")
+        arguments = tuple((name, _argument(it)) for name, it in _table_of(parts["arguments"]))
+        files = _text(parts["files"]) if "files" in parts else ""
+        patterns = anchored(files, one.folder, one.where) if files else (EVERY_FILE,)
+        found += (ArgumentSet(pattern, arguments) for pattern in patterns)
+    return tuple(found)
 
 
 def _argument(given: KeyValue) -> str:
@@ -223,7 +215,7 @@ def _check_pattern(pattern: str, where: str) -> None:
         raise UsageError(f"{where}: {pattern!r} leads out of the folder, write the whole path")
 
 
-def with_folders(patterns: Iterable[str]) -> Iterator[str]:
-    """A pattern that matches a folder is for everything in it."""
-    for it in patterns:
+def _patterns(pattern: str, given: KeyValue) -> Iterator[str]:
+    """Those of whole paths for a pattern; one that matches a folder is for everything in it."""
+    for it in anchored(pattern, given.folder, given.where):
         yield from (it, f"{it}/*") if not it.endswith("/") else (f"{it}*",)

@@ -7,9 +7,10 @@ import os
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile, without_comments
 from multibot_rewrite.base.outside import is_file, real_path
-from multibot_rewrite.description.sources.known_arguments import KnownArguments, known_arguments
+from multibot_rewrite.description.sources.known_arguments import known_arguments
 from multibot_rewrite.description.sources.packages import package_folder, package_of
 from multibot_rewrite.lint.files.named import descriptions_below, text_of_file
 from multibot_rewrite.lint.files.pairing import named_urdfs
@@ -27,10 +28,8 @@ def included(paths: Sequence[str]) -> frozenset[str]:
     """Those of the files that a xacro file among them, or in their packages, includes, by the known end
     of its path."""
     files = {real_path(path): path for path in paths}
-    ends: dict[str, set[str]] = {}
-    for path in filter(_is_read, dict.fromkeys((*files.values(), *_beside(paths)))):
-        for asked in _asked_for(path):
-            ends.setdefault(os.path.basename(asked), set()).add(asked)
+    read = filter(_is_read, dict.fromkeys((*files.values(), *_beside(paths))))
+    ends = sets_by_key((os.path.basename(it), it) for path in read for it in _asked_for(path))
     loose = [it for its in ends.values() for it in its if "*" in it]
     return frozenset(
         path
@@ -57,9 +56,8 @@ def _includes_itself(real: str) -> bool:
 def _included_by(path: str) -> Iterator[str]:
     """The files that a file includes, where only packages are to be filled in."""
     for name in _INCLUDE.findall(without_comments(text_of_file(path))):
-        text = _PACKAGE.sub(
-            lambda it: package_folder(it[1], path, ()), name.decode("utf-8", "replace")
-        )
+        asked = name.decode("utf-8", "replace")
+        text = _PACKAGE.sub(lambda it: package_folder(it[1], path, ()), asked)
         if "$" not in text:
             yield real_path(os.path.join(os.path.dirname(path), text))
 
@@ -69,12 +67,6 @@ def _beside(paths: Sequence[str]) -> Iterator[str]:
     owners = (package_of(path) for path in paths if path.endswith(".xacro"))
     for folder in dict.fromkeys(own[1] for own in owners if own):
         yield from descriptions_below(folder)
-
-
-def known_elsewhere(paths: Sequence[str]) -> KnownArguments | None:
-    """The arguments that any of several xacro files knows; None where there are not several."""
-    files = list(filter(_is_read, paths))
-    return known_arguments(map(text_of_file, files)) if len(files) > 1 else None
 
 
 def _is_read(path: str) -> bool:
@@ -105,5 +97,6 @@ def set_among(paths: Sequence[str], settings: Settings) -> Settings:
     settings = settings._replace(included=included(paths))
     if len(paths) == 1:
         return settings
-    known = known_elsewhere(paths) if settings.arguments else None
+    files = [it for it in paths if _is_read(it)] if settings.arguments else []
+    known = known_arguments(map(text_of_file, files)) if len(files) > 1 else None
     return settings._replace(urdfs=named_urdfs(paths, settings.included), elsewhere=known)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from itertools import islice
 
 from multibot_rewrite.base.bounded import read_start
 from multibot_rewrite.base.lazy import lazy_compile
@@ -43,7 +44,7 @@ def files_like(pattern: str) -> tuple[str, ...]:
 
 def descriptions_below(folder: str) -> list[str]:
     """The URDF and xacro files of a package, the first ones of many."""
-    return [path for path, _ in zip(_files(folder, _DEEP), range(_MOST), strict=False)]
+    return list(islice(_files(folder, _DEEP), _MOST))
 
 
 def _files(folder: str, deep: int) -> Iterator[str]:

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import redirect_stderr
 from functools import partial
 from glob import escape
 from io import StringIO
+from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.model import InputError
@@ -82,20 +83,17 @@ def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
 
 
 def _candidates(path: str, name: str, settings: Settings) -> list[str]:
-    """Files with that robot's name, the nearest first; else what is near on disk."""
+    """Files with that robot's name, the nearest first; else of what is near on disk those with the
+    robot's name, else those with the file name of the SRDF."""
     folder = os.path.dirname(os.path.abspath(path))
     named = [urdf for robot, urdf in settings.urdfs if robot == name]
-    return sorted(
-        named, key=lambda it: (os.path.relpath(os.path.abspath(it), folder).count(os.sep), it)
-    ) or _near(path, folder, name)
-
-
-def _near(path: str, folder: str, name: str) -> list[str]:
-    """Those with the robot's name, else those with the file name of the SRDF."""
-    stem = _stem(path)
-    files = [it for it, _ in zip(_files(folder), range(MOST), strict=False)]
+    if named:
+        return sorted(
+            named, key=lambda it: (os.path.relpath(os.path.abspath(it), folder).count(os.sep), it)
+        )
+    files = list(islice(_files(folder), MOST))
     same = [it for it in files if robot_name(it) == name]
-    return same or [it for it in files if _stem(it) == stem]
+    return same or [it for it in files if _stem(it) == _stem(path)]
 
 
 def _files(folder: str) -> Iterator[str]:
@@ -150,7 +148,5 @@ def reach_of(settings: Settings) -> Reach:
 
 def _names(srdf: Inventory) -> set[str]:
     """The links and joints an SRDF uses, those it declares aside."""
-    own: Iterable[str] = srdf.declared["joint"]
     uses = (it for it in srdf.claims if it.site.role == "uses" and it.site.whole_value_kind)
-    used = {it.value.strip() for it in uses}
-    return used.difference(own)
+    return {it.value.strip() for it in uses} - srdf.declared["joint"].keys()

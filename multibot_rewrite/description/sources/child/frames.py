@@ -90,7 +90,11 @@ def asking(read: Callable[[int], bytes], write: Callable[[bytes], object]) -> As
 
 def connect(xacro: Any, substitution: Any, ask: Ask) -> None:
     """From now on what xacro opens, looks for and reads of the environment comes from the parent."""
-    xacro.open = _opener(ask)
+
+    def opened(name: str, *_: object, **__: object) -> io.TextIOBase:
+        return io.TextIOWrapper(io.BytesIO(ask(READ, name)), "utf-8")
+
+    xacro.open = opened
     xacro.glob = SimpleNamespace(glob=lambda pattern: json.loads(ask(GLOB, pattern)))
     # Relative names stay relative: the parent knows the folder.
     xacro.root_dir = ""
@@ -102,13 +106,6 @@ def connect(xacro: Any, substitution: Any, ask: Ask) -> None:
     for name, way in ways.items():
         setattr(substitution, f"_eval_{name}", way)
     substitution._eval_dict.update(ways)
-
-
-def _opener(ask: Ask) -> Callable[..., io.TextIOBase]:
-    def opened(name: str, *_: object, **__: object) -> io.TextIOBase:
-        return io.TextIOWrapper(io.BytesIO(ask(READ, name)), "utf-8")
-
-    return opened
 
 
 def _known(look_up: Callable[..., str], ask: Ask) -> Callable[..., str]:

@@ -203,9 +203,8 @@ def _known(value: Any, part: str) -> Any:
     pieces, at = [], 0
     for piece in pieces_of(value):
         text = str.__getitem__(value, slice(at, at + piece.length))
-        pieces.append(
-            piece if piece.place else Piece(piece.length, _quoted(text, part) or _of(part))
-        )
+        place = piece.place or _quoted(text, part) or _of(part)
+        pieces.append(Piece(piece.length, place))
         at += piece.length
     return PiecedText(value, pieces)
 

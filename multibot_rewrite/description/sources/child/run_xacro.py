@@ -12,7 +12,7 @@ from __future__ import annotations
 import io
 import sys
 from array import array
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from types import FrameType
 from typing import Any, NamedTuple
 from xml.dom import UserDataHandler
@@ -190,21 +190,14 @@ class Marks:
 
 def marking(xacro: Any, marks: Marks) -> None:
     """From now on what ``xacro`` reads and calls is noted in ``marks``."""
-    xacro.parse = _reader(xacro.parse, marks)
-    xacro.handle_macro_call = _caller(xacro.handle_macro_call, marks)
+    parse, handle = xacro.parse, xacro.handle_macro_call
 
-
-def _reader(parse: Callable[..., Any], marks: Marks) -> Callable[..., Any]:
     def read(given: Any, filename: str | None = None) -> Any:
         document = parse(given, filename)
         if given is None and filename is not None:
             marks.mark(document, filename)
         return document
 
-    return read
-
-
-def _caller(handle: Callable[..., Any], marks: Marks) -> Callable[..., Any]:
     def called(node: Any, macros: Any, symbols: Any) -> Any:
         at = node.getUserData(MARK)
         # A dynamic call comes back under the name of its macro.
@@ -221,4 +214,4 @@ def _caller(handle: Callable[..., Any], marks: Marks) -> Callable[..., Any]:
         finally:
             marks.current = around
 
-    return called
+    xacro.parse, xacro.handle_macro_call = read, called

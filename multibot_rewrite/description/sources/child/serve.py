@@ -16,7 +16,7 @@ import socket
 import time
 import warnings
 from contextlib import suppress
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 from multibot_rewrite.description.sources.child import fences, run_xacro
 from multibot_rewrite.description.sources.child.frames import (
@@ -31,7 +31,6 @@ from multibot_rewrite.description.sources.child.frames import (
     REQUEST,
     START,
     TEXT,
-    Ask,
     asking,
     framed,
     received,
@@ -135,16 +134,13 @@ def _work(descriptor: int) -> None:
         while view:
             view = view[outbox.write(view) :]
 
-    result = _expanded(request, asking(inbox.read, send))
+    if missing := run_xacro.missing():
+        result = Expanded({"missing": missing})
+    else:
+        ways = (request["traced"], request["in_pieces"])
+        ask = asking(inbox.read, send)
+        result = run_xacro.expand(request["path"], request["arguments"], *ways, ask)
     send(_frames(result._replace(report={**result.report, "fences": held})))
-
-
-def _expanded(request: dict[str, Any], ask: Ask) -> Expanded:
-    missing = run_xacro.missing()
-    if missing:
-        return Expanded({"missing": missing})
-    ways = (request["traced"], request["in_pieces"])
-    return run_xacro.expand(request["path"], request["arguments"], *ways, ask)
 
 
 def _frames(result: Expanded) -> bytes:
