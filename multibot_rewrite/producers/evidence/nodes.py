@@ -66,11 +66,9 @@ def nodes_of(
     names = {it.node for it in filter(None, sections.values())}
     of_stack = {it.place.file for it in given if it.node in names}
     sent = {child for node in kept for child in children_of(node)}
-    more = []
-    for it in (it for it in given if it.node not in names):
-        # A controller that a file declares, or a known node with a process of its own.
-        entry = known.get(it.fact.known)
-        more += [it] if it.host_name or (entry is not None and not entry.host) else []
+    # Controllers that files declare, and known nodes with a process of their own.
+    others = ((it, known.get(it.fact.known)) for it in given if it.node not in names)
+    more = [it for it, entry in others if it.host_name or (entry is not None and not entry.host)]
     meant: dict[str, NodeFacts] = {}
     for node in (it for it in stack if it not in kept):
         alike = [it.node for it in more if not it.host_name and _stands_for(it, node, known)]
