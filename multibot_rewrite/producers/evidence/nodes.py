@@ -185,10 +185,11 @@ def _nobody(given: Iterable[Run]) -> Iterator[Finding]:
 
 def _unknown(given: Sequence[Run]) -> Iterator[Finding]:
     for it in given:
+        place = it.place
         if it.host_name and not (it.program or it.fact.known):
             message = f"controller {it.node} is spawned, and no file says its type"
             hint = "name the file with its type under params, or as --param-file of the spawner"
-            yield NO_TYPE.finding(message, hint, file=it.place.file, line=it.place.line, column=1)
+            yield NO_TYPE.finding(message, hint, file=place.file, line=place.line, column=1)
         if it.host_name and it.unknown_type:
             message = f"controller {it.node} is of type {it.program}, which is not known"
             described = "describe it in a file of nodes (docs/stacks.md)"
@@ -199,9 +200,7 @@ def _unknown(given: Sequence[Run]) -> Iterator[Finding]:
             claims = f"; by its parameters it seems to claim {shorten(names)}" if names else ""
             hint = f"{described}; {taken}{claims}"
             hint = f"did you mean {it.like}?" if it.like else hint
-            yield UNKNOWN_TYPE.finding(
-                message, hint, file=it.place.file, line=it.place.line, column=1
-            )
+            yield UNKNOWN_TYPE.finding(message, hint, file=place.file, line=place.line, column=1)
 
 
 def _of_another_release(given: Sequence[Run], known: Mapping[str, NodeFacts]) -> Iterator[Finding]:
