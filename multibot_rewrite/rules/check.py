@@ -224,9 +224,8 @@ def _of_bridge(it: Finding, plan: System) -> Finding:
     if it.node not in _bridges(plan):
         return it
     if it.code == missing_endpoint.code:
-        return it._replace(
-            hint=f"the file of {DOMAIN_BRIDGE} has no such topic: build the fleet again"
-        )
+        hint = f"the file of {DOMAIN_BRIDGE} has no such topic: build the fleet again"
+        return it._replace(hint=hint)
     if it.code != missing_node.code:
         return it
     level = ERROR if it.level == WARNING else it.level

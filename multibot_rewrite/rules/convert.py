@@ -123,13 +123,10 @@ def as_rpy(text: Spanned, origin: _Element) -> tuple[Edit, ...]:
 def one_rotation(text: Spanned, origin: _Element, other: str) -> tuple[Edit, ...]:
     """The edit that takes one of two rotations out; none where they differ."""
     turn, matrix = poses.quaternion(origin), poses.rolled(origin)
-    if (
-        turn is None
-        or matrix is None
-        or not poses.is_same(matrix, poses.matrix_of_quaternion(turn))
-    ):
+    if turn is None or matrix is None:
         return ()
-    return _one(removed(text, origin, other))
+    same = poses.is_same(matrix, poses.matrix_of_quaternion(turn))
+    return _one(removed(text, origin, other)) if same else ()
 
 
 def raised(text: Spanned, version: Version) -> tuple[Edit, ...]:
@@ -232,10 +229,8 @@ def _cylinder(text: Spanned, shape: _Element) -> Iterator[Edit]:
 
 def _spheres(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes]:
     pose, length = _pose(holder), number(shape.get("length"))
-    materials = (
-        text.source[text.starts[it] : end_of(text, it)] for it in holder.iterchildren("material")
-    )
-    material = b"".join(materials)
+    spans = ((text.starts[it], end_of(text, it)) for it in holder.iterchildren("material"))
+    material = b"".join(text.source[start:end] for start, end in spans)
     radius = f'<geometry><sphere radius="{shape.get("radius")}"/></geometry>'
     for end in ends_of(pose, length) if pose and length else ():
         xyz = " ".join(map(written, end))

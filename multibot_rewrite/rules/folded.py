@@ -178,13 +178,9 @@ def _one_of(own: Sequence[Finding], code: str) -> Finding:
     remaps = of_one_target(rule for it in own for rule in it.remaps)
     if any(not it.remaps for it in own):
         remaps = first.remaps
-    return first._replace(
-        message=f"{first.message}; the same for {shorten(same, SEVERAL)}"
-        if same
-        else first.message,
-        names=unique(name for it in (first, *others) for name in it.names),
-        remaps=remaps,
-    )
+    more = f"; the same for {shorten(same, SEVERAL)}" if same else ""
+    names = unique(name for it in (first, *others) for name in it.names)
+    return first._replace(message=f"{first.message}{more}", names=names, remaps=remaps)
 
 
 def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
@@ -194,9 +190,8 @@ def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
     gone = set()
     for at, it in enumerate(every) if nodes else ():
         if it.level == ERROR and it.code != _UNPLANNED:
-            for node in (
-                one for one in _makers(seen, it) if one in nodes and nodes[one] not in gone
-            ):
+            left = [one for one in _makers(seen, it) if one in nodes and nodes[one] not in gone]
+            for node in left:
                 gone.add(nodes[node])
                 hint = f"{every[at].hint}; {node} is not in the plan"
                 every[at] = every[at]._replace(hint=hint)

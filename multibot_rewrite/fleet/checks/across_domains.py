@@ -45,15 +45,13 @@ def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
     numbers = domain_of(plan)
     own = [it for it in plan.nodes if it.plugin.file and numbers[it.robot] != numbers[""]]
     if own:
-        where = (
-            f"runs in the process of the simulator, in domain {numbers['']}, and its robot is in"
-        )
+        where = f"runs in the process of the simulator, in domain {numbers['']}"
         level = WARNING if all(it.sure == MAY for it in own) else ERROR
         hint = (
             "give the robots one domain in the simulation, or write simulator: none for real robots"
         )
         robots = dict.fromkeys(it.robot for it in own)
-        message = f"{own[0].name} {where} {numbers[own[0].robot]}"
+        message = f"{own[0].name} {where}, and its robot is in {numbers[own[0].robot]}"
         yield _told(apart, message, hint, level)._replace(robots=tuple(robots))
 
 

@@ -7,10 +7,10 @@ started by hand or on a condition.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence, Set
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.launch.launched import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check_view
@@ -79,9 +79,7 @@ def not_as_planned(
     if not found:
         return
     by_plan = index(planned, whose_by_plan(planned))
-    open_, known = open_names(by_plan, told), defaultdict(list)
-    for it in told:
-        known[_key(by_plan, it)].append(it)
+    open_, known = open_names(by_plan, told), lists_by_key((_key(by_plan, it), it) for it in told)
     for it in found:
         level, place = _level(it, planned, seen, started), Place(it.file, it.line, it.column)
         if not it.file and it.node in running:

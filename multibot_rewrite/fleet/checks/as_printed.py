@@ -242,22 +242,16 @@ class _Planned(NamedTuple):
         """Return a command, or the launch file of a package."""
         environment = self.environment(robot)
         if not it.process.is_include:
-            values = {
-                **self.value(_given(it, environment)),
-                "output": "screen",
-                "environment": environment,
-            }
-            return Action("ExecuteProcess", values)
+            own = self.value(_given(it, environment))
+            return Action("ExecuteProcess", {**own, "output": "screen", "environment": environment})
         source = f"{share(it.package)}/{it.executable}"
         words = self.value(it.arguments)
         given = [[*pair] for pair in zip(words[::2], words[1::2], strict=True)]
         values = {"launch_description_source": source, "launch_arguments": given}
         scope = {"namespace": it.namespace.rstrip("/"), "remappings": self.value(it.remappings)}
         more = {name: one for name, one in scope.items() if one}
-        return Action(
-            _INCLUDE,
-            {**values, **more, "environment": {**environment, **self.value(it.environment)}},
-        )
+        inside = {**environment, **self.value(it.environment)}
+        return Action(_INCLUDE, {**values, **more, "environment": inside})
 
     def value(self, it: Any) -> Any:
         """Return a value as the launch has it."""
@@ -307,10 +301,8 @@ def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
 
 
 def _apart(planned: Iterable[Start], printed: Iterable[Start]) -> Iterator[str]:
-    wanted, given = (
-        [Action("Node", keywords(it)) for it in starts]
-        for starts in (map(_as_commanded, planned), printed)
-    )
+    wanted = [Action("Node", keywords(_as_commanded(it))) for it in planned]
+    given = [Action("Node", keywords(it)) for it in printed]
     yield from (it.message for it in _differences(wanted, given))
 
 

@@ -4,11 +4,11 @@ remap table, for what no description starts."""
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description.readback.meeting import (
     LOOKUP,
@@ -67,9 +67,8 @@ def robots_meet(
 
 def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
     """What each robot has, first by its description."""
-    ruled: dict[str, set[str]] = defaultdict(set)
-    for run in (it for it in table.runs if it.fact.of_hardware):
-        ruled[run.robot] |= {end.name for end, _ in run.names}
+    made = (it for it in table.runs if it.fact.of_hardware)
+    ruled = sets_by_key((run.robot, end.name) for run in made for end, _ in run.names)
     found: dict[str, list[RuntimeName]] = {}
     for member in members:
         # The table has rules for the names of the nodes that its hardware makes.

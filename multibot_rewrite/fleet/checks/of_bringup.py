@@ -5,7 +5,6 @@ robots has it as well, and is built."""
 from __future__ import annotations
 
 import os
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache
 from typing import NamedTuple
@@ -14,6 +13,7 @@ import yaml
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.checks.described import as_known
@@ -32,8 +32,6 @@ from multibot_rewrite.system.records import System
 from multibot_rewrite.system.tf_copies import tree_topic
 
 _ALREADY = "launch files have it"
-_DESCRIPTION = "robot_description"
-_SENDS = "sends"
 # A node with its role.
 _Part = tuple[str, str]
 
@@ -95,19 +93,15 @@ def _errors_of(robot: RewrittenRobot, fleet: Index, known: Knowledge) -> list[_E
         started = launched(_described(graph, text), known)
     alone = index(started.system, ALONE)
     every = (*judge_launch(started), *(as_sure(it, started, alone) for it in judge(alone)))
-    return [
-        _error(it, fleet)._replace(
-            parts=_plain(
-                (part for own in _parts(it, started.system).values() for part in own), fleet
-            )
-        )
-        for it in every
-        if it.level == ERROR
-    ]
+    found = []
+    for it in (it for it in every if it.level == ERROR):
+        parts = (part for own in _parts(it, started.system).values() for part in own)
+        found.append(_error(it, fleet)._replace(parts=_plain(parts, fleet)))
+    return found
 
 
 def _described(graph: LaunchGraph, text: str) -> LaunchGraph:
-    values = {"/**": {"ros__parameters": {_DESCRIPTION: text}}}
+    values = {"/**": {"ros__parameters": {"robot_description": text}}}
     given = ParameterText("", yaml.safe_dump(values))
     nodes = (
         it._replace(parameters=(*it.parameters, given)) if it.executable == STATE_PUBLISHER else it
@@ -149,9 +143,7 @@ def _plain(parts: Iterable[_Part], fleet: Index) -> set[_Part]:
 
 def _parts(it: Finding, system: System) -> Mapping[str, Set[_Part]]:
     """Return the nodes that have what a finding names: by name, transforms by their tf topic."""
-    found: dict[str, set[_Part]] = defaultdict(set)
-    for end in (end for end in system.ends if end.name in it.names):
-        found[end.name].add((end.role, end.node))
-    for edge in (edge for edge in system.edges if edge.child in it.names):
-        found[tree_topic(edge.topic)] |= {(_SENDS, node) for node in edge.publishers}
-    return found
+    ends = ((end.name, (end.role, end.node)) for end in system.ends if end.name in it.names)
+    edges = (edge for edge in system.edges if edge.child in it.names)
+    sent = ((tree_topic(edge.topic), ("sends", node)) for edge in edges for node in edge.publishers)
+    return sets_by_key((*ends, *sent))

@@ -137,9 +137,8 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def _met(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
-    fleet = System(
-        robots=tuple(Robot(it.spec.namespace) for it in robots), addresses=tuple(addresses)
-    )
+    named = tuple(Robot(it.spec.namespace) for it in robots)
+    fleet = System(robots=named, addresses=tuple(addresses))
     found = judge(index(fleet, whose_by_plan(fleet))) if addresses else ()
     yield from (it for it in found if it.code == one_device.code)
 

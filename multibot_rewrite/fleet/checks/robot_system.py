@@ -183,9 +183,8 @@ def with_controllers(
     path = path_for(robot, expanded_name(robot.spec.srdf))
     said = _said(robot.srdf, path, written.root)
     exports = exported(written.root, robot.member.source.file)
-    return _controlled(
-        system, given, evidence, exports, (it.yaml for it in own if SIMPLE in it.text), said
-    )
+    moveit = (it.yaml for it in own if SIMPLE in it.text)
+    return _controlled(system, given, evidence, exports, moveit, said)
 
 
 def beside(own: System, shared: System) -> System:

@@ -41,9 +41,8 @@ def wrong_in_file(
     evidence = plan.evidence_of(robots[0])
     file.memo[Beside] = Beside(evidence.given, evidence.known)
     whole = with_description(file, robots[0].member.source)
-    return judged_once(
-        whole._replace(robots=frozenset(words), own=own, sent=file.sent | known.sent)
-    )
+    sent = file.sent | known.sent
+    return judged_once(whole._replace(robots=frozenset(words), own=own, sent=sent))
 
 
 def of_files(found: Iterable[Finding]) -> set[Finding]:
@@ -78,10 +77,8 @@ def written_findings(
 def _asked(
     rule: Rule, kind: str, text: OutputFile, context: Context, memo: dict[object, object]
 ) -> Iterator[Finding]:
-    document = text.yaml
-    for it in judged(
-        NamedFile(kind, text.path, text.text, context, memo, document=document), [rule]
-    ):
+    written = NamedFile(kind, text.path, text.text, context, memo, document=text.yaml)
+    for it in judged(written, [rule]):
         file, line = line_in_source(text, it.line)
         yield it._replace(file=file, line=line, column=1)
 
@@ -94,8 +91,7 @@ def _gz_topics(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, GzTopic]:
     source, lines = robot.member.source, {}
     for number, sensor in enumerate(sensors):
         if topic := text_at(sensor, "topic"):
-            place = Place(source.file, line_of(source, "sensor", number))
-            lines[f"/{topic.lstrip('/')}"] = place
+            lines[f"/{topic.lstrip('/')}"] = Place(source.file, line_of(source, "sensor", number))
     world = world_topics(plan.file.simulator_world).items()
     found = {it: GzTopic(type_, DIRECTIONS["in"] if type_ else "") for it, type_ in world}
     for it in topics:

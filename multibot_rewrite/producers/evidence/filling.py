@@ -114,12 +114,7 @@ def _endpoint(
             typed = _typed(_sure(bound, decided), value_of)
             words = [it for it in _ID.findall(raw.name) if it in ids]
             listed = values.get(_put(ids[words[-1]], binding)) if words else None
-            if (
-                words
-                and listed
-                and isinstance(listed.value, list)
-                and typed.type.startswith(OF_LIST)
-            ):
+            if listed and isinstance(listed.value, list) and typed.type.startswith(OF_LIST):
                 # The type stands behind its word in a list of names and types.
                 items = [str(it) for it in listed.value]
                 behind = items[items.index(binding[words[-1]]) + 1 :][:1]

@@ -144,7 +144,10 @@ def control_system(
     own = [Interface(it.kind, it.name, f"/{MANAGER}", EXPORTS, it.place) for it in exports]
     controllers = []
     for it in declared:
-        claims, is_active = [*_claims(it, known)], it.node in active
+        node, is_active = known.get(it.fact.known), it.node in active
+        rows = node.claims if node else ()
+        # What a controller claims, and once more what two of its parameters name.
+        claims = [*claims_of(rows, it), *(twice for twice, _ in claimed_twice(rows, it))]
         for one in claims:
             place = one.place or it.place
             own.append(Interface(one.kind, one.name, f"/{it.node}", CLAIMS, place))
@@ -152,14 +155,6 @@ def control_system(
         name, state = it.node.rpartition("/")[2], ACTIVE if is_active else ""
         controllers.append(Controller(f"/{it.host_name}", name, state, commands))
     return System(controllers=tuple(controllers), interfaces=tuple(own))
-
-
-def _claims(it: Run, known: Mapping[str, NodeFacts]) -> Iterator[Claimed]:
-    """What a controller claims, and once more what two of its parameters name."""
-    node = known.get(it.fact.known)
-    if node is not None:
-        yield from claims_of(node.claims, it)
-        yield from (claim for claim, _ in claimed_twice(node.claims, it))
 
 
 TYPE, COMMAND = "type", "command"
@@ -197,9 +192,8 @@ def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Cl
     for claim in claims:
         for made in _names(claim.template, _Made("", claim.condition, None), values):
             if made.text and holds(made.condition, _lookup(values)):
-                found.setdefault(
-                    (claim.kind, made.text), Claimed(claim.kind, made.text, made.place)
-                )
+                it = Claimed(claim.kind, made.text, made.place)
+                found.setdefault((it.kind, it.name), it)
     yield from found.values()
 
 

@@ -66,11 +66,9 @@ def nodes_of(
     names = {it.node for it in filter(None, sections.values())}
     of_stack = {it.place.file for it in given if it.node in names}
     sent = {child for node in kept for child in children_of(node)}
-    more = []
-    for it in (it for it in given if it.node not in names):
-        # A controller that a file declares, or a known node with a process of its own.
-        entry = known.get(it.fact.known)
-        more += [it] if it.host_name or (entry is not None and not entry.host) else []
+    # Controllers that files declare, and known nodes with a process of their own.
+    others = ((it, known.get(it.fact.known)) for it in given if it.node not in names)
+    more = [it for it, entry in others if it.host_name or (entry is not None and not entry.host)]
     meant: dict[str, NodeFacts] = {}
     for node in (it for it in stack if it not in kept):
         alike = [it.node for it in more if not it.host_name and _stands_for(it, node, known)]
@@ -187,10 +185,11 @@ def _nobody(given: Iterable[Run]) -> Iterator[Finding]:
 
 def _unknown(given: Sequence[Run]) -> Iterator[Finding]:
     for it in given:
+        place = it.place
         if it.host_name and not (it.program or it.fact.known):
             message = f"controller {it.node} is spawned, and no file says its type"
             hint = "name the file with its type under params, or as --param-file of the spawner"
-            yield NO_TYPE.finding(message, hint, file=it.place.file, line=it.place.line, column=1)
+            yield NO_TYPE.finding(message, hint, file=place.file, line=place.line, column=1)
         if it.host_name and it.unknown_type:
             message = f"controller {it.node} is of type {it.program}, which is not known"
             described = "describe it in a file of nodes (docs/stacks.md)"
@@ -201,9 +200,7 @@ def _unknown(given: Sequence[Run]) -> Iterator[Finding]:
             claims = f"; by its parameters it seems to claim {shorten(names)}" if names else ""
             hint = f"{described}; {taken}{claims}"
             hint = f"did you mean {it.like}?" if it.like else hint
-            yield UNKNOWN_TYPE.finding(
-                message, hint, file=it.place.file, line=it.place.line, column=1
-            )
+            yield UNKNOWN_TYPE.finding(message, hint, file=place.file, line=place.line, column=1)
 
 
 def _of_another_release(given: Sequence[Run], known: Mapping[str, NodeFacts]) -> Iterator[Finding]:

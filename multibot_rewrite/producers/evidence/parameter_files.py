@@ -108,9 +108,8 @@ def named_values(
 
 def values_for(node: str, documents: Iterable[YamlText]) -> dict[str, Given]:
     """All values that a node (full name) gets from these files; raises as ``named_values``."""
-    return _values(
-        _own([it for document in documents for it in _sections(document)], node.strip("/"))
-    )
+    sections = [it for document in documents for it in _sections(document)]
+    return _values(_own(sections, node.strip("/")))
 
 
 @lru_cache(maxsize=64)

@@ -165,17 +165,13 @@ def leading_slash(subject: Subject) -> Iterator[Problem]:
             continue
         name = claim.value[1:]
         if claim.site.kinds[0] in FRAME_KINDS and name and name not in shared:
+            source = subject.document.source
             known = name in subject.inventory.declared["link"]
+            slot = value_slot(source, claim.start, claim.attribute, claim.value) if known else None
+            written = slot is not None and source.startswith(b"/", slot[0])
+            edits = (Edit(slot[0], slot[0] + 1, b"", None),) if slot and written else ()
             message = f"frame {claim.value!r} starts with a slash, which tf2 refuses"
-            edits = _without_slash(subject, claim) if known else ()
             yield Problem(claim.element, message, claim.attribute, "delete the slash", edits)
-
-
-def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
-    slot = value_slot(subject.document.source, claim.start, claim.attribute, claim.value)
-    if slot is None or subject.document.source[slot[0] : slot[0] + 1] != b"/":
-        return ()
-    return (Edit(slot[0], slot[0] + 1, b"", None),)
 
 
 @rule("MB304", "slash-in-joint", NOTE)

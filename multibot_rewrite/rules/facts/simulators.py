@@ -32,7 +32,6 @@ class Simulator(NamedTuple):
     takes: tuple[str, ...]
 
 
-_PHYSICS, _SPAWNS = "physics", "user-commands"
 _TAKES = ("position", "velocity", "effort")
 GAZEBO = Simulator(
     "Gazebo",
@@ -130,14 +129,14 @@ def needed_systems(models: Iterable[tuple[str, _Element]]) -> Iterator[tuple[str
     the reason. Source: user_commands of gz-sim8 spawns entities."""
     every = list(models)
     if every:
-        yield _SPAWNS, f"{every[0][0]} is not spawned"
+        yield "user-commands", f"{every[0][0]} is not spawned"
     libraries = [
         (name, library_key(one.get("filename", "")))
         for name, root in every
         for one in root.iter("plugin")
     ]
     if moved := next((name for name, it in libraries if it in DRIVES), ""):
-        yield _PHYSICS, f"{moved} does not move"
+        yield "physics", f"{moved} does not move"
     first: dict[str, str] = {}
     for name, root in every:
         for sensor in root.iter("sensor"):

@@ -80,11 +80,9 @@ def _names_in(raw: bytes) -> list[bytes]:
 
 def _raw(source: bytes, start: int, attribute: str) -> bytes | None:
     if attribute:
-        raw = _attributes(source, start).get(attribute.encode())
-    else:
-        end = tag_end(source, start)
-        raw = source[end : source.find(b"<", end)]
-    return raw
+        return _attributes(source, start).get(attribute.encode())
+    end = tag_end(source, start)
+    return source[end : source.find(b"<", end)]
 
 
 def _given(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:

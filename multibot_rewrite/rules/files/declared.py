@@ -165,7 +165,9 @@ def not_read(file: NamedFile) -> Iterator[Finding]:
     """Parameters of a node whose package declares all of its own, and not these."""
     for section in sections(file):
         facts = [fact for fact in section.facts if fact.how != DEMANDED]
-        if section.node is None or not _are_all(facts):
+        # All that a package declares: in a file, or in code that puts together no name.
+        whole = all(it.how == YAML or (it.how == DECLARED and "<" not in it.path) for it in facts)
+        if section.node is None or not facts or not whole:
             continue
         unread = [it for it, found in section.known if not found]
         for it, near in _meant_by(section, unread, file.context.distro):
@@ -177,28 +179,19 @@ def not_read(file: NamedFile) -> Iterator[Finding]:
 def in_the_manager(file: NamedFile) -> Iterator[Finding]:
     """Parameters of a controller in the section of its manager, which reads their class."""
     known = file.known
-    for section in sections(file) if known else ():
+    if known is None:
+        return
+    for section in sections(file):
         if section.node is None or section.node.name != MANAGER:
             continue
         for it in section.given:
             name, _, rest = it.name.partition(".")
             class_ = section.whole.get(f"{name}.type")
-            node = known.types.get(str(class_.value)) if known and class_ else None
-            facts = (
-                facts_of_node(known.nodes[node], "", file.file, file.roots)
-                if known and node
-                else ()
-            )
+            node = known.types.get(str(class_.value)) if class_ else None
+            facts = facts_of_node(known.nodes[node], "", file.file, file.roots) if node else ()
             if any(fact.how == YAML and fact.has_name(rest) for fact in facts):
                 message = f"{section.title}: {it.name} is a parameter of {name}, and not read here"
                 yield remark_at(it.key, message, f"move it to {name}: {PARAMETERS}:", WARNING)
-
-
-def _are_all(facts: Sequence[Declared]) -> bool:
-    """Are these all that a package declares: in a file, or in code that puts together no name?"""
-    return bool(facts) and all(
-        it.how == YAML or (it.how == DECLARED and "<" not in it.path) for it in facts
-    )
 
 
 def below_unknown_names(file: NamedFile) -> Iterator[Finding]:

@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.lazy import lazy_compile
@@ -60,9 +60,8 @@ def above_others(file: NamedFile) -> Iterator[Finding]:
         # A negative one stands for no limit, or for that of the sensor.
         sizes = it.check == "not_above" or (_is_size(value) and _is_size(other))
         if sizes and is_number(value) and is_number(other) and float(value) > float(other):
-            message = (
-                f"{it.section.title}: {it.given.name} is {value}, above {it.words[0]} ({other})"
-            )
+            above = f"above {it.words[0]} ({other})"
+            message = f"{it.section.title}: {it.given.name} is {value}, {above}"
             yield remark_at(it.given.node, message, f"swap the two, or correct one; {it.source}")
 
 
@@ -93,7 +92,7 @@ def contradictions(file: NamedFile) -> Iterator[Finding]:
     for it in demands(file, "managed"):
         # Names in a list that are no node of the file, but nearly one that the list lacks.
         nodes = {section.title for section in sections(file)}
-        listed = it.given.value if isinstance(it.given.value, list) else []
+        listed = _items(it)
         for word in map(str, listed):
             left = [name for name in nodes - {*listed} if not differ_in_numbers(word, name)]
             meant = "" if word in nodes else slip_of(word, sorted(left))
@@ -156,12 +155,7 @@ def _among(it: Demand) -> str:
 
 def _foreign(it: Demand) -> str:
     """The libraries of Nav2's own nodes are loaded anyway, and a second registration throws."""
-    value = it.given.value
-    own = (
-        [str(word) for word in value if _OWN.fullmatch(str(word))]
-        if isinstance(value, list)
-        else []
-    )
+    own = [str(word) for word in _items(it) if _OWN.fullmatch(str(word))]
     return f"lists {own[0]}, which is loaded without it, so it is registered twice" if own else ""
 
 
@@ -178,8 +172,7 @@ def _is_one(it: Demand) -> str:
 
 def _together(it: Demand) -> str:
     word, other = it.words
-    value = it.given.value
-    alone = isinstance(value, list) and word in value and other not in value
+    alone = word in _items(it) and other not in _items(it)
     return f"has {word!r} without {other!r}" if alone else ""
 
 
@@ -216,15 +209,12 @@ def _once(it: Demand) -> str:
 
 def _renamed(it: Demand) -> str:
     old, new = it.words
-    value = it.given.value
-    there = isinstance(value, list) and old in value
-    return f"lists {old}, which is called {new} since Humble" if there else ""
+    return f"lists {old}, which is called {new} since Humble" if old in _items(it) else ""
 
 
 def _bonded(it: Demand) -> str:
     """A node's bond has its name alone: LifecycleNode::createBond of nav2_util."""
-    value = it.given.value
-    words = [str(word) for word in value if "/" in str(word)] if isinstance(value, list) else []
+    words = [str(word) for word in _items(it) if "/" in str(word)]
     bond = value_of(it.section, it.words[0])
     kept = bond is None or (is_number(bond) and bond > 0)
     return f"lists {words[0]}, and waits for a bond of that name" if words and kept else ""
@@ -241,6 +231,11 @@ def _listed(it: Demand) -> str:
         word for word in (value if isinstance(value, list) else [value]) if word not in known
     ]
     return f"has {strange[0]!r}, which {it.words[0]} has not" if strange else ""
+
+
+def _items(it: Demand) -> list[Any]:
+    """The items of a list; none of another value."""
+    return it.given.value if isinstance(it.given.value, list) else []
 
 
 def _text(value: Value) -> str:

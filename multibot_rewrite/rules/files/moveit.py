@@ -24,7 +24,7 @@ from multibot_rewrite.description.checks.numbers import value_of
 from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.rules.declaration import remark, remark_at, robots_rule
-from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
+from multibot_rewrite.rules.files.section_facts import Section, sections
 from multibot_rewrite.rules.subject import Robots, Subject
 
 _LIMIT = lazy_compile(
@@ -51,16 +51,17 @@ def limits_beyond_the_joint(file: NamedFile) -> Iterator[Finding]:
         yield from _of_none(file, section, subjects) if robots and robots.is_whole else ()
         for it in section.given:
             found = _LIMIT.fullmatch(it.name)
-            if found is None or not _is_asked(section, it, found["what"]):
+            if found is None:
                 continue
-            joints = [
-                subject.robot.joint[found["joint"]]
-                for subject in subjects
-                if found["joint"] in subject.robot.joint
-            ]
-            limits = [_beyond(joint, found["what"], it.value) for joint in joints]
+            # Positions count wherever they are, a velocity where it is switched on.
+            name, what = found["joint"], found["what"]
+            flag = section.whole.get(it.name.removesuffix(what) + "has_velocity_limits")
+            if what == "max_velocity" and (flag is None or flag.value is not True):
+                continue
+            joints = (subject.robot.joint.get(name) for subject in subjects)
+            limits = [_beyond(joint, what, it.value) for joint in joints if joint is not None]
             if limits and all(limit is not None for limit in limits):
-                message = f"{found['what']} of {found['joint']} is {it.value:g}"
+                message = f"{what} of {name} is {it.value:g}"
                 hint = "MoveIt plans beyond what the joint takes"
                 yield remark_at(it.node, f"{message}, but the URDF has {limits[0]:g}", hint)
 
@@ -86,12 +87,6 @@ def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> 
         told.add(joint)
         message = f"joint {joint!r}, which has limits here, is not in the description"
         yield remark_at(it.key, message, did_you_mean(joint, there) or "correct the name")
-
-
-def _is_asked(section: Section, it: Setting, what: str) -> bool:
-    """Positions count wherever they are, a velocity where it is switched on."""
-    flag = section.whole.get(it.name.removesuffix(what) + "has_velocity_limits")
-    return what != "max_velocity" or (flag is not None and flag.value is True)
 
 
 def _beyond(joint: Joint, what: str, value: object) -> float | None:

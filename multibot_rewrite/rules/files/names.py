@@ -201,10 +201,8 @@ def _unknown(site: Site, node: str, told: str) -> Finding:
 
 def _renamed(file: NamedFile) -> frozenset[str]:
     """The names that a rewrite makes others: none is known where the file alone is looked at."""
-    names = file.context.names
-    every = (
-        (kind, it) for kind in _MENTIONED for it in file.declared.get(kind, ()) if kind in KINDS
-    )
+    names, kinds = file.context.names, [it for it in _MENTIONED if it in KINDS]
+    every = ((kind, it) for kind in kinds for it in file.declared.get(kind, ()))
     kept = (it for kind, it in every if not file.is_certain or spell(names, kind, it) != it)
     return frozenset(kept) if file.kind in _LOOSE else frozenset()
 
@@ -216,16 +214,15 @@ def _said(file: NamedFile, site: Site, known: Mapping[str, str], renamed: frozen
     if apart and not site.in_key and text.removeprefix("/") in TF_TOPICS and text[0] == "/":
         return f"{text!r} is a topic"
     if file.kind in _LOOSE:
-        topic = (
-            text[:1] == "/" and file.kind != LUA and is_plain(text) and not check_topic_name(text)
-        )
+        absolute = text[:1] == "/" and file.kind != LUA
+        topic = absolute and is_plain(text) and not check_topic_name(text)
         held = mentioned(text, renamed) if file.kind != LUA or is_plain(text) else ""
         return f"{text!r} is a name" if topic or held else ""
     if text in known and (known[text] in ("link", "joint") or not site.in_key):
         return f"{text!r} is a {known[text]}"
-    if file.kind == PARAMS and not site.in_key and _begins_all(file, text):
-        return f"{text!r} begins the names"
     is_parameter = file.kind == PARAMS and not site.in_key
+    if is_parameter and _begins_all(file, text):
+        return f"{text!r} begins the names"
     return f"{text!r} is an interface" if is_parameter and _is_interface(file, text) else ""
 
 
@@ -251,9 +248,8 @@ def _is_claimed(file: NamedFile, site: Site) -> bool:
     if site.in_key or not is_plain(site.text):
         return False
     if site.kind == "frame":
-        return (site.is_sure or site.text == "odom") and not is_shared_frame(
-            file.context, site.text
-        )
+        sure = site.is_sure or site.text == "odom"
+        return sure and not is_shared_frame(file.context, site.text)
     return site.kind == "topic" and site.text.startswith("/")
 
 

@@ -57,13 +57,8 @@ def file_parameters(text: str) -> tuple[FileParameter, ...]:
         root = compose_yaml(text, "")
     except InputError:
         return ()
-    found = [
-        found
-        for owner, below in pairs(root)
-        for found in _parameters(owner.value, below, ())
-        if found.path
-    ]
-    return tuple(found)
+    found = (it for owner, below in pairs(root) for it in _parameters(owner.value, below, ()))
+    return tuple(it for it in found if it.path)
 
 
 def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[FileParameter]:
@@ -105,8 +100,7 @@ def text_of(value: object) -> str:
         return str(value).lower()
     if isinstance(value, list | tuple):
         return f"[{', '.join(text_of(it) for it in value)}]"
-    text = " ".join(str(value).split())
-    return text or EMPTY
+    return " ".join(str(value).split()) or EMPTY
 
 
 NODL = "nodl"
@@ -123,10 +117,8 @@ def facts_of_node(
     named = type_.partition("/")[0] if "/" in type_ else ""
     package = node.package if node else named
     own = _in_sources(package, file, roots) if package else ()
-    if own:
+    if own or node is None:
         return own
-    if node is None:
-        return ()
     # What one class of a package, or one of its nodes, demands beside the others.
     one = (type_,) if named else (f"{node.package}/{node.name}",)
     others = {it.partition("/")[0] for it in node.types} - {node.package, named}

@@ -78,8 +78,10 @@ def classes_of_other_releases(file: NamedFile) -> list[str]:
 def _named_classes(file: NamedFile) -> Iterator[tuple[Demand, Setting, str]]:
     """The classes that a file names for pluginlib, each with its place and what asks for it."""
     for it in demands(file, "class", "classes"):
-        for given in [it.given] if it.check == "class" else _plugins(it):
-            yield from ((it, given, name) for name in words_of(given))
+        # NAME.plugin of each word of a list.
+        plugins = (f"{it.section.at}{word}.plugin" for word in words_of(it.given))
+        found = [it.given] if it.check == "class" else [*map(it.section.whole.get, plugins)]
+        yield from ((it, given, name) for given in found if given for name in words_of(given))
 
 
 @cache
@@ -91,12 +93,6 @@ def _package(class_: str) -> str:
     return canonical(class_).partition("::")[0]
 
 
-def _plugins(it: Demand) -> Iterator[Setting]:
-    """NAME.plugin of each word of a list."""
-    found = (it.section.whole.get(f"{it.section.at}{word}.plugin") for word in words_of(it.given))
-    return (given for given in found if given)
-
-
 def words_of(given: Setting) -> list[str]:
     """The words of a list, or of a text."""
     value = given.value
@@ -105,7 +101,7 @@ def words_of(given: Setting) -> list[str]:
 
 def _of_class(node: yaml.Node, where: str, name: str, base: str, release: str) -> Iterator[Finding]:
     known = plugin_bases()[base]
-    if has_release(known.classes.get(name, "none"), release) if name in known.classes else False:
+    if name in known.classes and has_release(known.classes[name], release):
         return
     said, hint, level = _said(name, base, known, release)
     if said:
@@ -173,25 +169,19 @@ def without_plugin(file: NamedFile) -> Iterator[Finding]:
     """Words of a list of plugins without NAME.plugin, sources without parameters, controllers without
     a type."""
     for it in demands(file, "classes", "blocks"):
-        ids, words = it.words[1:], words_of(it.given)
-        place = (
-            it.words[0] if it.check == "blocks" and it.words else it.given.name.rpartition(".")[0]
-        )
+        ids, words, whole = it.words[1:], words_of(it.given), it.section.whole
+        blocks = it.check == "blocks"
+        place = it.words[0] if blocks and it.words else it.given.name.rpartition(".")[0]
         above = f"{it.section.at}{place}." if place else it.section.at
-        if (
-            it.words
-            and it.check == "blocks"
-            and not any(n.startswith(above) for n in it.section.whole)
-        ):
+        if blocks and it.words and not any(name.startswith(above) for name in whole):
             continue  # MoveItConfigsBuilder adds its own of all planners where a file has none
         for word in [] if words == [*ids] else words:
             below = f"{above}{word}."
-            found = f"{below}plugin" in it.section.whole or (
-                it.check == "blocks" and any(name.startswith(below) for name in it.section.whole)
-            )
+            given = blocks and any(name.startswith(below) for name in whole)
+            found = given or f"{below}plugin" in whole
             elsewhere = not found and is_set_beside(file, it.section.title, f"{below}plugin")
             if not found and not elsewhere and not _is_misspelt(it, word, words):
-                what = "plugin" if it.check == "classes" else "parameters"
+                what = "parameters" if blocks else "plugin"
                 message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
                 name = below + "plugin" if what == "plugin" else below.rstrip(".")
                 # Another parameter file, or the launch file, may have it.

@@ -129,9 +129,13 @@ def mixed_clocks(file: NamedFile) -> Iterator[Finding]:
     """Nodes of one file of which some are on simulated time and some say that they are not."""
     found: list[tuple[str, yaml.Node, bool]] = []
     for section, _ in file.pages:
+        # Not for those of no one node, and for helper nodes of old releases.
+        wild = any(it in ANY for it in section.path.split("/"))
+        if wild or section.inner or PLACEHOLDER.search(section.path):
+            continue
         for key, value in scalars(section.body):
             given = typed(value.value) if not value.style else ""
-            if key.value == _TIME and isinstance(given, bool) and not _is_left_out(section):
+            if key.value == _TIME and isinstance(given, bool):
                 found.append((section.path, value, given))
     counted = Counter(given for *_, given in found)
     if len(counted) < 2:
@@ -143,12 +147,6 @@ def mixed_clocks(file: NamedFile) -> Iterator[Finding]:
     message = f"{_TIME} is {_word(not most)} for {names}, and {_word(most)} for {first}"
     hint = "set it alike in all nodes of a robot: tf compares times"
     yield remark_at(others[0][1], message, hint)
-
-
-def _is_left_out(section: ParamSection) -> bool:
-    """Is it for no one node, or for a helper node of old releases?"""
-    wild = any(it in ANY for it in section.path.split("/"))
-    return wild or section.inner or PLACEHOLDER.search(section.path) is not None
 
 
 def _word(value: bool) -> str:
@@ -188,9 +186,8 @@ def overridden(file: NamedFile) -> Iterator[Finding]:
             if earlier.wild or not is_for(section.full, earlier.full):
                 continue
             for name in here.keys() & dict(flattened(earlier.body)).keys():
-                message = (
-                    f"{name} of {earlier.path} is overridden by the later section {section.path}"
-                )
+                later = f"the later section {section.path}"
+                message = f"{name} of {earlier.path} is overridden by {later}"
                 yield remark_at(here[name], message, "put wildcard sections first")
 
 
@@ -219,7 +216,9 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
                 bodies.setdefault(above, {}).setdefault(parts[depth], given.place)
         used = {word for it in node.values.values() for word in _words(it)}
         for parameter, value in node.values.items() if bodies else ():
-            own = bodies.get(parameter.rpartition(".")[0], {}) if _is_list(parameter, value) else {}
+            # A text is a list in ``observation_sources``, a joint of a controller is not.
+            is_list = isinstance(value.value, list) or parameter.endswith(("s", "plugin"))
+            own = bodies.get(parameter.rpartition(".")[0], {}) if is_list else {}
             left = [it for it in own if it not in used]
             for word in _words(value) if left and is_in(file, value.place) else ():
                 # A word with a dot has its parameters below several names.
@@ -228,11 +227,6 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
                     message = f"{node.node} has {word} in {parameter}, without parameters"
                     hint = did_you_mean_at(near, own[near])
                     yield remark(value.place._replace(column=1), message, hint)
-
-
-def _is_list(parameter: str, given: Given) -> bool:
-    """Are these names? A text is a list in ``observation_sources``, a joint of a controller is not."""
-    return isinstance(given.value, list) or parameter.endswith(("s", "plugin"))
 
 
 def _words(given: Given) -> list[str]:

@@ -13,6 +13,7 @@ import yaml
 
 from multibot_rewrite.base.bounded import ANGLES
 from multibot_rewrite.base.conventions import PLACEHOLDER
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.moveit.file_kind import find_kind, parameter_above
 from multibot_rewrite.companions.moveit.rewrite import node_of
@@ -183,13 +184,8 @@ def _section(
     whole: Mapping[str, Setting],
     at: str = "",
 ) -> Section:
-    exact: dict[str, list[Declared]] = {}
-    wild: list[tuple[str, Declared]] = []
-    for fact in facts:
-        if "<" in fact.path:
-            wild.append((fact.path.rpartition(".")[2], fact))
-        else:
-            exact.setdefault(fact.path, []).append(fact)
+    exact = lists_by_key((it.path, it) for it in facts if "<" not in it.path)
+    wild = [(it.path.rpartition(".")[2], it) for it in facts if "<" in it.path]
     known = tuple((it, (*exact.get(it.name, ()), *_matching(wild, it.name))) for it in given)
     # Without what is not read with the value of another parameter.
     asked = tuple(

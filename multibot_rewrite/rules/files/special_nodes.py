@@ -83,15 +83,13 @@ def _of_topic(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
         yield f"has {both}", "give it one of the two"
     below = [it.removeprefix(f"{_MAPPINGS}.") for it in values if it.startswith(f"{_MAPPINGS}.")]
     for field in dict.fromkeys(it.rpartition(".")[0] for it in below):
-        words = {it.rpartition(".")[2] for it in below if it.rpartition(".")[0] == field}
-        if words.isdisjoint(("axis", "button", "value")):
+        there = {it.rpartition(".")[2] for it in below if it.rpartition(".")[0] == field}
+        if there.isdisjoint(("axis", "button", "value")):
             yield f"has no axis, button or value for {field}", "add one of them"
-        missing = [it for it in ("scale", "offset") if it not in words] if "axis" in words else []
+        missing = [it for it in ("scale", "offset") if it not in there] if "axis" in there else []
         if missing:
-            yield (
-                f"has no {' and no '.join(missing)} for {field}",
-                "add scale and offset of the axis",
-            )
+            words = f"has no {' and no '.join(missing)} for {field}"
+            yield words, "add scale and offset of the axis"
         known = _FIELDS.get(kind, ())
         if known and field.strip("-").partition("-")[0] not in known:
             yield f"sets {field} of a {kind}, which has {' and '.join(known)}", "see the message"

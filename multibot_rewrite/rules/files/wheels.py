@@ -166,21 +166,16 @@ def _of_costmap(file: NamedFile, section: Section) -> Iterator[Finding]:
         yield remark_at(radius.given.node, message, f"leave out {_ROBOT_RADIUS}")
     yield from _inflation(section, size)
     # How far the one description of the package reaches; 0 where that is not known.
-    robots = file.memo.get(Robots)
-    reach = (
-        0.0
-        if not isinstance(robots, Robots) or len(robots.subjects) != 1
-        else reach_of(robots.subjects[0].document.root)
-    )
+    robots: Robots | None = file.memo.get(Robots)
+    subjects = robots.subjects if robots else ()
+    reach = reach_of(subjects[0].document.root) if len(subjects) == 1 else 0.0
+    reaches = f"{section.title}: {size.given.name} reaches"
+    hint = f"the description reaches {reach:.3g} m; write metres"
     if reach and size.inscribed > _FAR * reach:
-        message = f"{section.title}: {size.given.name} reaches {size.inscribed:g} m from the middle"
-        hint = f"the description reaches {reach:.3g} m; write metres"
+        message = f"{reaches} {size.inscribed:g} m from the middle"
         yield remark_at(size.given.node, message, hint)
     elif size.reach * _TINY < reach:
-        message = (
-            f"{section.title}: {size.given.name} reaches {size.reach:g} m from the middle alone"
-        )
-        hint = f"the description reaches {reach:.3g} m; write metres"
+        message = f"{reaches} {size.reach:g} m from the middle alone"
         yield remark_at(size.given.node, message, hint)
 
 

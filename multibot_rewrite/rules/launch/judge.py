@@ -32,10 +32,9 @@ def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
     that is started is known; a tree in pieces is a warning where more may be started."""
     if it.code in CLAIMS and it.level == WARNING:
         return it._replace(level=ERROR)
-    if it.code == tf_tree_in_pieces.code and it.level == ERROR:
-        return (
-            it if is_sure(seen, it, _is_moved(it, launched, seen)) else it._replace(level=WARNING)
-        )
+    cut = it.code == tf_tree_in_pieces.code and it.level == ERROR
+    if cut and not is_sure(seen, it, _is_moved(it, launched, seen)):
+        return it._replace(level=WARNING)
     return it
 
 

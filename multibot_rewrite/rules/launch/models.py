@@ -78,9 +78,8 @@ def shared_topic(launched: Launched) -> Iterator[Finding]:
     having: dict[str, list[int]] = defaultdict(list)
     shared: dict[tuple[int, int], list[str]] = defaultdict(list)
     for number, model in enumerate(models):
-        for name in dict.fromkeys(
-            f"/{it.gz.lstrip('/')}" for it in model.topics if it.ros_type != TF_TYPE
-        ):
+        names = (f"/{it.gz.lstrip('/')}" for it in model.topics if it.ros_type != TF_TYPE)
+        for name in dict.fromkeys(names):
             for before in having[name]:
                 shared[before, number].append(name)
             having[name].append(number)

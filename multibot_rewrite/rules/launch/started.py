@@ -118,10 +118,8 @@ def _is_known(launched: Launched) -> bool:
 @launch_rule("MG724", "model-without-description")
 def no_description(launched: Launched) -> Iterator[Finding]:
     """An error where a description has another topic; without any, another launch file may send it."""
-    sent = [
-        e.name for e in launched.system.ends
-        if e.role == "publishes" and e.name.endswith("robot_description")
-    ]  # fmt: skip
+    names = (it.name for it in launched.system.ends if it.role == PUBLISHES)
+    sent = [it for it in names if it.endswith("robot_description")]
     level = {} if sent else {"level": INCONCLUSIVE}
     for it in launched.models.lost:
         words = dict(zip(it.arguments, it.arguments[1:], strict=False))
@@ -135,9 +133,8 @@ def no_description(launched: Launched) -> Iterator[Finding]:
     waiting = read_by_joints(launched) if launched.whole else ()
     for node, topic in waiting:
         if topic.endswith("robot_description") and topic not in sent:
-            message = (
-                f"{node.full_name} waits for a description on {topic}, where nothing sends one"
-            )
+            who = node.full_name
+            message = f"{who} waits for a description on {topic}, where nothing sends one"
             other = "start a robot_state_publisher there: no parameter tells it"
             hint = other if sent else _ELSEWHERE
             yield at(no_description, node.place, message, hint, names=(topic,), **level)
@@ -148,9 +145,8 @@ def no_type(launched: Launched) -> Iterator[Finding]:
     """Where all parameter files are known; the file of a manager in a plugin is not read here."""
     if any(it.parameters for it in launched.graph.notes):
         return
-    managers = {
-        it.full_name for it in launched.nodes if _is(it, MANAGER) and it.process != SIMULATED
-    }
+    own = (it for it in launched.nodes if it.process != SIMULATED)
+    managers = {it.full_name for it in own if _is(it, MANAGER)}
     spawned = {(it.full_name, it.place): it.manager for it in launched.spawned}
     for it in launched.nodes:
         manager = spawned.get((it.full_name, it.place), "")
@@ -166,12 +162,8 @@ def no_joints(launched: Launched) -> Iterator[Finding]:
         return
     spawned = {(it.full_name, it.place) for it in launched.spawned}
     for it in launched.nodes:
-        facts = it.fact
-        if (it.full_name, it.place) not in spawned or not facts.claims:
-            continue
-        if it.program == UNTYPED:
-            continue
-        if moves_nothing(facts, it):
+        typed = (it.full_name, it.place) in spawned and it.program != UNTYPED
+        if typed and moves_nothing(it.fact, it):
             message = f"controller {it.full_name} gets no parameter that names a joint"
             hint = f"write its parameters in a section {it.full_name}"
             yield at(no_joints, it.place, message, hint)
@@ -205,10 +197,8 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
         if runs and keeps_no_bond(runs.fact) and manager.value("bond_timeout") != 0:
             yield at(not_listed, manager.place, *said_of_bond(manager.full_name, name))
         if name not in started:
-            near = nearest(name, started)
-            hint = (
-                f"did you mean {near.rpartition('/')[2]}?" if near else "start it, or leave it out"
-            )
+            near = nearest(name, started).rpartition("/")[2]
+            hint = f"did you mean {near}?" if near else "start it, or leave it out"
             message = f"{manager.full_name} waits for {name}, which the launch file does not start"
             yield at(not_listed, manager.place, message, hint)
 
@@ -254,12 +244,10 @@ def waits(launched: Launched) -> Iterator[Finding]:
             yield at(waits, it.place, message, "set autostart to true")
 
 
-_KINDS = ("joint_state_publisher", "joint_state_publisher_gui")
-
-
 def read_by_joints(launched: Launched) -> Iterator[tuple[Run, str]]:
     """What each joint_state_publisher subscribes to."""
-    known = {it.full_name: it for it in launched.nodes if it.fact.kind in _KINDS}
+    kinds = ("joint_state_publisher", "joint_state_publisher_gui")
+    known = {it.full_name: it for it in launched.nodes if it.fact.kind in kinds}
     for end in launched.system.ends:
         if end.role == SUBSCRIBES and end.node in known and end.sure == RUNS:
             yield known[end.node], end.name
@@ -284,9 +272,8 @@ def ends(launched: Launched) -> Iterator[Finding]:
     for it in launched.graph.nodes:
         fault = check_node_name(it.name) if it.name else None
         if fault:
-            message = (
-                f"node {it.name!r} of {it.package} has a name that ROS refuses: {fault.reason}"
-            )
+            who = f"node {it.name!r} of {it.package}"
+            message = f"{who} has a name that ROS refuses: {fault.reason}"
             yield at(ends, it.place, message, "write it with letters, digits and underscores")
         if f"{it.package}/{it.executable}" in programs().spawners:
             for flag, word in pairwise(it.arguments):

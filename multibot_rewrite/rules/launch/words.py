@@ -112,9 +112,7 @@ def not_there(launched: Launched) -> Iterator[Finding]:
     """Parameter files, files that a parameter names, those after ``-file`` and ``-d``, worlds."""
     told: set[tuple[str, int, str]] = set()
     for note in launched.graph.notes:
-        if note.parameters and note.file and not _is_ours(note.file):
-            continue
-        if note.parameters and note.file:
+        if note.parameters and note.file and _is_ours(note.file):
             told.add((note.place.file, note.place.line, note.file))
             yield at(not_there, note.place, note.message, _PATH, names=(note.file,))
     named = [

@@ -107,8 +107,7 @@ def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
         message = f"<{row.name}> in the <gazebo> of a {home} has no effect"
         hint = f"it is read in that of a {' or '.join(belongs)}: name it with reference="
         yield fault("misplaced", child, None, message, hint)
-        return
-    if wrong := misread(row.type, text):
+    elif wrong := misread(row.type, text):
         level = ERROR if row.type == "double" and wrong.fails else WARNING
         message = f"{row.name} {shortened(text)!r} {wrong.problem}"
         yield fault("value", child, at, message, "", level)
@@ -236,8 +235,9 @@ def _range(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Probl
 
 def _word(element: _Element, at: str, name: str, text: str, version: Version) -> Iterator[Problem]:
     """A word that has to be one of those that the library knows."""
-    known = words(name)
-    if not known or text in known or (text.lower() in known and _is_folded(name)):
+    known, row = words(name), described(f"{WORDS} {name}")
+    folded = row is not None and "folded" in row.words
+    if not known or text in known or (folded and text.lower() in known):
         return
     if text in OGRE_FORMATS and _is_for_classic(element):
         return
@@ -261,11 +261,6 @@ def words(name: str) -> tuple[str, ...]:
     """The words that the library knows for a value, ``sensor/@type``; none where it takes any."""
     found = described(f"{WORDS} {name}")
     return tuple(found.rows) if found else ()
-
-
-def _is_folded(name: str) -> bool:
-    found = described(f"{WORDS} {name}")
-    return found is not None and "folded" in found.words
 
 
 def _unknown(

@@ -95,9 +95,7 @@ def _numbers(text: str, *, count: int) -> Misread | None:
         read += 1
         if found.end() < len(word):
             break
-    if read < count:
-        return Misread(f"is not {count} numbers", True)
-    return None
+    return Misread(f"is not {count} numbers", True) if read < count else None
 
 
 def _pose(text: str, *, size: int) -> Misread | None:
@@ -138,6 +136,4 @@ CHECKS: dict[str, Callable[[str], Misread | None]] = {
 def number_in(text: str) -> float | None:
     """The number that a text begins with, as stod reads it."""
     found = _REAL.match(text)
-    if found is None or "x" in found[0].lower():
-        return None
-    return float(found[0])
+    return float(found[0]) if found and "x" not in found[0].lower() else None

@@ -103,10 +103,9 @@ def _all_sections() -> Mapping[str, UrdfPart]:
             attributes[head[1:]] = _kind(words)
         elif head:
             section = next((it[1:] for it in words if it.startswith("=")), head)
+            section = "" if "open" in words else section
             times = next(it for it in words if it in ("required", "once", "many", "either"))
-            children[head] = Child(
-                "" if "open" in words else section, times, _version_behind("since:", words)
-            )
+            children[head] = Child(section, times, _version_behind("since:", words))
     return found
 
 
@@ -139,11 +138,8 @@ def _kind(words: Sequence[str]) -> Kind:
 
 
 def _version_behind(start: str, words: Sequence[str]) -> Version:
-    found = (it.removeprefix(start) for it in words if it.startswith(start))
-    return next(map(_version, found), OLDEST)
-
-
-def _version(word: str) -> Version:
+    given = (it.removeprefix(start) for it in words if it.startswith(start))
+    word = next(given, str(OLDEST))
     found = read_version(word)
     assert found, f"{word} in {_FILE} is a version"
     return found
@@ -283,11 +279,8 @@ def wrong_numbers(value: str, kind: str) -> tuple[str, str, str]:
     if not words:
         return "value", ", which is not a number", ""
     if odd is not None and not _INFINITE.fullmatch(odd):
-        return (
-            "value",
-            f": {shortened(odd)!r} is not a number" * (odd != value),
-            _number_hint(value, odd),
-        )
+        wrong = f": {shortened(odd)!r} is not a number" if odd != value else ""
+        return "value", wrong, _number_hint(value, odd)
     if odd is not None or not all(isfinite(float(word)) for word in words):
         return "value", ", which is not finite", "write a large number, or leave it out"
     return _miscounted(value, [float(word) for word in words], kind)

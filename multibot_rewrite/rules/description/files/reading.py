@@ -105,9 +105,8 @@ def default_of_another_file(subject: Subject) -> Iterator[Problem]:
                 continue
             who, whose = os.path.basename(other), os.path.basename(file)
             message = f"argument {name} of {whose} is {default!r}, as {who} has it, and not {own!r}"
-            yield Problem(
-                subject.document.root, message, None, "give them arguments of other names"
-            )
+            hint = "give them arguments of other names"
+            yield Problem(subject.document.root, message, None, hint)
 
 
 BOM = b"\xef\xbb\xbf"

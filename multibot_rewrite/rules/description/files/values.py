@@ -141,9 +141,7 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
         above = physics.getparent()
         if above is not None and above.tag == "world":
             yield from _none_of(physics, ("max_step_size",))
-    for element in (
-        it for tag in ("mechanicalReduction", "mechanical_reduction") for it in every(tag)
-    ):
+    for element in every("mechanicalReduction", "mechanical_reduction"):
         if number(text_of(element)) == 0:
             yield Problem(element, f"{element.tag} is 0, by which is divided", level=WARNING)
     for plugin in every("plugin"):
@@ -283,7 +281,5 @@ def _slip(name: str, known: Iterable[str]) -> str:
     # Is a word in place of another one without a letter of it, as ``my`` of ``uuv``?
     words, others = name.casefold().split("_"), near.casefold().split("_")
     pairs = zip(words, others, strict=False) if len(words) == len(others) else ()
-    own = any(one and two and not set(one) & set(two) for one, two in pairs) or (
-        part and near.casefold() != name.casefold()
-    )
-    return "" if own else near
+    other = any(one and two and not set(one) & set(two) for one, two in pairs)
+    return "" if other or (part and near.casefold() != name.casefold()) else near

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
@@ -11,6 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, XACRO, rule
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import IN_EXPRESSION, lazy_compile
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.rules.subject import Subject
@@ -92,9 +92,8 @@ def _declares(element: _Element) -> bool:
 
 
 def _name_at(element: _Element, attribute: str, text: str) -> WrittenName:
-    return WrittenName(
-        element, attribute, text, frozenset(_names_in(text)) if "$" in text else frozenset()
-    )
+    words = frozenset(_names_in(text) if "$" in text else ())
+    return WrittenName(element, attribute, text, words)
 
 
 def _names_in(text: str) -> Iterator[str]:
@@ -106,11 +105,11 @@ def _names_in(text: str) -> Iterator[str]:
 
 def _properties_by_name(root: _Element) -> Mapping[str, list[str]]:
     """Name -> the properties whose values use it."""
-    users: defaultdict[str, list[str]] = defaultdict(list)
-    for it in root.iter("{*}property"):
-        value = it.get("value", "")
-        for word in set(_names_in(value)) if "$" in value and is_xacro(it) else ():
-            users[word].append(it.get("name", ""))
+    every = ((it, it.get("value", "")) for it in root.iter("{*}property"))
+    made = ((it, value) for it, value in every if "$" in value and is_xacro(it))
+    users = lists_by_key(
+        (word, it.get("name", "")) for it, value in made for word in set(_names_in(value))
+    )
     users.pop("$", None)
     return users
 

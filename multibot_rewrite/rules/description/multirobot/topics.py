@@ -11,6 +11,7 @@ from operator import itemgetter
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, rule
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import FRAME_KINDS, NOT_PLAIN, TF_TOPICS, make_naming
 from multibot_rewrite.base.rosnames import split_remap
@@ -43,12 +44,9 @@ def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
 def _claims_by_kind(subject: Subject) -> Mapping[str, Sequence[tuple[int, Claim]]]:
     """The claims by their first kind, each with its number; most name a link or joint, and are left
     out."""
-    found: dict[str, list[tuple[int, Claim]]] = {}
-    for at, claim in enumerate(subject.inventory.claims):
-        if claim.site.whole_value_kind:
-            continue
-        found.setdefault(claim.site.kinds[0], []).append((at, claim))
-    return found
+    claims = [(at, it.site, it) for at, it in enumerate(subject.inventory.claims)]
+    left = (it for it in claims if not it[1].whole_value_kind)
+    return lists_by_key((site.kinds[0], (at, claim)) for at, site, claim in left)
 
 
 def is_plain(text: str) -> bool:
@@ -112,17 +110,14 @@ def absolute_topic(subject: Subject) -> Iterator[Problem]:
     """Absolute ROS names that are not shared by the settings."""
     has_wide = controller_way(subject.inventory.release).process_wide
     wide = process_wide_plugins(subject) if has_wide else set()
+    shared = subject.settings.naming.shared_topics | set(TF_TOPICS)
     for claim in claims_of(subject, ROS_KINDS):
         name = _target(claim)
-        if name[:1] != "/" or not is_plain(name) or _is_gz(claim):
-            continue
-        if name.strip("/") in subject.settings.naming.shared_topics | set(TF_TOPICS):
+        if name[:1] != "/" or not is_plain(name) or _is_gz(claim) or name.strip("/") in shared:
             continue
         # MB426 reports these.
         above = claim.element.iterancestors("plugin") if claim.site.form in REMAP_FORMS else ()
-        if not wide.isdisjoint(above):
-            continue
-        if claim_is_fixed(subject, claim):
+        if wide.isdisjoint(above) and claim_is_fixed(subject, claim):
             message = f"{tag_of(claim)} {name!r} is absolute: a namespace does not move it"
             hint = f"{name[1:]!r} follows the robot's namespace"
             yield Problem(claim.element, message, claim.attribute, hint)
@@ -144,13 +139,11 @@ def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
         return
     for claim in claims:
         topic = claim.value.strip()
-        if not is_plain(topic) or topic.strip("/") in subject.settings.naming.shared_topics:
-            continue
-        if not claim_is_fixed(subject, claim):
-            continue
-        message = f"{tag_of(claim)} {topic!r} is the same gz topic for every copy of the robot"
-        hint = "leave it out, or set one for each robot"
-        yield Problem(claim.element, message, claim.attribute, hint)
+        shared = topic.strip("/") in subject.settings.naming.shared_topics
+        if is_plain(topic) and not shared and claim_is_fixed(subject, claim):
+            message = f"{tag_of(claim)} {topic!r} is the same gz topic for every copy of the robot"
+            hint = "leave it out, or set one for each robot"
+            yield Problem(claim.element, message, claim.attribute, hint)
 
 
 def _is_gz(claim: Claim) -> bool:
@@ -177,10 +170,8 @@ def default_topic_shared(subject: Subject) -> Iterator[Problem]:
 @rule("MB403", "hard-coded-namespace", NOTE)
 def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
     """Each literal namespace, at its first place."""
-    found: dict[str, list[Claim]] = {}
-    for claim in claims_of(subject, ("namespace",)):
-        if is_plain(claim.value) and claim_is_fixed(subject, claim):
-            found.setdefault(claim.value, []).append(claim)
+    plain = (it for it in claims_of(subject, ("namespace",)) if is_plain(it.value))
+    found = lists_by_key((it.value, it) for it in plain if claim_is_fixed(subject, it))
     for value, claims in found.items():
         where = f" in {len(claims)} plugins" if len(claims) > 1 else ""
         message = f"the namespace {value!r}{where} is the same for every copy of the robot"
@@ -234,9 +225,8 @@ def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
             continue
         link = value.partition("/")[2].strip("/")
         if link in links and is_plain(value) and claim_is_fixed(subject, claim):
-            message = (
-                f"frame {claim.value!r} has a robot's name in front, the link is called {link!r}"
-            )
+            fault = f"has a robot's name in front, the link is called {link!r}"
+            message = f"frame {claim.value!r} {fault}"
             yield Problem(claim.element, message, claim.attribute, f"use {link!r}")
 
 
@@ -274,9 +264,8 @@ def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
         if "odom" not in words or {name, name.rpartition("/")[2]} & (links.keys() | shared):
             continue
         if is_plain(name) and claim_is_fixed(subject, claim):
-            message = (
-                f"{tag_of(claim)} {claim.value!r} is the same frame for every copy of the robot"
-            )
+            fault = "is the same frame for every copy of the robot"
+            message = f"{tag_of(claim)} {claim.value!r} {fault}"
             hint = "use a different one for each robot"
             yield Problem(claim.element, message, claim.attribute, hint)
 
@@ -290,15 +279,11 @@ def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
         section = host.node.section
         if section is None or "/tf" not in section.publishes or not section.inserts:
             continue
-        if "/tf" in switched_off(host.element, section) or _moves_tf(host.element):
+        rules = (split_remap(text_of(it)) for it in host.element.iter("remapping", "argument"))
+        moved = any(it is not None and it.source.strip("/") == "tf" for it in rules)
+        if moved or "/tf" in switched_off(host.element, section):
             continue
+        name = host.element.get("name", "")
         of = "the controllers it loads publish" if section.process_wide else "it publishes"
-        message = (
-            f"plugin {host.element.get('name', '')!r}: {of} on /tf, which a namespace does not move"
-        )
+        message = f"plugin {name!r}: {of} on /tf, which a namespace does not move"
         yield Problem(host.element, message, None, "add <remapping>/tf:=tf</remapping>")
-
-
-def _moves_tf(plugin: _Element) -> bool:
-    rules = (split_remap(text_of(it)) for it in plugin.iter("remapping", "argument"))
-    return any(it is not None and it.source.strip("/") == "tf" for it in rules)

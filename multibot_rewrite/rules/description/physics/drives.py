@@ -63,10 +63,9 @@ def wheel_size(subject: Subject) -> Iterator[Problem]:
 
 def _size(drive: Drive, name: str, value: float, words: str, measured: float) -> Problem:
     element = drive.sizes[name]
-    said = (
-        f"{name} is {value:g} m" if element is not None else f"{name} is not said, and {value:g} m"
-    )
-    message = f"{said}, but {words} {measured:.4g} m" + (" apart" if "sep" in name.lower() else "")
+    said = "" if element is not None else "not said, and "
+    apart = " apart" if "sep" in name.lower() else ""
+    message = f"{name} is {said}{value:g} m, but {words} {measured:.4g} m{apart}"
     place = (drive.plugin, None) if element is None else (element, "")
     return Problem(place[0], message, place[1], f"write {measured:.4g}")
 

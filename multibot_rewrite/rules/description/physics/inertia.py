@@ -162,10 +162,8 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
             message = f"mass of link {link.name!r}: no metal weighs {mass:g} kg within {size:.3g} m"
             yield Problem(part_of(inertial, "mass"), message, None, "is it in kilograms?")
             continue
-        if mass >= HEAVY:
-            continue
         largest = max(moments[0], moments[3], moments[5])
-        if largest < NOTHING:
+        if mass >= HEAVY or largest < NOTHING:
             continue
         radius, level, shapes = sqrt(largest / mass), "", ""
         if SHORT <= radius <= LONG:
@@ -175,11 +173,10 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
             shapes = f", its shapes reach {size:.3g} m from the origin"
             counts = mass >= FRAME and moves(subject.robot, link.name)
             level = "" if counts or radius > FAR_LARGER * size else NOTE
-        message = (
-            f"inertia of link {link.name!r}: {mass:g} kg would be {radius:.3g} m from the centre"
-        )
+        far = f"{radius:.3g} m from the centre{shapes}"
+        message = f"inertia of link {link.name!r}: {mass:g} kg would be {far}"
         place = part_of(inertial, "inertia")
-        yield Problem(place, message + shapes, None, "is the unit right?", level=level)
+        yield Problem(place, message, None, "is the unit right?", level=level)
 
 
 def _size(link: _Element) -> float:
@@ -266,9 +263,8 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
         tail = f", with {len(gone) - 1} links below it" if gone[1:] else ""
         tail += f"; {', '.join(used)} {'goes' if len(used) == 1 else 'go'} with it" if used else ""
         level = ERROR if subject.settings.simulated and (used or name not in robot.above) else ""
-        message = (
-            f"link {name!r} and the links fixed to it have no mass: Gazebo leaves it out{tail}"
-        )
+        bare = f"link {name!r} and the links fixed to it have no mass"
+        message = f"{bare}: Gazebo leaves it out{tail}"
         yield Problem(link.element, message, "name", level=level)
 
 

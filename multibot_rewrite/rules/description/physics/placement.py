@@ -51,8 +51,9 @@ def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
 @rule("MB614", "shape-units", WARNING)
 def shape_units(subject: Subject) -> Iterator[Problem]:
     """Shapes longer than LONG_SHAPE metres; a long and thin one may be a rail."""
-    for shape, sizes in _sized_shapes(subject):
-        if min(sizes) >= LONG_SHAPE / 5 and max(sizes) >= LONG_SHAPE:
+    for shape in _geometries(subject.elements, *inertia.SHAPES):
+        sizes = inertia.sizes_of(shape)
+        if sizes and min(sizes) >= LONG_SHAPE / 5 and max(sizes) >= LONG_SHAPE:
             words = " x ".join(f"{it:g}" for it in sizes)
             message = f"{shape.tag} of link {_owner(shape)!r} has the size {words} m"
             yield Problem(shape, message, None, "are these millimetres?")
@@ -63,9 +64,8 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
     """Elements without a shape that urdfdom reads."""
     # MB128 reports a capsule in a file of URDF 1.0.
     known = {*inertia.SHAPES, "mesh", "capsule"}
-    for link, element, geometry, shape in (
-        parts(subject) if subject.document.root.tag == "robot" else ()
-    ):
+    found = parts(subject) if subject.document.root.tag == "robot" else ()
+    for link, element, geometry, shape in found:
         if shape is None:
             lack = "<geometry>" if geometry is None else "shape in its <geometry>"
             message = f"<{element.tag}> of link {link.get('name')!r} has no {lack}"
@@ -79,7 +79,10 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
 @rule("MB616", "mesh-scale", WARNING)
 def mesh_scale(subject: Subject) -> Iterator[Problem]:
     """An odd number of negative scales mirrors: two of them are a rotation."""
-    for mesh, scale in _scales(subject):
+    for mesh in _geometries(subject.elements, "mesh"):
+        scale = vector(mesh.get("scale"))
+        if scale is None:
+            continue
         low, high = min(map(abs, scale)), max(map(abs, scale))
         of, words = f"mesh of link {_owner(mesh)!r}", mesh.get("scale")
         if scale[0] * scale[1] * scale[2] < 0:
@@ -90,25 +93,12 @@ def mesh_scale(subject: Subject) -> Iterator[Problem]:
             yield Problem(mesh, f"{of} is scaled by {words}", "scale", level=NOTE)
 
 
-@memoized
-def _sized_shapes(subject: Subject) -> list[tuple[_Element, tuple[float, ...]]]:
-    """The boxes, cylinders and spheres of a URDF whose sizes are numbers, and those."""
-    read = ((it, inertia.sizes_of(it)) for it in _geometries(subject.elements, *inertia.SHAPES))
-    return [(shape, sizes) for shape, sizes in read if sizes]
-
-
 def _geometries(elements: Elements, *tags: str) -> Iterator[_Element]:
+    """The shapes of a URDF with these tags."""
     for shape in elements.every(*tags) if elements.root.tag == "robot" else ():
         parent = shape.getparent()
         if parent is not None and parent.tag == "geometry":
             yield shape
-
-
-@memoized
-def _scales(subject: Subject) -> list[tuple[_Element, Vector]]:
-    """The meshes of a URDF that are scaled, and how."""
-    read = ((it, vector(it.get("scale"))) for it in _geometries(subject.elements, "mesh"))
-    return [(mesh, scale) for mesh, scale in read if scale is not None]
 
 
 def _owner(shape: _Element) -> str:

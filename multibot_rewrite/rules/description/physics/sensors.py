@@ -141,9 +141,8 @@ def lidar_in_its_housing(subject: Subject) -> Iterator[Problem]:
         if near is not None and way > near:
             message = f"lidar of link {it.link.name!r} starts inside its collision shape"
             hint = f"a <min> above {way:.3g} would be outside of it"
-            yield Problem(
-                it.element, f"{message}: {way:.3g} m to its side, <min> is {near:g}", None, hint
-            )
+            sizes = f"{way:.3g} m to its side, <min> is {near:g}"
+            yield Problem(it.element, f"{message}: {sizes}", None, hint)
 
 
 def _way_out(sensor: Sensor) -> float:

@@ -12,6 +12,7 @@ from functools import lru_cache
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.base.outside import is_folder, is_there
 from multibot_rewrite.description.checks.links_and_joints import Joint
@@ -86,16 +87,12 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
 def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
     """Mimicking joints whose leader is not in the same <ros2_control>."""
     yield from mimic_of_none(subject)
-    beside: dict[_Element, set[str]] = {}
+    joints = (it for it in subject.elements.owners() if it.tag == "joint")
+    beside = sets_by_key((it.getparent(), name_of(it)) for it in joints)
     for it, other in _mimicking(subject):
-        system = it.getparent()
-        assert system is not None
-        if system not in beside:
-            beside[system] = {name_of(joint) for joint in system.iterchildren("joint")}
-        if other not in beside[system]:
-            message = (
-                f"joint {it.get('name')!r} mimics {other!r}, which is not in this <ros2_control>"
-            )
+        if other not in beside[it.getparent()]:
+            who = f"joint {it.get('name')!r} mimics {other!r}"
+            message = f"{who}, which is not in this <ros2_control>"
             yield Problem(it, message, "name", "put both in one <ros2_control>")
 
 
@@ -196,9 +193,8 @@ def simulated_hardware_not_loaded(subject: Subject) -> Iterator[Problem]:
     if not subject.robot.links or manager_plugins(subject):
         return
     for _, it, simulator in simulated(subject):
-        message = (
-            f"nothing loads {text_of(it)}: the description has no plugin of {simulator.name} for it"
-        )
+        why = f"the description has no plugin of {simulator.name} for it"
+        message = f"nothing loads {text_of(it)}: {why}"
         yield Problem(it, message, "", f"add a <plugin> with {simulator.plugins[0]}")
 
 

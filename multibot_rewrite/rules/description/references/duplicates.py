@@ -8,7 +8,6 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from itertools import zip_longest
-from typing import TYPE_CHECKING
 
 from lxml.etree import _Element
 
@@ -22,9 +21,6 @@ from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.rules.facts.memo import since_jazzy
 from multibot_rewrite.rules.schema.faults import canonical
 from multibot_rewrite.rules.subject import Subject, name_of
-
-if TYPE_CHECKING:
-    from multibot_rewrite.description.sources.trace import WrittenAt
 
 
 @rule("MB201", "duplicate-name", ERROR)
@@ -54,17 +50,14 @@ def declared_twice(subject: Subject) -> Iterator[Problem]:
 
 def _cause(subject: Subject, claim: Claim, first: Claim) -> object:
     """Why xacro wrote an element twice: the macro call, or the file included again."""
-    one, other = (_origin(subject, it.start) for it in (first, claim))
+    if not subject.origins:
+        return None
+    starts = (bisect_left(subject.document.starts, it.start) for it in (first, claim))
+    one, other = map(subject.origins.of, starts)
     if one is None or other is None or (one.file, one.start) != (other.file, other.start):
         return None
     outer = zip_longest(reversed(other.calls), reversed(one.calls))
     return next((new for new, old in outer if new != old), (other.file, other.calls))
-
-
-def _origin(subject: Subject, start: int) -> WrittenAt | None:
-    if not subject.origins:
-        return None
-    return subject.origins.of(bisect_left(subject.document.starts, start))
 
 
 def repeated_joint(subject: Subject) -> Iterator[Problem]:

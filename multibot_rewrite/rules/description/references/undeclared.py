@@ -15,7 +15,7 @@ from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Claim
-from multibot_rewrite.base.naming import FRAME_KINDS, make_naming
+from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.nearest import HINTED, meant_name
 from multibot_rewrite.description.checks.audit import uses_xacro
 from multibot_rewrite.description.checks.problem import Problem
@@ -133,13 +133,12 @@ AS_WRITTEN = make_naming("tf-per-robot")
 def frame_with_two_parents(subject: Subject) -> Iterator[Problem]:
     """Plugins that send odometry to a link below the root."""
     for plugin, parent, child in _sent(subject):
+        sends = f"sends {parent} -> {child}"
         if parent == child:
             hint = "name the odometry frame and the robot's root link"
-            yield Problem(plugin, f"sends {parent} -> {child}, a frame to itself", None, hint)
+            yield Problem(plugin, f"{sends}, a frame to itself", None, hint)
         for joint in subject.robot.above.get(child, ())[:1]:
-            message = (
-                f"sends {parent} -> {child}, and so does joint {joint.name!r} from {joint.parent}"
-            )
+            message = f"{sends}, and so does joint {joint.name!r} from {joint.parent}"
             hint = f"name the robot's root link, or switch one of them off; joint {joint.name}"
             line = "" if subject.origins else f": line {joint.element.sourceline}"
             yield Problem(plugin, message, None, hint + line)
@@ -168,9 +167,7 @@ def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
     meant: dict[str, str] = {}
     for claim in references(subject).doubtful if links else ():
         site = claim.site
-        if FRAME_KINDS.isdisjoint(site.kinds) or "frame" not in site.kinds:
-            continue
-        if must_be_declared(site) or site.form != "whole":
+        if "frame" not in site.kinds or must_be_declared(site) or site.form != "whole":
             continue
         for name in (part.text for part in names_in(claim, declared)):
             # A frame_prefix or namespace may come before the link's name at run time.

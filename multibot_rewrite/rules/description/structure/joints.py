@@ -143,10 +143,8 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
     """Equal limits: an exporter's mistake, or a frame that Gazebo should not merge."""
     for joint, limit, lower, upper in _bounds(subject):
         if lower == upper and joint.type in BOUNDED:
-            message = (
-                f"{joint.type} joint {joint.name!r} cannot move: lower and upper are {lower:g}"
-            )
-            yield Problem(limit, message)
+            who = f"{joint.type} joint {joint.name!r}"
+            yield Problem(limit, f"{who} cannot move: lower and upper are {lower:g}")
 
 
 @rule("MB515", "zero-limit", NOTE)

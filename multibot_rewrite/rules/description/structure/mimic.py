@@ -55,14 +55,10 @@ def mimic_chain(subject: Subject) -> Iterator[Problem]:
 @rule("MB529", "mimic-of-fixed", ERROR)
 def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
     """Mimics of joints without one position; the mimic of a fixed joint does not matter."""
+    others = {*TYPES} - {*ONE_AXIS}
     for joint, mimic in joints_with(subject.robot, "mimic"):
         leader = subject.robot.joint.get(mimic.get("joint", ""))
-        if (
-            leader
-            and leader.type in TYPES
-            and leader.type not in ONE_AXIS
-            and joint.type in ONE_AXIS
-        ):
+        if leader and leader.type in others and joint.type in ONE_AXIS:
             message = f"joint {joint.name!r} mimics {leader.name!r}, which is {leader.type}"
             yield Problem(mimic, message, "joint")
 
@@ -147,9 +143,8 @@ def start_beyond_limits(subject: Subject) -> Iterator[Problem]:
         bounds = None if joint is None else _bounds(joint)
         if value is None or bounds is None or bounds[0] - 1e-3 <= value <= bounds[1] + 1e-3:
             continue
-        message = (
-            f"joint {name!r} starts at {value:g}, its limits are {bounds[0]:g} to {bounds[1]:g}"
-        )
+        limits = f"{bounds[0]:g} to {bounds[1]:g}"
+        message = f"joint {name!r} starts at {value:g}, its limits are {limits}"
         yield Problem(element, message, "")
 
 
