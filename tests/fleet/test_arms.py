@@ -245,9 +245,7 @@ def test_one_device_of_two_robots(
     assert {(it.line, it.column) for it in found} <= {(last, 1)}
     # What is written for all of them, with its lines.
     lines = (tmp_path / "arm.urdf.xacro").read_text().splitlines()
-    where = [
-        at for at, it in enumerate(lines, 1) if any(word in it for word in said)
-    ]
+    where = [at for at, it in enumerate(lines, 1) if any(word in it for word in said)]
     assert all(f"arm.urdf.xacro:{at}" in it.hint for it in found for at in where)
     # Robots may have computers of their own.
     assert {it.level for it in found if "reverse_port" in it.message} <= {NOTE}
