@@ -197,7 +197,9 @@ def _of_nodes(
 ) -> Iterator[tuple[str, list[DefaultLine]]]:
     """The full names of nodes of the stack that no section is for, and what they need."""
     types = controller_types(every)
-    own = [it.full for it in identify_sections(every, context, known) if not _is_of_all(it)]
+    found = identify_sections(every, context, known)
+    # Those for nodes of any name are nobody's own.
+    own = [it.full for it in found if it.path.rpartition("/")[2] not in ANY]
     for name, full in context.nodes.items():
         last = name.rpartition("/")[2]
         shared = NAMESPACE_SLOT not in full
@@ -208,11 +210,6 @@ def _of_nodes(
             lines = list(missing_defaults(context, node, {*_set_by_all(name, every), *bare}))
             if lines:
                 yield full, lines
-
-
-def _is_of_all(section: ParamSection) -> bool:
-    """Is it for nodes of any name?"""
-    return section.path.rpartition("/")[2] in ANY
 
 
 def _set_by_all(path: str, every: Iterable[RawSection]) -> set[str]:

@@ -116,14 +116,12 @@ def _flat(
         name = (*above, *([key] if isinstance(key, str) or hasattr(key, "perform") else key))
         if isinstance(value, Mapping):
             yield from _flat(value, (*name, "."))
-        elif isinstance(value, (*_PLAIN, list, tuple)) or _is_told_later(value):
+        elif isinstance(value, (*_PLAIN, list, tuple)) or any(
+            hasattr(value, it) for it in ("perform", "evaluate")
+        ):
             yield name, value
         else:
             raise _no_value(value)
-
-
-def _is_told_later(value: Any) -> bool:
-    return hasattr(value, "perform") or hasattr(value, "evaluate")
 
 
 def _no_value(value: Any) -> TypeError:
