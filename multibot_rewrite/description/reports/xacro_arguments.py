@@ -217,14 +217,11 @@ def _how(text: str) -> tuple[str, str]:
 
 def as_json(found: XacroArguments) -> dict[str, object]:
     """The report as ``--form json`` writes it."""
+    rows = [(it, [use._asdict() for use in it.uses]) for it in found.arguments]
+    arguments = [it._asdict() | {"uses": uses, "for_robots": it.value} for it, uses in rows]
     return {
         "file": found.file,
-        "arguments": [_argument_json(it) for it in found.arguments],
+        "arguments": [{key: it[key] for key in it if key != "missed"} for it in arguments],
         "untried": found.untried,
         "for_robots": found.words,
     }
-
-
-def _argument_json(it: Argument) -> dict[str, object]:
-    told = {key: value for key, value in it._asdict().items() if key != "missed"}
-    return {**told, "uses": [use._asdict() for use in it.uses], "for_robots": it.value}

@@ -139,10 +139,12 @@ def _topic(reader: Reader, name: str, connections: list[Connection]) -> Recorded
     count = sum(it.msgcount for it in connections)
     type_, frames, joints, back = str(first.msgtype), {}, {}, 0.0
     pose: tuple[float, ...] = ()
+    text = first.msgdef.data
+    has_header = bool(_HEADER.match(text)) if text else type_ in _HEADED
     if type_ in JOINTED:
         names = map(read_joint_names, _first(reader, connections, HEADERS))
         joints = dict.fromkeys(it for it in names if it)
-    elif count and _has_header(first):
+    elif count and has_header:
         read = list(_first(reader, connections, HEADERS))
         found = map(read_header_frame, read)
         frames = dict.fromkeys(it for it in found if it is not None)
@@ -155,11 +157,6 @@ def _topic(reader: Reader, name: str, connections: list[Connection]) -> Recorded
     offered = (getattr(it.ext, "offered_qos_profiles", ()) for it in connections)
     qos = tuple(map(_qos, chain.from_iterable(offered)))
     return RecordedTopic(name, type_, count, qos, tuple(frames), tuple(joints), back, pose)
-
-
-def _has_header(connection: Connection) -> bool:
-    text = connection.msgdef.data
-    return bool(_HEADER.match(text)) if text else connection.msgtype in _HEADED
 
 
 def _first(reader: Reader, connections: list[Connection], many: int) -> Iterator[bytes]:

@@ -109,19 +109,17 @@ def no_longer_sent(end: End) -> Finding:
 
 
 def open_ends(seen: Index) -> list[End]:
-    """What nodes surely need by their code, and nothing gives."""
+    """What nodes surely need by their code, and nothing gives; a served action gives its status."""
+    served = {
+        f"{it.name}{_STATUS}" for it in seen.by_name.values() if it.kind == ACTION and it.servers
+    }
     return [
         end
         for (kind, name), ends in seen.by_name.items()
-        if not (ends.publishers or ends.servers) and not _is_status(seen, kind, name)
+        if not (ends.publishers or ends.servers or (kind == TOPIC and name in served))
         for end in (*ends.subscribers, *ends.clients)
         if is_needed(end)
     ]
-
-
-def _is_status(seen: Index, kind: str, name: str) -> bool:
-    served = seen.ends_at(ACTION, name.removesuffix(_STATUS)).servers
-    return kind == TOPIC and name.endswith(_STATUS) and bool(served)
 
 
 _MAP = "map"

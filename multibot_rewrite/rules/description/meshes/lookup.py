@@ -214,14 +214,12 @@ def box_of(subject: Subject, mesh: _Element, whole: bool = True) -> Extent | Non
 @memoized
 def _paths(subject: Subject) -> Mapping[str, str]:
     """Where the meshes are on the disk, by the name in the description."""
-    found = {it.used.name: _on_disk(it) for it in lookups(subject) if it.found}
+    asked = (
+        (it, [os.path.join(above, it.found) for above in it.folders]) for it in lookups(subject)
+    )
+    found = {it.used.name: next(filter(is_file, at), "") for it, at in asked if it.found}
     direct = (it for it in used_files(subject) if it.scheme == "file" and is_file(it.path))
     return found | {it.name: it.path for it in direct}
-
-
-def _on_disk(it: MeshFile) -> str:
-    paths = (os.path.join(folder, it.found) for folder in it.folders)
-    return next(filter(is_file, paths), "")
 
 
 @rule("MB714", "mesh-units", WARNING)
