@@ -32,9 +32,9 @@ def _one_device(subject: Subject) -> Iterator[Problem]:
     """What the hardware of the description opens, of classes that are not known what parameters of such
     a name or value hold, where it is the same for every robot."""
     root = subject.document.root
-    params = [*root.iterfind("ros2_control/hardware/param")]
     if root.find("ros2_control") is None:
         return
+    params = [*root.iterfind("ros2_control/hardware/param")]
     from multibot_rewrite.producers.addresses import of_hardware  # most descriptions have none
 
     starts = starts_of(subject, params)
