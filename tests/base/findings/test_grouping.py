@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap, same_for
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap, Setting, same_for
 from multibot_rewrite.base.findings.selection import grouped
 
 ROBOTS = [f"robot{number}" for number in range(1, 21)]
@@ -87,3 +87,11 @@ def test_the_order_is_that_of_the_first() -> None:
     command = [lost(robot) for robot in ROBOTS[:2]]
     found = grouped([scan[0], command[0], command[1], scan[1]], NAMES)
     assert [it.names for it in found] == [("/robot1/scan",), ("/robot1/cmd_vel",)]
+
+
+def test_what_mends_each_of_several_robots_alike_is_one_finding() -> None:
+    found = [
+        lost(robot)._replace(settings=(Setting(f"/{robot}/amcl", "use_sim_time", "true"),))
+        for robot in ROBOTS[:2]
+    ]
+    assert len(grouped(found, NAMES)) == 1
