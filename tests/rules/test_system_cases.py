@@ -1102,3 +1102,5 @@ def test_velocities_of_nav2_that_no_input_of_the_mux_reads() -> None:
     ]  # fmt: skip
     (found,) = (it for it in said(*lines) if it.startswith("MG308"))
     assert found.endswith("which no node reads; /robot1/twist_mux reads /robot1/cmd_vel")
+    by_hand = [it for it in lines if "/robot1/cmd_vel " not in it]
+    assert not [it for it in said(*by_hand) if "/robot1/twist_mux reads" in it]
