@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import cache
 from inspect import getsource
+from linecache import getline
 from types import FunctionType, MethodType
 from typing import Any
 
@@ -106,8 +107,11 @@ def _failed(entity: Any, error: BaseException, here: Visit) -> None:
     # What a function of a launch file names that cannot be asked.
     function = getattr(entity, "_OpaqueFunction__function", getattr(entity, "function", None))
     if isinstance(function, FunctionType | MethodType):
+        code = function.__code__
         with suppress(OSError):
-            reason = f"{reason}{started_by(getsource(function))}"
+            # Of a lambda in a list all that follows would be its source.
+            line = getline(code.co_filename, code.co_firstlineno)
+            reason += started_by(line if code.co_name == "<lambda>" else getsource(function))
     if here.later and is_unset(error):
         reason = f"{reason.partition(';')[0]}; {_ENDED}"
     message = f"{here.later} {reason}".strip()

@@ -122,10 +122,6 @@ def open_ends(seen: Index) -> list[End]:
     ]
 
 
-_MAP = "map"
-_ODOM = "odom"
-
-
 @system_rule("MG413", "frame-not-sent", WARNING, absence=True)
 def frame_not_sent(seen: Index) -> Iterator[Finding]:
     """Each frame once a robot, with all that read it; other names than the usual ones may be those of a
@@ -163,7 +159,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     sends = f"{who} sends {sender.parent} -> {sender.child}{place}"
     hint = f"{sends}; use a frame that is sent, or name the node that does"
     # A map often comes from a node that is started apart.
-    level = NOTE if plain == _MAP else WARNING
+    level = NOTE if plain == "map" else WARNING
     return _finding(seen, it, f"reads frame {it.frame}, but no known node sends it", hint, level)
 
 
@@ -184,7 +180,7 @@ def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
         it
         for it in edges
         if not is_of_description(seen, it)
-        or (len(it.publishers) > 1 and seen.plain_frame(it.parent) in (_MAP, _ODOM))
+        or (len(it.publishers) > 1 and seen.plain_frame(it.parent) in ("map", "odom"))
     ]
     placed = [it for it in own if it.place != NOWHERE]
     found, robot = placed if placed or seen.in_doubt else own, seen.robot(node)
