@@ -1094,7 +1094,7 @@ def test_velocities_of_nav2_that_no_input_of_the_mux_reads() -> None:
     """Nor the input of a joystick, which a person sends."""
     mux = (
         f"/robot1/twist_mux subscribes /robot1/{it} {TWIST} as <topics.*.topic>"
-        for it in ("cmd_vel", "joy_teleop/cmd_vel_nav")
+        for it in ("cmd_vel", "joy_teleop/cmd_vel")
     )
     lines = [
         *mux, f"/robot1/twist_mux publishes /robot1/platform/cmd_vel {TWIST} as cmd_vel_out",
