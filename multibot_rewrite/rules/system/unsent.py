@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
-from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
@@ -180,7 +180,7 @@ def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
         it
         for it in edges
         if not is_of_description(seen, it)
-        or (len(it.publishers) > 1 and seen.plain_frame(it.parent) in ("map", "odom"))
+        or (len(it.publishers) > 1 and seen.plain_frame(it.parent) in SENT_FRAMES)
     ]
     placed = [it for it in own if it.place != NOWHERE]
     found, robot = placed if placed or seen.in_doubt else own, seen.robot(node)
