@@ -8,18 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from multibot_rewrite.base.conventions import ROWS
+
 DEFAULTS = ("physics", "user-commands", "scene-broadcaster")
 SENT_BY_ANY: Mapping[str, str] = MappingProxyType({"clock": "Clock", "stats": "WorldStatistics"})
 SENT_BY: Mapping[str, Mapping[str, str]] = MappingProxyType(
-    {
-        "scene-broadcaster": {
-            "pose/info": "Pose_V",
-            "dynamic_pose/info": "Pose_V",
-            "scene/info": "Scene",
-            "scene/deletion": "UInt32_V",
-            "state": "SerializedStepMap",
-        },
-    }
+    {system: dict(it.split("=") for it in sent) for (system, *sent), _ in ROWS["sent by systems"]}
 )
 _CAMERAS = "sensors", "Sensors"
 # The library and the class, by the type of a sensor.

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.conventions import ROWS, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
@@ -42,13 +42,7 @@ _BETWEEN = (
 _PARTED = lazy_compile(r"[\s,;/\[\](){}\"'=|:.]")
 _SPACED = lazy_compile(r"[\s,;\[\](){}\"'=|]+")
 # A file is found by its name, whatever the links are called.
-_FILES = (
-    *(".dae", ".stl", ".obj", ".ply", ".glb", ".gltf", ".usd", ".usda", ".usdc"),
-    *(".mtl", ".material", ".png", ".jpg", ".jpeg", ".tga", ".dds", ".pgm", ".bmp"),
-    *(".svg", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".yaml", ".yml"),
-    *(".xml", ".json", ".toml", ".ini", ".csv", ".txt", ".lua", ".py", ".sh", ".so"),
-    *(".bin", ".pt", ".onnx", ".engine", ".pcd", ".bag", ".db3", ".mcap"),
-)
+_FILES = tuple(ending for endings, _ in ROWS["endings"] for ending in endings)
 _NUMERIC = "-+0123456789.eE \t\n\r\v\f"
 
 

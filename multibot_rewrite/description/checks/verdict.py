@@ -6,39 +6,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.description.checks.meeting import ELSEWHERE, NO_LINK, PARTED, SAME_TEXT
+from multibot_rewrite.description.checks.meeting import ELSEWHERE
 from multibot_rewrite.description.readback import meeting
 
 SHARED = "shared by all robots"
 # Code -> what is counted and what is said of it. A rewrite with one of these findings is not proved.
-REASONS = {
-    "MB901": ("name", "not understood"),
-    "MB219": ("model", "not known"),
-    "MB902": ("plugin", "not known"),
-    "MB903": ("hardware class", "not known"),
-    "MB906": ("included model", "not read"),
-    meeting.DATA: ("topic", SHARED),
-    meeting.COMMAND: ("command", SHARED),
-    meeting.TWO_SERVERS: ("service", SHARED),
-    meeting.TWO_NODES: ("node", SHARED),
-    meeting.FRAMES: ("frame", SHARED),
-    meeting.OPENED: ("resource", SHARED),
-    SAME_TEXT: ("description", "the same for all robots"),
-    PARTED: ("topic", "whose ends no longer match"),
-    NO_LINK: ("robot", "without a link"),
-    meeting.LOOKUP: ("name", "looked up in the whole world"),
-    "MB410": ("description name", SHARED),
-    "MB416": ("world system", "in every robot"),
-    "MB436": ("remap rule", "matching no name any more"),
-    "MB426": ("remap rule", "of the whole process"),
-    "MB143": ("frame", "that an argument of the xacro misses"),
-    "MB422": ("prefix parameter", "that no postfix reaches"),
-    "MB430": ("topic", "below each robot's namespace that all should share"),
-    "MB428": ("name", "fixed in a plugin's code"),
-    "MB429": ("model namespace", "that not every Gazebo reads"),
-}
+REASONS = {it: (" ".join(what), said) for (it, *what), said in ROWS["reasons of descriptions"]}
 
 # What is proved of a description and hangs on what starts it: a code, and how the summary says it.
 GIVEN = {

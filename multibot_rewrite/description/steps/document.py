@@ -18,6 +18,7 @@ from typing import NamedTuple
 from lxml import etree
 
 from multibot_rewrite.base.bounded import MAX_BYTES
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.lazy import ATTRIBUTES, SILENT, lazy_compile
 from multibot_rewrite.base.loose_xml import is_loose, well_formed
@@ -43,19 +44,7 @@ _NEAR = 4096
 CORRECT = "correct the XML and try again"
 # What libxml2 says -> the cause.
 _CAUSES = {"entity amplification": REFUSED, "Invalid bytes in character encoding": NOT_UTF8}
-_HINTS = (
-    ("entity amplification", "DOCTYPE and entities are not accepted; expand them first"),
-    ("Excessive depth", "a robot description is never nested this deep"),
-    ("declaration allowed only at the start", "delete what is before <?xml ...?>"),
-    ("Invalid bytes in character encoding", "the text is not UTF-8; convert it: iconv -t UTF-8"),
-    ("not proper UTF-8", "convert it: iconv -f LATIN1 -t UTF-8"),
-    ("XML or text declaration not at start", "delete what is before <?xml ...?>"),
-    ("Namespace prefix", 'declare it on the root element: xmlns:prefix="..."'),
-    ("Unsupported version", 'write <?xml version="1.0"?>'),
-    ("Document is empty", "the file holds no XML"),
-    ("Start tag expected", "the file is not XML"),
-    ("Premature end", "the file is cut short"),
-)
+_HINTS = tuple((" ".join(said), hint) for said, hint in ROWS["words of libxml2"])
 
 
 class Document(NamedTuple):

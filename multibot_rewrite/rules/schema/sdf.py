@@ -15,6 +15,7 @@ from math import radians, tau
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.description.checks.links_and_joints import Robot
@@ -27,12 +28,7 @@ from multibot_rewrite.rules.schema.sections import is_own, shortened
 
 # What the converter takes out of the block of a joint; the others are for links, and static for
 # neither.
-OF_JOINTS = frozenset(
-    {
-        *("stopCfm", "stopErp", "fudgeFactor", "provideFeedback", "springReference"),
-        *("springStiffness", "implicitSpringDamper", "cfmDamping"),
-    }
-)
+OF_JOINTS = frozenset(ROWS["of joints"][0][0])
 OF_BOTH = frozenset({"disableFixedJointLumping", "preserveFixedJoint", "dampingFactor"})
 OF_MODELS = frozenset({"static", "canonicalBody"})
 # Merged into the shapes that the link has already, or a name in the old style.

@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.rules.schema.described import table_text
 from multibot_rewrite.rules.schema.versions import OLDEST, Version, read_version
@@ -241,15 +242,7 @@ FINE = {
     "filled": lazy_compile(r"\S.*"),
 }
 _LONG = 200
-COUNTS = {
-    "number": 1,
-    "numbers": 3,
-    "rgba": 4,
-    "quaternion": 4,
-    "unsigned": 1,
-    "positive": 1,
-    "positives": 3,
-}
+COUNTS = {kind: int(count) for (kind, count), _ in ROWS["counts"]}
 # What numbers of these types may not be.
 _BEYOND = {"unsigned": "below 0", "positive": "not above 0", "positives": "not above 0"}
 _NUMBER = lazy_compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)

@@ -11,6 +11,7 @@ from functools import lru_cache
 from itertools import islice, zip_longest
 from typing import NamedTuple
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import Remap, Setting
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
@@ -19,15 +20,10 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.system.instead import COMMON
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, End
+from multibot_rewrite.system.records import ACTION, End
 
 # What a node does with a name, by the role of its endpoint.
-DOES = {
-    PUBLISHES: "publishes",
-    SUBSCRIBES: "subscribes to",
-    SERVES: "offers",
-    CALLS: "has a client for",
-}
+DOES, TO_DO = ({role: said.split(" | ")[at] for (role,), said in ROWS["roles"]} for at in (0, 1))
 # rcl has no rule for an action: it is made of these.
 ACTION_PARTS = " and one rule for each of its _action/ names"
 # FILE:LINE, as plans have the place of a plugin.

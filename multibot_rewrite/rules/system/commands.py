@@ -55,7 +55,8 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
             message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
             cause = own_names(seen, ends, robots)
             nobodys = joystick and not seen.robot(name)
-            if joystick and len(_buttons(seen, nodes)) == len(nodes):
+            told = (it for it in seen.system.parameters if joystick and it.name == _BUTTON)
+            if len({it.value for it in told if it.node in nodes}) == len(nodes):
                 continue
             if nobodys:
                 own = tuple(Setting(it, _BUTTON, str(at)) for at, it in enumerate(nodes, 4))
@@ -66,11 +67,6 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
                 message, level=WARNING if nobodys else ERROR, node=nodes[0], names=(name,),
                 **cause._asdict(),
             )  # fmt: skip
-
-
-def _buttons(seen: Index, nodes: Sequence[str]) -> set[str]:
-    """Return the buttons of a joystick that these are known to wait for."""
-    return {it.value for it in seen.system.parameters if it.name == _BUTTON and it.node in nodes}
 
 
 @system_rule("MG308", "command-without-reader", ERROR, absence=True, drawn="leak")

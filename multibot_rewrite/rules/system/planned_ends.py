@@ -13,6 +13,7 @@ from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import (
     DOES,
+    TO_DO,
     Cause,
     caused,
     how_to_pass,
@@ -32,7 +33,6 @@ from multibot_rewrite.rules.system.sharing import data_of_another_robot, topic_o
 from multibot_rewrite.system.index import TF, EndKey, Index, ends_of, once
 from multibot_rewrite.system.ownership import NameOwnership
 from multibot_rewrite.system.records import (
-    CALLS,
     PUBLISHES,
     RUNS,
     SERVES,
@@ -129,14 +129,6 @@ def similar(name: str, known: Collection[str]) -> str:
     if extended:
         return min(extended, key=lambda other: abs(len(other) - len(name)))
     return nearest(name, known, MISTYPED)
-
-
-TO_DO = {
-    PUBLISHES: "publish",
-    SUBSCRIBES: "subscribe to",
-    SERVES: "offer",
-    CALLS: "have a client for",
-}
 
 
 @planned_rule("MG102", "missing-endpoint", ERROR, absence=True, drawn="missing", nodes=False)

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules import declaration
@@ -15,10 +16,7 @@ from multibot_rewrite.rules.system.causes import Cause, names_another
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import NO_NAMESPACE, Ends, Index, at_work, nodes_of, robots_of
 from multibot_rewrite.system.records import (
-    CALIBRATION,
     COMPUTER,
-    DEVICE,
-    OWN,
     PUBLISHES,
     SUBSCRIBES,
     Address,
@@ -165,12 +163,7 @@ def _passes_on(seen: Index, node: str, ends: Ends) -> bool:
     return any(it.name == ends.name or (passed and it.type == ends.type) for it in read)
 
 
-_ADVICE = {
-    DEVICE: "one device has one driver: give each robot its own",
-    CALIBRATION: "each device has its own: name the file that was measured with this one",
-    COMPUTER: "the second one on a computer cannot open it: give each robot its own, or a computer",
-    OWN: "only one node can have it: give each robot its own",
-}
+_ADVICE = {kind: said for (kind,), said in ROWS["addresses"]}
 
 
 def _one_device(seen: Index) -> Iterator[Finding]:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.checks.problem import Problem
@@ -140,13 +141,7 @@ def find_left_over(subject: Subject) -> Iterator[Problem]:
 
 
 # Programs that cannot read a format which RViz reads (through assimp).
-PARTLY = {
-    "gltf": "Gazebo Classic and gz before Garden cannot read glTF",
-    "glb": "Gazebo Classic and gz before Garden cannot read glTF",
-    "fbx": "Gazebo Classic and gz before Garden cannot read FBX",
-    "ply": "Gazebo cannot read PLY",
-    "mesh": "only RViz reads Ogre's format",
-}
+PARTLY = {ending: said for (ending,), said in ROWS["meshes"]}
 
 
 @rule("MB707", "mesh-format-unknown", WARNING)
