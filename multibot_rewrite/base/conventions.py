@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is everybody's, by convention: topics, frames, tools, words, each with its source; and the tables
+"""What is everybody's, by convention: topics, frames, tools, words, each with its source; and tables
 of words that several rooms say.
 
 Rows are in ``conventions.txt``, lines of words and no YAML: the start of every command reads them, and
