@@ -285,6 +285,7 @@ LISTED = (
     " does not run{}; it waits for /robot1/amcl and activates nothing after it:"
     " start it, or leave /robot1/amcl out of node_names of /robot1/lifecycle_manager"
 )
+LOCALIZES = (("initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped"), ("tf", TF))
 SENDS = {it: f"{it} publishes /tf {TF}" for it in ("/robot1/a", "/robot1/b", "/robot2/b")}
 TWICE = (
     "transform map -> {0} on /tf by /robot1/a",
@@ -520,6 +521,13 @@ ELSEWHERE = (
             (*TREE, f"/rviz2 subscribes /tf {TF}"),
             ["MG405 listens to /tf, on which no node sends; robots send on /robot1/tf; start it"
              " with -r /tf:=/robot1/tf -r /tf_static:=/robot1/tf_static, one for each robot"],
+        ),
+        # A localizer that has no publisher of transforms at all.
+        (
+            (*(f"/robot1/amcl subscribes /robot1/{name} {type_}" for name, type_ in LOCALIZES),
+             "transform odom -> base_link on /robot1/tf by /robot1/driver"),
+            ["MG415 sends no map -> odom on /robot1/tf, and no other node does; it sends no transforms"
+             " at all: set tf_broadcast: true of /robot1/amcl"],
         ),
         ((*TREE, f"/rviz2 subscribes /robot1/tf {TF}"), []),
         (

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Set
 from math import inf, isfinite
 from typing import NamedTuple
 
-from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
+from multibot_rewrite.base.conventions import BODY_FRAMES, TF_SWITCHES, WORLD_FRAMES, switch
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, shorten, unique
@@ -20,6 +20,7 @@ from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.rules.system.transforms import collide
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, once, robots_of, sent_on
+from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import OFF, RUNS, SUBSCRIBES, TOPIC, Edge, End
 
 _MAP = "map"
@@ -38,15 +39,15 @@ class _Body(NamedTuple):
 def map_not_joined(seen: Index) -> Iterator[Finding]:
     """Where the tree is in pieces below the odometry as well, that is the finding."""
     for tree in seen.trees:
-        localizers = [it for it in tree.senders if _starts_at(seen, it)]
+        localizers = [it for it in (*tree.senders, *tree.listeners) if _starts_at(seen, it)]
         if not localizers or not tree.edges or collide(seen, tree):
             continue
-        for node in localizers:
+        for node in unique(localizers):
             body, start = _body(seen, tree, seen.robot(node)), _starts_at(seen, node)
             if body and node not in _told_not_to(seen):
                 yield map_not_joined.finding(
                     f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
-                    **_why(seen, node, body, start.name if start else "")._asdict(),
+                    **_why(seen, tree, node, body, start.name if start else "")._asdict(),
                     robot=seen.robot(node), node=node, names=(body.root, *body.loose),
                 )  # fmt: skip
 
@@ -84,11 +85,14 @@ def _told_not_to(seen: Index) -> Set[str]:
     return {node for it in seen.system.edges if it.sure == OFF for node in it.publishers}
 
 
-def _why(seen: Index, node: str, body: _Body, start: str) -> Cause:
+def _why(seen: Index, tree: Tree, node: str, body: _Body, start: str) -> Cause:
     """The first thing that it lacks."""
     state = seen.node[node].lifecycle if node in seen.node else ""
     if state not in ("", ACTIVE):
         return Cause(f"it is {state}: see the log of its lifecycle manager")
+    if node not in tree.senders and (name := switch(TF_SWITCHES, node)):
+        cause = to_set(name, parameter_text(True), node)
+        return cause._replace(hint=f"it sends no transforms at all: {cause.hint}")
     if body.loose:
         sent = f"{_MAP} -> {body.loose[0]} is sent, and nothing is below {body.loose[0]}"
         cause = to_set("odom_frame_id", body.root, node)
