@@ -94,8 +94,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         needed = seen.is_live and any(_is_read(seen, it) for it in placed)
         yield frame_id_unknown.finding(
             f"{messages[0].field} of {topics} is {frame}, which is in no transform of"
-            f" {robot or 'tf'}; sent by"
-            f" {_one_of(senders)}",
+            f" {robot or 'tf'}; sent by {_one_of(senders)}",
             # A sensor in a simulator sends what its description says, else a name that is in no tf.
             (f"write <gz_frame_id>{link}</gz_frame_id> in the sensor" if link else "")
             or (f"set the frame of {_one_of(senders)} to {_one_of(likely)}" if likely else "")
@@ -162,6 +161,7 @@ def _where(seen: Index) -> Mapping[str, Sequence[str]]:
     return lists_by_key((it, tree.topic) for tree in seen.trees for it in frames_in(tree.edges))
 
 
+@once
 @once
 def _senders_of(seen: Index) -> Mapping[str, str]:
     """The node that sends a frame, of the first tree in which one alone does."""
