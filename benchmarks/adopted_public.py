@@ -3,7 +3,7 @@
 
 ``python benchmarks/adopted_public.py MIRRORS [FIRST [LAST]]`` prints a row for each: xacro expands
 every configuration before and after, without a prefix and with one. MIRRORS has clones,
-``OWNER+NAME/repo``. docs/measurements.md has the table.
+``OWNER+NAME/repo``. docs/contributing/measurements.md has the table.
 """
 
 from __future__ import annotations
