@@ -20,7 +20,11 @@ PAGES = (
     *sorted(ROOT.glob("examples/*/README.md")),
     *sorted((ROOT / "docs").glob("*.md")),
     *sorted((ROOT / "docs" / "tutorials").glob("*.md")),
-    *(it for it in sorted((ROOT / "docs" / "contributing").glob("*.md")) if it.stem not in MEASURED),
+    *(
+        it
+        for it in sorted((ROOT / "docs" / "contributing").glob("*.md"))
+        if it.stem not in MEASURED
+    ),
 )
 # Texts of the code that are no message: XML, Python, the examples of rules, a list of words.
 NO_MESSAGE = re.compile(
