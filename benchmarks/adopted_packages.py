@@ -125,9 +125,9 @@ def ours(folder: Path, given: dict[str, str]) -> str:
         return f"refused: {str(error)[:200]}"
     if not made.argument:
         return f"has {sorted(set(made.already.values()))} already"
-    names = ", ".join(os.path.basename(it) for it in made.proved[:4])
+    names = ", ".join(os.path.basename(it) for it in made.verified[:4])
     return (
-        f"{made.argument}, {made.namespace or '-'}: {len(made.proved)} proved ({names}),"
+        f"{made.argument}, {made.namespace or '-'}: {len(made.verified)} proved ({names}),"
         f" {len(made.after)} files,"
         f" {len(made.left)} left, {len(made.unread)} unread, {len(made.already)} already"
     )

@@ -204,7 +204,7 @@ def test_files_of_the_repository_are_at_its_host(read: dict[Path, Html], site: P
 def test_every_public_call_is_explained(read: dict[Path, Html], site: Path) -> None:
     ids = read[site / "api" / "index.html"].ids
     assert {f"multibot_rewrite.{it}" for it in multibot_rewrite.__all__} <= ids
-    assert "multibot_rewrite.Rewrite.not_proved" in ids
+    assert "multibot_rewrite.Rewrite.not_verified" in ids
     assert "Raises InputError" in (site / "api" / "index.html").read_text()
 
 
