@@ -57,8 +57,8 @@ KINDS: Mapping[str, FileKind] = {
     MESH: FileKind("a mesh", "give the description that names it"),
     MANIFEST: FileKind("the package.xml of a package", "use multibot init with its folder"),
     CONFIG: FileKind("the model.config of a model", "give the model.sdf that it names"),
-    BUILT: FileKind("the list of what a build wrote", "use plan.yaml or fleet.launch.py beside it"),
-    RULES: FileKind("the remap rules of a fleet", "use plan.yaml beside it"),
+    BUILT: FileKind("the list of what a build wrote", "use plan.yaml or fleet.launch.py in the same folder"),
+    RULES: FileKind("the remap rules of a fleet", "use plan.yaml in the same folder"),
 }
 # Of XML: how the root begins; comments and declarations are left out before.
 _ROOT = rb"\A\s*(?:<!DOCTYPE[^<>\[]*(?:\[[^\]]*\]\s*)?>\s*)?<"

@@ -82,7 +82,7 @@ class Layout(NamedTuple):
 
 
 LAYOUTS = (
-    Layout("tf-per-robot", "L1", False, True, True, "tf topic per robot, bare frames"),
+    Layout("tf-per-robot", "L1", False, True, True, "tf topic per robot, frames without the robot's name"),
     Layout("frames-per-robot", "L2", True, False, True, "one /tf, frames per robot"),
     Layout("both", "L3", True, True, True, "tf topic and frames per robot"),
     Layout("postfix", "L4", True, True, False, "everything renamed per robot, no namespaces"),

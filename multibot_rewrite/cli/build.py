@@ -19,7 +19,7 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside, with_coverage
 from multibot_rewrite.cli.usage import asked_number
 from multibot_rewrite.cli.walk import check_link, is_same_file
-from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.build import make_outputs
@@ -75,8 +75,8 @@ def run(options: argparse.Namespace) -> int:
         found = output_changes(files, known, there)
         if options.check:
             return _stale(options, found)
-        why = not_proved({*made.findings, *plan.fleet.table.problems})
-        end = f"; not proved: {', '.join(why)}" if why else ""
+        why = not_verified({*made.findings, *plan.fleet.table.problems})
+        end = f"; not verified: {', '.join(why)}" if why else ""
         end = f"{end}{facts_of_release(plan.file.distro, plan.file.why)}"
         return _written(options, files, found, held, end)
 

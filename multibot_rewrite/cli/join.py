@@ -47,8 +47,8 @@ def _join(options: argparse.Namespace) -> int:
     _deliver(options, made, parts)
     for it in (*map(str, made.findings), *made.notes):
         note(options, it)
-    why = ", ".join(made.not_proved)
-    end = f"joined, not proved: {why}" if why else "joined; proved"
+    why = ", ".join(made.not_verified)
+    end = f"joined, not verified: {why}" if why else "joined; verified"
     note(options, f"{', '.join(made.parts)}: {end}")
     return DONE
 

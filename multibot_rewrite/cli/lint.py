@@ -131,7 +131,7 @@ def _check_selecting(options: argparse.Namespace, paths: Sequence[str]) -> None:
     check_xacro(options, paths)
     alone = (".urdf", ".xacro", ".sdf")
     if options.urdf and all(it.endswith(alone) and ".srdf" not in it for it in paths):
-        raise UsageError("--urdf is for an SRDF or a file beside a description, and there is none")
+        raise UsageError("--urdf is for an SRDF or a related file; no such file is given")
 
 
 def _check_shared(

@@ -268,12 +268,12 @@ def deliver_changed(
     deliver(options, b"".join(patches))
 
 
-def proof_words(unread: Mapping[str, str]) -> str:
-    """Return the word for a change that is proved, with how many descriptions were not read for it."""
-    return f"proved, {plural(len(unread), 'description')} not read" if unread else "proved"
+def verified_words(unread: Mapping[str, str]) -> str:
+    """Return the word for a change that is verified, with how many descriptions were not read for it."""
+    return f"verified, {plural(len(unread), 'description')} not read" if unread else "verified"
 
 
 def note_unread(options: argparse.Namespace, unread: Mapping[str, str]) -> None:
     """Name the descriptions that could not be read, each with the reason."""
     for path, why in unread.items():
-        note(options, f"not looked at: {why or path}")
+        note(options, f"not checked: {why or path}")

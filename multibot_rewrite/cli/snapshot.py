@@ -184,7 +184,7 @@ def write_nodes(options: argparse.Namespace, graph: System) -> int:
         deliver(options, to_nodes_yaml(learned, stack, library).encode(), editors.NODES)
     for remark in remarks:
         note(options, f"note: {remark}")
-    shape = "NoDL" if as_nodl else f"stack {stack}"
+    shape = "NoDL" if as_nodl else f"node set {stack}"
     what = f"{plural(len(learned), 'node')} learned as {shape}"
     note(options, f"{what}{facts_of_release(release)}")
     return live.INCONCLUSIVE if doubtful else DONE

@@ -103,7 +103,7 @@ def some_of(known: Collection[str]) -> Callable[[str], list[str]]:
 def word(text: str) -> str:
     """One word, as the name of a stack is."""
     if not _WORD.fullmatch(text):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a name of a stack, give one word")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a name of a node set, give one word")
     return text
 
 

@@ -21,7 +21,7 @@ from multibot_rewrite.companions.joined import (
     part_moveit,
     part_rviz,
 )
-from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, ReadPart, prefixing
@@ -63,10 +63,10 @@ class Joined(NamedTuple):
         return self.data.decode()
 
     @property
-    def not_proved(self) -> tuple[str, ...]:
+    def not_verified(self) -> tuple[str, ...]:
         """Why a name may lack its prefix, with counts, as ``1 plugin not known``; empty where the join
-        is proved. Raises nothing."""
-        return not_proved(self.findings)
+        is verified. Raises nothing."""
+        return not_verified(self.findings)
 
 
 @checked

@@ -19,7 +19,7 @@ from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.problem import to_findings
-from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.readback.meeting import OPENED
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
 from multibot_rewrite.description.sources.job import Job, read_job, read_jobs
@@ -87,10 +87,10 @@ class Rewrite(NamedTuple):
         return self.data.decode()
 
     @property
-    def not_proved(self) -> tuple[str, ...]:
+    def not_verified(self) -> tuple[str, ...]:
         """Why the robots may meet, with counts, as ``1 topic shared by all robots``; empty where the
-        rewrite is proved. Raises nothing."""
-        return not_proved(self.findings)
+        rewrite is verified. Raises nothing."""
+        return not_verified(self.findings)
 
     @property
     def distro(self) -> str:
@@ -129,7 +129,7 @@ def rewrite(
     distro: str = "",
     world_systems: str | None = None,
 ) -> Rewrite:
-    """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
+    """Rewrite a robot description for ``robot`` and prove it; ``.not_verified`` says what is open.
 
     ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``) or bytes; a path
     ending in ``.xacro`` is expanded. The options are those of ``rewrite_all``. In a launch file:

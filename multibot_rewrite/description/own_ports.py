@@ -175,7 +175,7 @@ def _edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:
 
 
 def without_numbers(source: bytes, file: str, robot: str, tree: Tree) -> bytes:
-    """The text of a robot with the numbers that it had before, proved by numbering it again; raises
+    """The text of a robot with the numbers that it had before, verified by numbering it again; raises
     InputError for one that was edited by hand."""
     document = read_document(source, file)
     edits = sorted(_taken_out(document, robot), key=lambda it: it.start)

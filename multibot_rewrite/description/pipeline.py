@@ -83,13 +83,13 @@ def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:
     """An SRDF names what its URDF declares: neither makes sense without the other."""
     file = inventory.document.file
     if inventory.format == SRDF and not urdf_declarations:
-        raise InputError(f"{file}: an SRDF is rewritten beside its URDF: add --urdf robot.urdf")
+        raise InputError(f"{file}: an SRDF is rewritten together with its URDF: add --urdf robot.urdf")
     if inventory.format != SRDF and urdf_declarations:
-        raise InputError(f"{file}: only an SRDF has a URDF beside it: leave out --urdf")
+        raise InputError(f"{file}: only an SRDF needs a URDF: leave out --urdf")
 
 
 def render(prepared: Template, robots: Sequence[str], again: bool = False) -> Iterator[bytes]:
-    """The text for each robot in turn, the first one proved.
+    """The text for each robot in turn, the first one verified.
 
     The others differ from it in nothing but the robot's name at the same places; that no two names
     become one is checked for all of them before the first is returned.
@@ -140,7 +140,7 @@ def strip(
     urdf_declarations: Declared = NOTHING,
     before: bytes = b"",
 ) -> bytes:
-    """Undo a rewrite for ``robot``; the result is proved by rewriting it again.
+    """Undo a rewrite for ``robot``; the result is verified by rewriting it again.
 
     ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares. ``before`` is
     what the robot's own xacro arguments make, where the naming has names of these.

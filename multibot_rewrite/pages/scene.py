@@ -198,7 +198,7 @@ def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRo
         node = plan.node.get(finding.node)
         if not place and node is not None:
             # Where a planned node is from: its plugin, a file, or its stack.
-            stack = f"stack {node.stack}" if node.stack else ""
+            stack = f"node set {node.stack}" if node.stack else ""
             place = str(node.plugin) or str(node.place) or stack
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 

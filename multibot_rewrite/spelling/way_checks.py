@@ -190,7 +190,7 @@ def _finding(it: Delivery, kept: list[str], release: str) -> Finding:
     hint = f"give its rules to the process of {node.fact.host or node.name}"
     if node.process_wide and controller_way(release).spawner:
         message = f"on {release} its controllers do not get its rules for {names}"
-        hint = "name their stack, and start each with its spawner's --controller-ros-args"
+        hint = "name their node set, and start each with its spawner's --controller-ros-args"
     elif it.way == PLUGIN:
         message = f"on {release} it gets the rules of the first robot alone, none for {names}"
         hint = "give each robot a namespace, with --topics namespace"

@@ -141,7 +141,7 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
         (
             TWO + "running: /robot1/arm\nrunning: /robot1/driver",
             ["MG109 none of the 1 nodes of robot2 is in the graph; is the robot started, and with"
-             " this ROS_DOMAIN_ID? Only this machine is looked at: range LOCALHOST, no"
+             " this ROS_DOMAIN_ID? Only this machine is checked: range LOCALHOST, no"
              " ROS_STATIC_PEERS"],
         ),
         (

@@ -360,7 +360,7 @@ ELSEWHERE = (
         ),
         (
             (WAITS, "/robot1/amcl subscribes /robot1/imu sensor_msgs/msg/Imu as imu"),
-            ["MG316 no known node sends /robot1/imu, /robot1/scan; name a stack or nodes that do, if"
+            ["MG316 no known node sends /robot1/imu, /robot1/scan; name a node set or nodes that do, if"
              " no driver of its own does"],
         ),
         (
@@ -756,7 +756,7 @@ def reads(frame: str, rest: str, node: str = "planner", level: str = "warning") 
             (STILL, "/robot1/planner looks up odom", f"/robot1/planner subscribes /robot1/tf {TF}"),
             reads(
                 "odom",
-                "no known node sends it; name the node or stack that sends it",
+                "no known node sends it; name the node or node set that sends it",
                 level="note",
             ),
         ),

@@ -76,5 +76,5 @@ def examples(rule: Rule) -> list[tuple[str, str]]:
     page = rule.page
     good = "" if page.good == page.fixed else page.good
     texts = (("Bad", page.bad), ("Fixed by --fix", page.fixed), ("Good", good))
-    beside = ((f"Beside it, {name}", text) for name, text in page.beside.items())
+    beside = ((f"With it, {name}", text) for name, text in page.beside.items())
     return [(title, text) for title, text in (*texts, *beside) if text.strip()]

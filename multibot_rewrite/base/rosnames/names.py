@@ -107,7 +107,7 @@ def _braces_and_letters(name: str) -> NameFault | None:
 def _first_letters(name: str) -> NameFault | None:
     # Two characters, as "~a", pass: rcl never looks at the last one here.
     if name[0] == "~" and len(name) > 2 and name[1] != "/":
-        return _at(name, 1, "follows '~', after which only a slash may stand")
+        return _at(name, 1, "follows '~', which only a slash may follow")
     for at, (letter, following) in enumerate(pairwise(name), 1):
         if letter == "/" and following in _DIGITS:
             return _digit_first(name, at)

@@ -182,7 +182,7 @@ def _bare_headers(document: YamlText) -> Iterator[Finding]:
     if found:
         names = ", ".join(it.name or it.cls for it in found)
         message = (
-            f"in the window for all robots nothing is shown by {names}: headers have bare frames"
+            f"in the window for all robots nothing is shown by {names}: frames in headers are without the robot's name"
         )
         hint = "each robot has a window for it; or take layout both"
         yield found_at(document, found[0].node, BARE_HEADERS, message, hint)

@@ -63,7 +63,7 @@ def _left_out(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
                 f"{title} is left out: it works only for the robot whose namespace rviz2 runs in"
             )
             hint = (
-                "name the stack rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
+                "name the node set rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
             )
             if one.flag == ABSOLUTE:
                 hint = (

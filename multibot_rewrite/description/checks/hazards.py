@@ -135,7 +135,7 @@ def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
         without = kind != "" and element.tag == "ros2_control" and element.find(kind) is None
         if kind in declared and kind not in naming.separators and not without:
             message = (
-                f"{section.names[0]} looks {kind}s up by bare name in the whole world: "
+                f"{section.names[0]} looks up {kind}s in the whole world without the robot's name: "
                 "it may find that of another robot"
             )
             hint = f"use --layout both, which renames {kind}s for each robot"

@@ -246,7 +246,7 @@ def as_problem(mention: Mention) -> Problem:
     where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
     text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
     message = f"{text}, but its use here is not known: it is not renamed"
-    hint = "add a line to a vocabulary file: a uses/declares site, or keep"
+    hint = "add a line to a file of plugin definitions: uses or declares for a name, keep for other text"
     if any(it.tag == PLUGIN and not is_loaded(it) for it in element.iterancestors()):
         message = f"{text}, in a <plugin> that nothing loads here: it is not renamed"
         hint = "move the <plugin> into a <gazebo>"

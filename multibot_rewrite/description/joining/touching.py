@@ -71,7 +71,7 @@ def _pinocchio() -> Any:
     try:
         return import_module("pinocchio")
     except ImportError as error:
-        what = "random poses are looked at by pinocchio, which is not installed"
+        what = "random poses need pinocchio, which is not installed"
         raise UsageError(f"{what}; pip install pin, or leave out samples ({error})") from None
 
 

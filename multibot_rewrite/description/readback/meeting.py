@@ -141,7 +141,7 @@ def said(who: str, *names: RuntimeName) -> str:
     name, by = names[0], " and ".join(dict.fromkeys(it.path for it in names))
     if code_of(name) == LOOKUP:
         return (
-            f"the {name.kind} {name.name!r} is looked up by bare name in the whole world: "
+            f"the {name.kind} {name.name!r} is looked up in the whole world without the robot's name: "
             "it may find that of another robot"
         )
     return f"{who} have the {name.kind} {name.name!r} ({by})"

@@ -74,7 +74,7 @@ def left_to_world(document: Document, left: Systems) -> Iterator[Finding]:
 
 
 def put_back(source: bytes, file: str, tree: Tree) -> bytes:
-    """The inverse, proved by doing it again; raises InputError where that makes another text."""
+    """The inverse, verified by doing it again; raises InputError where that makes another text."""
     whole = _ASIDE.sub(lambda it: it[1].replace(_WRITTEN, _DASHES), source)
     if whole != source and set_aside(whole, file, tree)[0] != source:
         what = "a comment 'left to the world' is not what a rewrite writes"

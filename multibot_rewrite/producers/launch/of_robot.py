@@ -76,7 +76,7 @@ NOTHING: Mapping[str, HandedOn] = {}
 QOS = "qos_overrides."
 NO_QOS: Mapping[str, object] = {}
 _SPAWNED = (
-    "{} puts something beside the robot into the simulator, which is not started; add it to a world"
+    "{} spawns something in addition to the robot, which is not started; add it to a world"
 )
 
 

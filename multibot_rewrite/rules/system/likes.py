@@ -151,7 +151,7 @@ def _lost_ends(
         others = {it.node for name in own for it in at_work(ends_of(seen, name))} - {node}
         wait = f"; {shorten(sorted(others), SEVERAL)} has it in vain" if others else ""
         yield lacks_what_its_likes_have.finding(
-            f"lacks {shorten(own, SEVERAL)} beside {theirs[0].node}, which {does}{wait}",
+            f"lacks {shorten(own, SEVERAL)}; {theirs[0].node} {does}{wait}",
             "a remap rule, a parameter or a version of its own?",
             robot=robot, node=node, names=own,
         )  # fmt: skip
