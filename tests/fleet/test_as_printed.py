@@ -159,7 +159,7 @@ def test_a_process_of_a_launch_is_printed_as_planned(tmp_path: Path) -> None:
     assert differences(LAUNCHED._replace(robots=robots), text, tmp_path / "out")
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_one_simulator_and_one_domain(tmp_path: Path) -> None:
     """Other constants of the file: only gz, no domain, no default clock."""
     starts = ALL._replace(simulators=(GZ,), domains={}, use_sim_time=False)

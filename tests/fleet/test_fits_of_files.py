@@ -89,6 +89,7 @@ def is_as_planned(folder: Path) -> bool:
     )
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize("layout", ["both", "frames-per-robot"])
 def test_nav2_drives_a_controller(release: str, layout: str, tmp_path: Path) -> None:
@@ -194,6 +195,7 @@ REAL = DRIVEN.replace("gz_ros2_control/GazeboSimSystem", "acme/Driver")
 BARE = f"{REAL[: REAL.index('<gazebo>')]}</robot>"
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", ["postfix", "both"])
 @pytest.mark.parametrize("stack", ["controllers", "gz_ros2_control"])
 @pytest.mark.parametrize(
@@ -235,6 +237,7 @@ MUX = """twist_mux:
 """
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("stack", ["nav2", "[nav2, teleop]", "[navigation, twist_mux]"])
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize(
