@@ -72,7 +72,7 @@ class Adopted(NamedTuple):
     by path, empty for a new one; ``verified`` are the descriptions that take it, ``left`` is what could
     not be changed, ``unread`` are descriptions that could not be read, with the reason. ``already`` are
     those that have such an argument, with its name: they stay. ``launches`` are the launch files that
-    are verified to hand it on, ``configurations`` those that were verified besides the one by default, as
+    are verified to hand it on, ``configurations`` those that were verified besides the default one, as
     ``robot.urdf.xacro gripper:=true``. ``namespace`` is the argument for a namespace, empty where
     nothing needs one, ``spaced`` the descriptions that take it."""
 
@@ -217,7 +217,9 @@ def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _
             verified, wrong = (), (Left(found[0].path, f"it gets no namespace: {error}"),)
         left += wrong
         if verified:
-            return made._replace(left=(*made.left, *left), namespace=space.argument, spaced=verified)
+            return made._replace(
+                left=(*made.left, *left), namespace=space.argument, spaced=verified
+            )
     made, _ = _made(found, texts, prefix, job.how)
     return made._replace(left=(*made.left, *left))
 

@@ -454,7 +454,9 @@ def test_a_plugin_that_is_not_known_takes_the_word_proved(
     inside = link("a") + '<gazebo><plugin filename="libmine.so" name="m"><x>a</x></plugin></gazebo>'
     made = join([Part(robot(link("base"))), Part(robot(inside), "base", prefix="p_")])
     assert made.not_verified == ("1 name not understood", "1 plugin not known")
-    assert join([Part(robot(link("base"))), Part(robot(inside), "base", name="n")]).not_verified == ()
+    assert (
+        join([Part(robot(link("base"))), Part(robot(inside), "base", name="n")]).not_verified == ()
+    )
     for name, text in (("base", link("base")), ("part", inside)):
         (tmp_path / f"{name}.urdf").write_text(robot(text))
     words = [str(tmp_path / "base.urdf"), str(tmp_path / "part.urdf"), "--at", "base"]
