@@ -85,7 +85,7 @@ def read_start(path: str, most: int) -> bytes:
 
 def _refuse_pipe(path: str) -> None:
     if stat.S_ISFIFO(os.stat(path).st_mode) and not path.startswith(_OF_A_SHELL):
-        raise OSError(errno.EINVAL, "it is a pipe: who reads it may wait for ever", path)
+        raise OSError(errno.EINVAL, "it is a pipe, and reading it may never end: give a file", path)
 
 
 def bytes_if_read(path: str) -> bytes:

@@ -148,7 +148,7 @@ def _written(
 def _default(
     source: bytes, starts: Mapping[_Element, int], host: _Element, opened: grammar.Opened
 ) -> Iterator[Port]:
-    """One that is not written is put first into its plugin, or into what is there of the path."""
+    """Yield a port that the file leaves to its default, to be inserted into its plugin."""
     *above, last = grammar.split_path(opened.path)[0]
     inside = next(elements_at(host, tuple(above)), None)
     start = 0 if inside is None else starts[inside]

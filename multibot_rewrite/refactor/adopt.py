@@ -64,7 +64,7 @@ from multibot_rewrite.refactor.source_edits import (
 
 _PARTS = ("link", "joint")
 TRIED = "robot1_"
-_ALONE = "no place for the prefix changes names alone"
+_ALONE = "wherever the prefix is put, it changes more than names"
 
 
 class Adopted(NamedTuple):
@@ -100,7 +100,7 @@ def adopt(
 ) -> Adopted:
     """Give every description of ``folder`` an argument for a prefix, in its xacro sources; a plain URDF
     becomes a xacro. Writes nothing. Raises InputError where there is no description that can be
-    expanded, or no place for the prefix changes names alone."""
+    expanded, or wherever the prefix is put, it changes more than names."""
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)

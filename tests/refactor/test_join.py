@@ -144,7 +144,7 @@ def test_controller_managers_of_two_simulators_both_stay_and_a_line_says_so() ->
         "gz_ros2_control-system",
         "libgazebo_ros2_control.so",
     ]
-    assert "makes a controller manager, and another plugin before it does, too" in made.notes[0]
+    assert "makes a controller manager, and so does an earlier plugin" in made.notes[0]
 
 
 def test_what_is_said_of_the_whole_robot_is_said_once_and_other_settings_are_told() -> None:

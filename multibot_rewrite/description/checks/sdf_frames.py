@@ -73,10 +73,10 @@ class Frames(NamedTuple):
             raise InputError(f"{self.source}: the pose of {name!r} depends on itself")
         written = it.element.find("pose")
         relative = "" if written is None else written.get("relative_to", "")
-        base = it.within(relative or self._base(it))
+        base = it.within(relative or self._attached_to(it))
         return placed(self.pose(base, (*below, name)), written_pose(written))
 
-    def _base(self, it: Named) -> str:
+    def _attached_to(self, it: Named) -> str:
         if it.tag == "joint":
             return it.text("child")
         return it.element.get("attached_to", "") or MODEL
@@ -92,7 +92,7 @@ class Frames(NamedTuple):
                 canonical = it.element.get("canonical_link", "")
                 name = f"{name}::{canonical}" if canonical else first.name
             else:
-                name = it.within(self._base(it))
+                name = it.within(self._attached_to(it))
         return name
 
 

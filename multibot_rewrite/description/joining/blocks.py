@@ -61,7 +61,7 @@ def said_once(joined: Inventory, part: Inventory) -> Once:
             if first is None:
                 name, where = plugin.get("filename", ""), f"{file}:{plugin.sourceline}"
                 what = f"{name!r} makes a controller manager"
-                notes.append(f"{where}: {what}, and another plugin before it does, too")
+                notes.append(f"{where}: {what}, and so does an earlier plugin")
                 continue
             doubles.append(plugin)
             more += _more_files(before, first, plugin, spans)

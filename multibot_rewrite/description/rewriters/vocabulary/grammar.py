@@ -168,7 +168,7 @@ def read_section(
         if not words or row.startswith("#") or words[1:2] == [VALUE]:
             continue
         if words[0].endswith(":"):
-            _setting(settings, f"{file}:{number}", words)
+            _add_setting(settings, f"{file}:{number}", words)
             continue
         site = _site(f"{file}:{number}", section, number, row)
         before = at_path.setdefault(site.path, [])
@@ -237,7 +237,7 @@ def _tags(sites: Iterable[SiteRow]) -> frozenset[str]:
     return frozenset(split_step(steps[0])[0] for steps in paths)
 
 
-def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
+def _add_setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     key = words[0][:-1]
     if key not in SETTINGS:
         raise VocabularyError(f"{place}: unknown setting {key!r}, use one of {', '.join(SETTINGS)}")
