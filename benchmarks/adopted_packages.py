@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Packages that got a prefix by hand, as they were before, under ``multibot adopt``, beside the commit.
 
-``python benchmarks/adopted_packages.py MIRRORS`` prints what docs/contributing/measurements.md has a table of;
-commits behind it are those that are looked at.
+``python benchmarks/adopted_packages.py MIRRORS`` prints the figures of one section of
+docs/contributing/measurements.md; commits behind it are those that are looked at.
 MIRRORS has clones, ``OWNER+NAME/repo``.
 """
 

@@ -116,7 +116,7 @@ BY_HAND = ("teleop_twist_keyboard", "rviz2")
 
 
 def tool_patterns() -> tuple[str, ...]:
-    """The patterns of all tools, without those inside another."""
+    """Return the name patterns of all tools, without those inside another pattern."""
     from fnmatch import fnmatchcase  # few commands ask for a pattern
 
     every = [it.pattern for it in TOOLS]
@@ -134,7 +134,7 @@ def is_tool_word(word: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def only_looks(word: str) -> bool:
-    """Does a node called so only look, or pass on what a person asks for?"""
+    """Return whether a node of this name only observes, or passes on what a person asks for."""
     return _any_of(tuple(it.pattern for it in TOOLS if it.looks)).fullmatch(word) is not None
 
 
@@ -146,7 +146,7 @@ def _any_of(patterns: tuple[str, ...]) -> re.Pattern[str]:
 
 
 def types_of(word: str) -> tuple[str, ...]:
-    """The types of messages, or how they begin, of which a convention says this."""
+    """Return the message types, or their beginnings, that a convention lists for this word."""
     return tuple(type_ for (type_, *said), _ in _ROWS["types"] if word in said)
 
 
@@ -178,13 +178,13 @@ _CHOOSES = lazy_compile(r"mux|prioriti|arbit|selector|switch|twist_manager")
 
 
 def team(node: str) -> str:
-    """The node's name, or that of the nodes that it takes turns with."""
+    """Return the node's name, or the name of the nodes that it takes turns with."""
     last = node.rpartition("/")[2]
     return next((name for name, nodes in TEAMS.items() if _any_of(nodes).fullmatch(last)), node)
 
 
 def chooses(node: str) -> bool:
-    """Does the node choose between several senders, like twist_mux?"""
+    """Return whether the node chooses between several senders, like twist_mux."""
     return bool(_CHOOSES.search(node.rpartition("/")[2]))
 
 

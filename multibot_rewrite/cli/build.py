@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
-    """The files that a build was made from."""
+    """Return the files that a build was made from, by path."""
     paths = {path for it in files for path in it.sources} | set(plan.file.files)
     paths |= {it.interface for it in plan.fleet.facts if it.interface}
     for it in plan.file.robots:
@@ -105,7 +105,7 @@ def _check_folder(folder: str) -> None:
 
 
 def _known(folder: str) -> dict[str, str]:
-    """What is a build's: what the last one made, and what one that was killed has made of it."""
+    """Return hashes of the files that the last build made, and that a killed build has made so far."""
     found = _of_manifest(folder, MANIFEST)
     begun = _of_manifest(folder, NOTE)
     there = _there(folder, begun)

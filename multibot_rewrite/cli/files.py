@@ -103,7 +103,7 @@ def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
 
 
 def _target(path: str) -> tuple[str, int]:
-    """The file behind ``path``, links followed, and its mode; 0 where there is none yet."""
+    """Return the file at ``path`` with links resolved, and its mode; 0 if there is none yet."""
     try:
         mode = os.lstat(path).st_mode
     except FileNotFoundError:
@@ -144,7 +144,7 @@ def see_on_disk(path: str) -> None:
 
 @contextmanager
 def explained(path: str) -> Iterator[None]:
-    """What the system refuses in the block is a UsageError about ``path``, in one line."""
+    """Turn an OSError of the block into a one-line UsageError about ``path``."""
     try:
         yield
     except OSError as error:
@@ -157,7 +157,7 @@ def explained(path: str) -> Iterator[None]:
 
 
 def existing_folder(path: str) -> str:
-    """The nearest of the folders above ``path`` that is there; it may turn out to be a file."""
+    """Return the nearest existing path above ``path``; it may turn out to be a file."""
     above = os.path.dirname(path) or "."
     while not os.path.lexists(above):
         above = os.path.dirname(above) or "."

@@ -172,7 +172,7 @@ def _write_all(folder: str, stage: str, write: Mapping[str, bytes]) -> None:
 
 
 def _mode(path: str) -> int:
-    """The mode bits of a file that is there; 0 for none."""
+    """Return the mode bits of an existing file; 0 for none."""
     try:
         return stat.S_IMODE(os.lstat(path).st_mode)
     except OSError:
@@ -180,7 +180,7 @@ def _mode(path: str) -> int:
 
 
 def _exchange(stage: str, folder: str) -> None:
-    """The new folder takes the old one's place, in one step."""
+    """Replace the old folder by the new one, in one step."""
     if not os.path.lexists(folder):
         with explained(folder):
             os.rename(stage, folder)
@@ -194,7 +194,7 @@ def _exchange(stage: str, folder: str) -> None:
 
 
 def _bring_late(stage: str, folder: str, but: Collection[str]) -> None:
-    """What somebody put into the old folder while the new one was made."""
+    """Move files into the new folder that somebody put into the old one meanwhile."""
     if not os.path.isdir(stage):
         return
     for path, entry in list(_walk(stage)):

@@ -154,7 +154,7 @@ def _row(site: SiteRow, section: VocabularySection) -> tuple[str, ...]:
 
 
 def as_json(section: VocabularySection) -> dict[str, object]:
-    """A section as ``--form json`` writes it; docs/stacks.md describes it."""
+    """Return a section as ``--form json`` writes it; docs/stacks.md describes it."""
     return {
         "type": section.type,
         "names": section.names,
@@ -288,7 +288,7 @@ def try_arguments(options: argparse.Namespace, words: Sequence[str]) -> int:
 
 
 def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
-    """The one word, which is a xacro file; raises UsageError."""
+    """Return the only word, which is a xacro file; raises UsageError."""
     missing = next((it for it in words if not os.path.lexists(it)), None)
     if missing is not None:
         raise UsageError(f"{missing}: there is no such file or folder")
@@ -305,7 +305,7 @@ def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
 
 
 def arguments_report(found: XacroArguments) -> Iterator[str | Grid]:
-    """What is printed of a xacro's arguments."""
+    """Yield the lines and tables about a xacro's arguments."""
     rows: list[tuple[str, ...]] = []
     for it in found.arguments:
         first = it.name, clip(it.default)

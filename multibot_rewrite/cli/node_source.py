@@ -69,7 +69,7 @@ def _details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
 
 
 def _near(text: str, folder: str) -> str:
-    """A place as it is below the package."""
+    """Return a place relative to the package."""
     return text.replace(os.path.join(os.path.realpath(folder), ""), "")
 
 

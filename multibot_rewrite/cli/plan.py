@@ -77,7 +77,7 @@ def _write(options: argparse.Namespace, plan: System) -> None:
 
 
 def _of_launch(options: argparse.Namespace) -> int:
-    """The plan of what a launch file starts; what is not known of it is said."""
+    """Write the plan of what a launch file starts; returns the exit code."""
     given = given_options(options, NOT_OF_LAUNCH)
     if given or options.form != PLAN:
         what = given[0] if given else "--form"

@@ -92,7 +92,7 @@ def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
 
 
 def report(snapshot: System) -> Iterator[str | Grid]:
-    """What is printed: how it was looked, a row a node, a tf topic, a header, a node's answer."""
+    """Yield lines and tables of a snapshot: nodes, tf topics, headers, answers of nodes."""
     yield _headline(snapshot)
     # Small numbers in place of the process groups; nothing where the group is not known.
     groups = sorted({node.process for node in snapshot.nodes} - {""})

@@ -103,8 +103,8 @@ def join(
 
 
 def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Joined:
-    """The same for what reads the result at once: without comments of the join, and refused where a
-    name has no prefix. Raises InputError that names ``place``."""
+    """Return the joined parts without comments of the join, refused if a name lacks a prefix. Raises
+    InputError that names ``place``."""
     given, _ = plain_texts(parts, trust)
     try:
         made = join_texts(given, tree)
@@ -149,8 +149,8 @@ def _with_beside(
 
 @checked
 def split(source: Source, *, vocabulary: Iterable[str] = (), distro: str = "") -> dict[str, bytes]:
-    """The parts of what ``join`` made, by name, as they were. Raises InputError for a text that no
-    join made or that was edited where a part cannot be known any more."""
+    """Return the parts that ``join`` joined, by name, as they were. Raises InputError for a text that
+    no join made, or that was edited so that a part cannot be recognised."""
     read_in = read_whole(source, {})
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     return split_text(read_in.data, read_in.file, tree)

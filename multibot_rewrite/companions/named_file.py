@@ -59,7 +59,7 @@ def _text_of(path: str) -> bytes | None:
 
 
 def kind_of(data: bytes) -> str:
-    """The kind of a file by its text; empty for all others."""
+    """Return the kind of a file by its contents; empty for all others."""
     return next((kind for kind, mark in BESIDE if mark.search(data)), "")
 
 

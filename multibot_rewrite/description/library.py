@@ -267,12 +267,12 @@ def explain(
     trust: bool = False,
     distro: str = "",
 ) -> list[Explanation]:
-    """What is known about the values that start on ``line``, and what they become for ``robot``; of a
-    xacro, about those that something on this line makes, and of which pieces: an element, the call of a
-    macro, a property. Of a file that others include, it is what the line makes in one of them.
+    """Return what is known about the values that start on ``line``, and their names for ``robot``.
 
-    The options are those of ``rewrite_all``. A description that a rewrite refuses is explained all
-    the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
+    Of a xacro it is about the values that something on this line makes, and from which pieces: an
+    element, the call of a macro, a property. Of a file that others include, it is what the line makes
+    in one of them. The options are those of ``rewrite_all``. A description that a rewrite refuses is
+    explained all the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)

@@ -173,7 +173,9 @@ def _check_options(word: str, options: Mapping[str, Any]) -> None:
     """Raises UsageError for options that the fleet decides."""
     for it in FROM_THE_FLEET:
         if it in options:
-            first = f'write {word}("amcl") with the name in its node set, and ' if it == "name" else ""
+            first = (
+                f'write {word}("amcl") with the name in its node set, and ' if it == "name" else ""
+            )
             raise UsageError(f"{word}: {it} comes from the fleet file; {first}remove {it}=")
 
 

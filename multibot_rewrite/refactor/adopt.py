@@ -64,7 +64,7 @@ from multibot_rewrite.refactor.source_edits import (
 
 _PARTS = ("link", "joint")
 TRIED = "robot1_"
-_ALONE = "no place for the prefix changes names alone"
+_ALONE = "wherever the prefix is put, it changes more than names"
 
 
 class Adopted(NamedTuple):
@@ -72,7 +72,7 @@ class Adopted(NamedTuple):
     by path, empty for a new one; ``verified`` are the descriptions that take it, ``left`` is what could
     not be changed, ``unread`` are descriptions that could not be read, with the reason. ``already`` are
     those that have such an argument, with its name: they stay. ``launches`` are the launch files that
-    are verified to hand it on, ``configurations`` those that were verified besides the one by default, as
+    are verified to hand it on, ``configurations`` those that were verified besides the default one, as
     ``robot.urdf.xacro gripper:=true``. ``namespace`` is the argument for a namespace, empty where
     nothing needs one, ``spaced`` the descriptions that take it."""
 
@@ -100,7 +100,7 @@ def adopt(
 ) -> Adopted:
     """Give every description of ``folder`` an argument for a prefix, in its xacro sources; a plain URDF
     becomes a xacro. Writes nothing. Raises InputError where there is no description that can be
-    expanded, or no place for the prefix changes names alone."""
+    expanded, or wherever the prefix is put, it changes more than names."""
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
@@ -217,7 +217,9 @@ def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _
             verified, wrong = (), (Left(found[0].path, f"it gets no namespace: {error}"),)
         left += wrong
         if verified:
-            return made._replace(left=(*made.left, *left), namespace=space.argument, spaced=verified)
+            return made._replace(
+                left=(*made.left, *left), namespace=space.argument, spaced=verified
+            )
     made, _ = _made(found, texts, prefix, job.how)
     return made._replace(left=(*made.left, *left))
 

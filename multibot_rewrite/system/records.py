@@ -229,7 +229,7 @@ def edge_of(parent: str, child: str, static: bool = False) -> Edge:
 
 class Heard(NamedTuple):
     """The ``header.frame_id`` of a message that came on ``topic``, stamped ``age`` seconds before; inf
-    for a stamp of 0, and for a clock that does not run, 0 for less than a second or not known. ``rate`` are
+    for a stamp of 0, and for a stopped clock, 0 for less than a second or not known. ``rate`` are
     messages a second, 0 if not known, ``child`` the ``child_frame_id`` of odometry, ``joints`` the
     names in a message about joints, which has no frame, ``back`` by how much a clock went back,
     ``pose`` that of odometry or a pose, as the numbers of an edge; ``link`` is that of the sensor in a

@@ -79,7 +79,8 @@ def test_what_later_repositories_showed_is_on_the_page() -> None:
 def test_the_page_is_up_to_date() -> None:
     """It has the planted defects and healthy oddities as the lint finds them now: each is a row of a
     test of its own, too."""
-    assert f"#{precision_page().strip()}\n" in (ROOT / "docs" / "contributing" / "measurements.md").read_text()
+    page = (ROOT / "docs" / "contributing" / "measurements.md").read_text()
+    assert f"#{precision_page().strip()}\n" in page
 
 
 @pytest.mark.deep

@@ -268,7 +268,7 @@ def described(text: str = "<robot name='r'><link name='a'/></robot>") -> Launche
 
 CREATE = ("ros_gz_sim", "create", "create")
 BESIDE = "name the launch file that starts it in addition to this one, if there is one"
-UNSURE = "a node that is not known may; see what is incomplete"
+UNSURE = "an unknown node may do it: see what is reported as incomplete"
 
 
 def test_a_spawner_without_its_manager(known: Knowledge) -> None:

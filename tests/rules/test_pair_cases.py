@@ -126,7 +126,7 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
         (
             ALONE.format("robot1/laser, "),
             ["MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
-             " no planned node sends its description: is what sends it started?"],
+             " no planned node publishes its description: is the node that does it running?"],
         ),
         (
             ALONE.format("robot1/laser, ") + DESCRIBED,

@@ -898,7 +898,8 @@ PARTS = {
 }
 LACKS_SCAN = (
     "/robot2/lidar: lacks /robot2/scan, which /robot1/lidar has; it is used by"
-    " /robot2/odometer in vain; see its log; a remap rule, a parameter or a version of its own?"
+    " /robot2/odometer in vain; see its log;"
+    " does it have other remap rules, parameters or another version?"
 )
 NO_LIDAR = (
     "robot2: robot2 has no lidar, as robot1 has (/robot1/lidar); /robot2/scan is used by"

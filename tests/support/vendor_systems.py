@@ -2,7 +2,7 @@
 """What vendors' launch files start, against what a plan has: by their own files, and by launch files.
 
     python tests/support/vendor_systems.py [SYSTEM ...]      print each node
-    python tests/support/vendor_systems.py --write           write the figures into docs/contributing/vendors.md
+    python tests/support/vendor_systems.py --write  write the figures into docs/contributing/vendors.md
 
 MULTIBOT_SOURCES names a folder with checkouts of the repositories that ``vendors/*.yaml`` names, under
 these names. Needs launch and launch_ros. The judge is ``launch_recorder.py``: the real launch with

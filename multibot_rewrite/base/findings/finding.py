@@ -125,7 +125,7 @@ class Finding(NamedTuple):
 
 
 def by_place(finding: Finding) -> tuple[str, int, int, str, str, str]:
-    """What findings are sorted by: file, line, column, code and text."""
+    """Return the sort key of a finding: file, line, column, code and text."""
     it = finding
     return it.file, it.line, it.column, it.code, it.message, it.arguments
 
@@ -195,8 +195,8 @@ class Rule(NamedTuple):
         return rule_page(self.examples or self.code)
 
     def finding(self, message: str, hint: str = "", **place: Any) -> Finding:
-        """A finding of this rule; ``place`` are the other fields of ``Finding``; one of a line alone
-        is at its first column."""
+        """Return a finding of this rule. ``place`` are other fields of ``Finding``; one with a line and
+        no column is at its first column."""
         if "line" in place:
             place.setdefault("column", 1)
         level = place.pop("level", self.level)

@@ -25,7 +25,9 @@ from multibot_rewrite.description.steps.collect import SRDF, Inventory
 ANOTHER_RELEASE = (
     "name the release that the description is for with --distro, or distro: in a fleet file"
 )
-SAY_IT = "add it to a file of plugin definitions: a line for each topic and service, or opens: nothing"
+SAY_IT = (
+    "add it to a file of plugin definitions: a line for each topic and service, or opens: nothing"
+)
 NOT_LOADED = "MB112"
 CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 
@@ -98,5 +100,5 @@ def _said(part: ActivePart, vocabulary: Vocabulary, guesses: Guesses) -> tuple[s
 
 
 def not_here(vocabulary: Vocabulary, releases: Iterable[str]) -> str:
-    """That something is in other releases only."""
+    """Return the words for something that is in other releases only."""
     return f"is not in {vocabulary.release}, only in {', '.join(releases)}"

@@ -49,8 +49,8 @@ GIVEN = {
 
 
 def given(findings: Iterable[Finding], of_world: Iterable[str] = ()) -> str:
-    """What the word ``verified`` takes for granted: of controllers, and of the systems that were left to
-    the world; empty where that is nothing."""
+    """Return the conditions of ``verified``: of controllers, and of systems that were left to the
+    world; empty without any."""
     codes = {it.code for it in findings}
     said = [words for code, words in GIVEN.items() if code in codes]
     systems = ", ".join(sorted(set(of_world)))

@@ -92,7 +92,7 @@ def collect(
 
 
 def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], list[Host]]:
-    """The claims and hosts along the tree of one format."""
+    """Return the claims and hosts along the tree of one format."""
     claims: list[Claim] = []
     hosts: list[Host] = []
     nothing: dict[str, TreeNode] = {}
@@ -176,5 +176,5 @@ def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dic
 
 
 def declarations(source: bytes, file: str, tree: Tree) -> Declared:
-    """What a description declares, by kind and name."""
+    """Return the names that a description declares, by kind and name."""
     return collect(read_document(source, file), tree).declared

@@ -102,7 +102,7 @@ def without_camera(plan: FleetPlan) -> Iterator[Finding]:
 
 _NONE = "its description has no camera"
 _TAKE = "take a description with a camera that does, or leave the node set out"
-_HEAR = "say which one in `remaps` of a node set of your own (docs/stacks.md), or leave the node set out"
+_HEAR = "name one in `remaps` of a node set of your own (docs/stacks.md), or leave the node set out"
 
 
 NOTHING_MOVES = declare("MF865", "commands-without-reader", WARNING, formats=("fleet",))

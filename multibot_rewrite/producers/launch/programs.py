@@ -36,7 +36,7 @@ def programs() -> Programs:
     return Programs(**{**data, **sets})
 
 
-_LOOKS = "it only looks, or passes on what a person asks for"
+_LOOKS = "it only shows data or forwards an operator's commands"
 
 
 def once_for_all(node: LaunchedNode) -> str:

@@ -42,7 +42,7 @@ _START_MANAGER = (
     "that starts it in addition to this one"
 )
 _CHANGE, _BOND = "/change_state", "bond"
-_UNSURE = "a node that is not known may; see what is incomplete"
+_UNSURE = "an unknown node may do it: see what is reported as incomplete"
 _ELSEWHERE = "name the launch file that starts it in addition to this one, if there is one"
 
 

@@ -74,7 +74,7 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
 
 @once
 def made_of(seen: Index) -> Mapping[str, MadeOf]:
-    """What each robot is made of."""
+    """Return the nodes and their endpoints of each robot."""
     return {robot: MadeOf(own, _ends(seen, own)) for robot, own in nodes_of_each(seen).items()}
 
 
@@ -314,7 +314,7 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
         hint = "start it for this robot too"
         if there:
             message = f"lacks {shorten(names, SEVERAL)}, which {node} has; it is used by {vain}"
-            hint = "see its log; a remap rule, a parameter or a version of its own?"
+            hint = "see its log; does it have other remap rules, parameters or another version?"
         yield driver_missing.finding(
             message, hint, level=ERROR if seen.is_live else WARNING,
             robot=robot, node=there, names=names,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A hint that is followed ends in "verified": each reason that a user can mend, with what its hint says.
+"""A hint that is followed ends in "verified": each reason that a user can mend, with its hint.
 
 Expected: the word, and that the hint names what was written here (never what the code thinks of it).
 """

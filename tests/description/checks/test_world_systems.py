@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the lint says of all copies leaves a rewrite unverified: systems of the world, absolute names."""
+"""What the lint says of all copies leaves a rewrite unverified: world systems, absolute names."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ class Report(NamedTuple):
 def rendered(
     name: str, findings: Sequence[Finding], report: Report, *, colour: bool = False
 ) -> str:
-    """The report in the format ``name``; ``colour`` is for the text on a terminal."""
+    """Return the report in the format ``name``; ``colour`` is for the text on a terminal."""
     render = getattr(import_module(f"{__name__}.{FORMATS[name]}"), f"as_{name}")
     options = {"colour": colour} if name == "text" else {}
     text: str = render(findings, report, **options)
