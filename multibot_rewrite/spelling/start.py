@@ -26,9 +26,10 @@ _COMMANDS = {("rviz2", "rviz2"): ("rviz2",)}
 
 
 class File(NamedTuple):
-    """The path of a file of the build."""
+    """The path of a file of the build; ``substituted``: the launch replaces the substitutions in it."""
 
     path: str
+    substituted: bool = False
 
 
 class Text(NamedTuple):

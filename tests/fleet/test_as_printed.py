@@ -35,15 +35,16 @@ LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "frame-prefix", "postfix"
 
 def robot(name: str, model: str, x: str, robots_number: int) -> RobotStarts:
     """A robot with all that one may start."""
-    params, frames = File(f"{name}/p.yaml"), {"frame_prefix": f"{name}/", "rate": 1.5, "n": 2}
+    params, more = File(f"{name}/p.yaml"), File(f"{name}/q.yaml", substituted=True)
+    frames = {"frame_prefix": f"{name}/", "rate": 1.5, "n": 2}
     box = Start(
         "pkg", "", f"/{name}", "part", (params, {"on": True}), (("a", "b"),), plugin="pkg::Part"
     )
     return RobotStarts(
-        name, "rover.urdf", f"namespace /{name}", (params.path,),
+        name, "rover.urdf", f"namespace /{name}", (params, more),
         (
             Start("state", "state", f"/{name}", "state",
-                  (params, {"robot_description": Text(f"{name}/rover.urdf"), **frames}),
+                  (params, more, {"robot_description": Text(f"{name}/rover.urdf"), **frames}),
                   (("/tf", "tf"), ("/scan", f"/{name}/scan"))),
             Start("rclcpp_components", "isolated", f"/{name}", "box", components=(box,)),
             Start("slam_toolbox", "sync", f"/{name}", "slam", brought_up=True),
