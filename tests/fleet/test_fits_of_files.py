@@ -292,7 +292,7 @@ def test_the_launch_replaces_the_share_folders_in_a_parameter_file(
     build = ["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]
     assert main(build) == 0
     launch = tmp_path / "out" / "fleet.launch.py"
-    assert "nav2.yaml'), allow_substs=True)]" in launch.read_text()
+    assert "nav2.yaml'), allow_substs=True)" in launch.read_text()
     check = ["check-launch", str(launch), "--plan", str(tmp_path / "out" / "plan.yaml"), "-q"]
     # 3: the package may not be installed here.
     assert main(check) in (0, 3)
