@@ -105,7 +105,7 @@ def is_stand_in(node: Run, endpoint: Endpoint) -> bool:
 
 
 def bound_to(node: Run, rules: Iterable[Rule]) -> BoundNode:
-    """The node under these rules."""
+    """Return the node under these rules."""
     return bind(node.name, node.namespace, parsed(rules))
 
 
@@ -137,7 +137,7 @@ def not_taken(table: Table) -> Iterator[Finding]:
 
     @cache
     def owners() -> Mapping[str, set[str]]:
-        """The robots that have each name."""
+        """Return the robots that have each name."""
         return sets_by_key((name, run.robot) for run, _, name in table.ends)
 
     seen: Counter[str] = Counter()
