@@ -39,7 +39,7 @@ def prepare(
 ) -> Template:
     """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
 
-    ``urdf_declarations`` is what the URDF beside an SRDF declares. ``own`` says more of a source that
+    ``urdf_declarations`` is what the URDF of an SRDF declares. ``own`` says more of a source that
     is one robot's own.
     """
     inventory = collect(read_document(source, file), tree, urdf_declarations, naming.read_as)

@@ -52,7 +52,7 @@ def asked_beside(end: Endpoint, bound: BoundNode) -> str:
 
 
 def asked_alone(node: NodeFacts, end: Endpoint) -> str:
-    """Return the name that a node of a robot alone asks for, under the rules of its stack."""
+    """Return the name that a node of a robot alone asks for, under the rules of its node set."""
     others = (it.remapped for it in node.endpoints if it.name == end.beside and it.remapped)
     return _sibling(next(others, end.beside), end.name) if end.beside else end.name
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a viewer can show of each robot of a plan: topics, description, the frame it stands in; a
+"""What a viewer can show of each robot of a plan: topics, description, the frame it is in; a
 layout of Foxglove that shows it."""
 
 from __future__ import annotations

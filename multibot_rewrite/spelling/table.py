@@ -197,8 +197,8 @@ def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
 
 
 def places_of(robot: str, nodes: Iterable[NodeFacts], naming: Naming) -> Places:
-    """Return the full names of a robot's nodes, by their names in the stack, and of the hosts of
-    those: the controller manager may be made by what is not in the stack."""
+    """Return the full names of a robot's nodes, by their names in the node set, and of the hosts of
+    those: the controller manager may be made by what is not in the node set."""
     own = [it for it in nodes if not it.shared]
     found = {it.host: placed(robot, it.host, naming) for it in own if it.host}
     found |= {it.name: placed(robot, it.name, naming, it.apart) for it in own}

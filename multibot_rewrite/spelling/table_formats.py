@@ -146,7 +146,7 @@ def gazebo(table: Table) -> str:
 
 
 def given_to(it: Delivery) -> str:
-    """Where the rules of a node stand, for people."""
+    """Where the rules of a node are written, for people."""
     if it.way == HOST:
         return f"process of {it.taker}"
     return {PROCESS: "its process", SPAWNER: "its spawner", PLUGIN: "its plugin"}.get(

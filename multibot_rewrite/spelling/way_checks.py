@@ -42,7 +42,7 @@ class _Standing(NamedTuple):
 
 
 def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tuple[Delivery, Run]]:
-    """Where the rules of each node stand, and the node with the rules that rcl has for it and its
+    """Where the rules of each node are written, and the node with the rules that rcl has for it and its
     process; those that stand at one of the ways ``left_out`` are missing."""
     meant = deliveries(table)
     given = [it for it in meant if it.way not in left_out]
@@ -157,7 +157,7 @@ def not_taken(table: Table) -> Iterator[Finding]:
 
 
 def _robots_worth_a_look(table: Table) -> set[str]:
-    """Those of which descriptions decide something, and the first with each of the stack's nodes."""
+    """Those of which descriptions decide something, and the first with each of the node set's nodes."""
     first: dict[str, set[str]] = {}
     found = {""}
     for it in table.runs:

@@ -28,9 +28,9 @@ COSTMAP_HAS_RULES_OF_ITS_PARENT = "lyrical+"
 
 
 class Delivery(NamedTuple):
-    """Rules for a node, as they are written where they stand: left and right sides.
+    """Rules for a node, as they are written: left and right sides.
 
-    ``taker`` is the node that is started with them, by its name in the stack: the node itself, its
+    ``taker`` is the node that is started with them, by its name in the node set: the node itself, its
     host or its container; for a plugin the node that the plugin is known by.
     """
 
@@ -47,7 +47,7 @@ Sources: TypeAlias = Mapping[str, frozenset[str]]
 
 
 def key_of(run: Run) -> Key:
-    """Its robot and its name in its stack."""
+    """Its robot and its name in its node set."""
     return run.robot, run.node
 
 

@@ -45,7 +45,7 @@ class Plugin(NamedTuple):
 
 
 class ViewedRobot(NamedTuple):
-    """A robot: where it stands (x, y, z, roll, pitch, yaw), its model, its names, what was changed.
+    """A robot: where it is (x, y, z, roll, pitch, yaw), its model, its names, what was changed.
 
     ``heard`` says of each link whether a snapshot of the graph has it on ``topic``; ``transforms`` are
     those of links that hang there as they do here. ``prefix`` is before a link's name there.
