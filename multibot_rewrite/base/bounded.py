@@ -136,7 +136,7 @@ def load_yaml(text: str, file: str, remedy: str = CORRECT) -> Any:
 
 def load_own_yaml(module: str, name: str) -> Any:
     """Return the value of a YAML file of this package, whose bounds are not checked; ``module`` is the
-    ``__file__`` beside it."""
+    ``__file__`` next to it."""
     import yaml
 
     return yaml.load(own_text(module, name), _loader())

@@ -17,7 +17,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 
 
 def _rows() -> Mapping[str, Sequence[tuple[list[str], str]]]:
-    """Return the words of each row and what stands behind them, by the parts of the table."""
+    """Return the words of each row and what follows them, by the parts of the table."""
     found: dict[str, list[tuple[list[str], str]]] = {}
     name = ""
     with open(os.path.join(os.path.dirname(__file__), "conventions.txt"), encoding="utf-8") as file:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a result rests on beside its arguments: answers of the disk and of the environment.
+"""What a result rests on besides its arguments: answers of the disk and of the environment.
 
 A function that asks them is marked ``outside``. While ``recorded`` runs a job, each call of such a
 function is noted with a digest of its answer. ``answer_now`` asks again, so a result that was kept

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writing results: all of them or none, each appearing whole.
 
-All are written beside their targets, then all are seen onto the disk, then all are renamed: whenever
+All are written next to their targets, then all are seen onto the disk, then all are renamed: whenever
 the machine stops, each file is whole, the old one or the new one. The disk writes them while more
 are made, and has to finish only once.
 """
@@ -17,7 +17,7 @@ from multibot_rewrite.base.model import UsageError
 
 
 def write_all(items: Iterable[tuple[str, bytes]]) -> None:
-    """Write every (path, data) beside its target, then rename; on an error everything is as it was.
+    """Write every (path, data) next to its target, then rename; on an error everything is as it was.
 
     Missing folders are made. An existing file keeps its mode bits, a link stays a link. Raises
     UsageError with path, cause and remedy.
@@ -86,7 +86,7 @@ def _commit(staged: dict[str, str]) -> None:
 
 
 def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
-    """Put the data beside its target and note that in ``staged``, by target; a device or pipe is
+    """Put the data next to its target and note that in ``staged``, by target; a device or pipe is
     written at once."""
     target, mode = _target(path)
     if mode and not stat.S_ISREG(mode):

@@ -2,7 +2,7 @@
 """A folder of results that changes as a whole: whoever looks sees the old files or the new ones.
 
 The new folder is made beside the old one, of links to what stays, and one call of the kernel swaps
-the two. Where that cannot be (a mount point, the working directory, no right to write beside it),
+the two. Where that cannot be (a mount point, the working directory, no right to write next to it),
 files are replaced one by one, all or none, and a note of what they are to be tells the next build
 what a killed one has left.
 """
@@ -33,7 +33,7 @@ class _CannotSwapError(Exception):
 
 @contextmanager
 def locked(folder: str) -> Iterator[None]:
-    """Alone with a folder: another build into it, or beside it, waits until this one is done."""
+    """Alone with a folder: another build into it, or next to it, waits until this one is done."""
     import fcntl
 
     above = os.path.dirname(os.path.realpath(folder))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``urdf-postfix`` for a file beside a description: parameters, RViz, MoveIt, a bridge, a tree, Lua."""
+"""``urdf-postfix`` for a related file: parameters, RViz, MoveIt, a bridge, a tree, Lua."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ from multibot_rewrite.system.tool_nodes import is_tool
 
 
 def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
-    """Look, report, sum up; returns the exit code. Several ``domains`` are looked at side by side."""
+    """Look, report, sum up; returns the exit code. Several ``domains`` are checked side by side."""
     _check_use(options, domains)
     if options.watch:
         return _watch(options, domains)

@@ -101,7 +101,7 @@ def some_of(known: Collection[str]) -> Callable[[str], list[str]]:
 
 
 def word(text: str) -> str:
-    """One word, as the name of a stack is."""
+    """One word, as the name of a node set is."""
     if not _WORD.fullmatch(text):
         raise argparse.ArgumentTypeError(f"{text!r} is not a name of a node set, give one word")
     return text

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a companion file is rewritten with, the same for every robot of one description; and a text
+"""What a related file is rewritten with, the same for every robot of one description; and a text
 with slots for a robot's namespace and tag: made once, filled for each robot.
 """
 
@@ -77,7 +77,7 @@ NO_FRAMES: Frames = {}
 
 class Context(NamedTuple):
     """``names`` is the rename map of links, joints and frames, ``topics`` that of ROS names, both
-    with a slot for the robot. ``nodes`` maps a node's name in the stack to the full name it runs
+    with a slot for the robot. ``nodes`` maps a node's name in the node set to the full name it runs
     under; nodes that serve all robots keep theirs. ``distro`` is the ROS release. ``frames`` are
     those that the robots have in the place of a default: by the node's last name and the parameter.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every kind of file beside a description, rewritten: its sites and their new texts -> splices."""
+"""Every kind of related file, rewritten: its sites and their new texts -> splices."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kinds of files beside a description: how each is read, made for any robot, and rewritten
+"""The kinds of related files: how each is read, made for any robot, and rewritten
 alone.
 """
 

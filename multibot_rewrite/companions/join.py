@@ -117,7 +117,7 @@ def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Jo
 def _with_beside(
     given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool, samples: int = 0
 ) -> Joined:
-    """With the files beside the parts."""
+    """With the related files of the parts."""
     has_srdf = any(it.srdf for it in given)
     srdfs, controllers, configs = [], [], []
     for it, part in zip(given, (it.part for it in made.parts), strict=True):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files beside parts as those of the robot that they make: parameters that one controller manager
+"""Related files of parts as those of the robot that they make: parameters that one controller manager
 gets, MoveIt's files for one move_group, one RViz config.
 
 A controller of a part has the part's prefix, as its joints, links and groups have; one controller

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names in a file beside a description: what each is, where it is, what is known of it."""
+"""Names in a related file: what each is, where it is, what is known of it."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ class Rewrite(NamedTuple):
     @property
     def template(self) -> Template:
         """What the text was made from. A copy makes it again: it raises as ``rewrite`` does where
-        a vocabulary file is gone."""
+        a definition file is gone."""
         return self.prepared.template
 
     @property
@@ -176,7 +176,7 @@ def rewrite_all(
     becomes of an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs to;
     ``xacro_args`` are the arguments of a xacro, ``{robot}`` in them is the robot's name: what they
     name after the robot stays as it is, and each robot is an expansion of its own; ``vocabulary``
-    are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
+    are definition files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
     name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
     read what is near them (SECURITY.md); ``distro`` is the ROS 2 release that the robots run (default:
     ROS_DISTRO, else what is sourced, else what the description loads, else the newest LTS);

@@ -8,7 +8,7 @@ A comment in front of what is changed says what was there, so that ``--undo`` ca
 
 It says ``the default`` where nothing was written.
 
-Sources of the steps (``address+STEP`` in the vocabulary): ArduPilot
+Sources of the steps (``address+STEP`` in the plugin definitions): ArduPilot
 libraries/AP_HAL_SITL/SITL_cmdline.cpp (10 for each instance, ``sim_vehicle.py -I``); PX4-Autopilot
 launch/multi_uav_mavros_sitl.launch (1 for each instance); of hardware see its section.
 """

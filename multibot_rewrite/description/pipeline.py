@@ -39,7 +39,7 @@ def prepare(
 ) -> Template:
     """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
 
-    ``urdf_declarations`` is what the URDF beside an SRDF declares. ``own`` says more of a source that
+    ``urdf_declarations`` is what the URDF of an SRDF declares. ``own`` says more of a source that
     is one robot's own.
     """
     inventory = collect(read_document(source, file), tree, urdf_declarations, naming.read_as)
@@ -83,9 +83,7 @@ def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:
     """Raise InputError unless an SRDF comes with its URDF, and a URDF without an SRDF's."""
     file = inventory.document.file
     if inventory.format == SRDF and not urdf_declarations:
-        raise InputError(
-            f"{file}: an SRDF is rewritten together with its URDF: add --urdf robot.urdf"
-        )
+        raise InputError(f"{file}: an SRDF is rewritten with its URDF: add --urdf robot.urdf")
     if inventory.format != SRDF and urdf_declarations:
         raise InputError(f"{file}: only an SRDF needs a URDF: leave out --urdf")
 

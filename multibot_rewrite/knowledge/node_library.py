@@ -101,7 +101,7 @@ def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
     if name in library.elsewhere:
         hint = "name one of these releases, or leave the node set out"
         has = f"it is in {library.elsewhere[name]}"
-        raise UsageError(f"{library.release} has no node of node set {name!r}; {has}; {hint}")
+        raise UsageError(f"node set {name!r} has no node in {library.release}; {has}; {hint}")
     if name not in library.stacks and name in library.nodes:
         return (library.nodes[name],)
     if name not in library.stacks:

@@ -174,7 +174,7 @@ def _check_options(word: str, options: Mapping[str, Any]) -> None:
     for it in FROM_THE_FLEET:
         if it in options:
             first = (
-                f'write {word}("amcl") with the name in its node set, and ' if it == "name" else ""
+                f'write {word}("amcl") with its name in the node set, and ' if it == "name" else ""
             )
             raise UsageError(f"{word}: {it} comes from the fleet file; {first}remove {it}=")
 

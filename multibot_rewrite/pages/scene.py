@@ -156,8 +156,8 @@ class _RobotOf(NamedTuple):
 def make_scene(
     plan: System, graph: System, found: Sequence[Finding], outcome: Outcome | None = None
 ) -> Scene:
-    """What is drawn of ``graph`` with its plan and findings; the outcome follows from these if a
-    command does not say otherwise."""
+    """Return the drawing of ``graph`` with its plan and findings; without an outcome it follows from
+    these."""
     verdict, held = judge(found, graph), coverage(plan, graph)
     by_plan, seen = side_by_side(plan, graph)
     targets = find_targets(by_plan, seen, found)
@@ -204,7 +204,7 @@ def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRo
 
 
 def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
-    """The endpoints in the graph, and those that a finding reports as missing."""
+    """Yield the endpoints in the graph, and those that a finding reports as missing."""
     # One endpoint with a known type is enough.
     common_names = {
         end.name

@@ -157,7 +157,7 @@ class Node(NamedTuple):
     ``host`` is any word: nodes of one host run on one machine, those of two on two. ``way`` is how it
     gets its remap rules if not by --ros-args of its own (``remap.ways``), ``taker`` the node that takes
     them for it. ``plugin`` is where a description has the plugin that starts it, ``place`` what else
-    names it, ``stack`` the stack that it is from. ``known`` is what its stack or file
+    names it, ``stack`` the node set that it is from. ``known`` is what its node set or file
     calls it, ``untold`` what its source does not tell before it runs, each with its place.
     """
 

@@ -284,7 +284,7 @@ def test_what_compares_a_name_is_refused(tmp_path: Path) -> None:
         '</xacro:macro><xacro:m n="a"/><xacro:m n="world"/>'
     )
     (tmp_path / "r.urdf.xacro").write_text(robot(inside))
-    with pytest.raises(InputError, match="no place for the prefix changes"):
+    with pytest.raises(InputError, match="wherever the prefix is put, it changes"):
         adopt(str(tmp_path))
 
 

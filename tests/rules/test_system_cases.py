@@ -185,14 +185,14 @@ OWN = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
         (
             (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
              f"/robot1/b publishes /robot1/cmd_vel {TWIST}"),
-            ["MG312 warning /robot1/b: publishes /robot1/cmd_vel beside /robot1/a, and"
+            ["MG312 warning /robot1/b: publishes /robot1/cmd_vel, and so does /robot1/a;"
              " /robot1/driver obeys both"],
         ),
         (
             (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
              f"/teleop_twist_keyboard publishes /robot1/cmd_vel {TWIST}"),
-            ["MG312 warning /teleop_twist_keyboard: publishes /robot1/cmd_vel beside /robot1/a,"
-             " and /robot1/driver obeys both"],
+            ["MG312 warning /teleop_twist_keyboard: publishes /robot1/cmd_vel, and so does /robot1/a;"
+             " /robot1/driver obeys both"],
         ),
         # A bridge in both directions orders nothing itself.
         (

@@ -72,7 +72,7 @@ def listed(rules: Iterable[Rule]) -> Iterator[tuple[str, str, str, str]]:
 
 
 def examples(rule: Rule) -> list[tuple[str, str]]:
-    """Titles and texts of its examples, and of the files beside them."""
+    """Titles and texts of its examples, and of the files next to them."""
     page = rule.page
     good = "" if page.good == page.fixed else page.good
     texts = (("Bad", page.bad), ("Fixed by --fix", page.fixed), ("Good", good))

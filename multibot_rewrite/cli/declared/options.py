@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Options and commands as data, and the kinds of options that the pages beside this module have.
+"""Options and commands as data, and the kinds of options that the pages next to this module have.
 
 A kind is a function: first what the option is for, then the words behind its kind in the page. This
 module and the reader of the pages import nothing heavy: a help text is made of them alone.

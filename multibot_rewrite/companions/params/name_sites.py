@@ -59,7 +59,7 @@ _State = tuple[Branch, tuple[_Mark, ...]]
 
 
 class _Job(NamedTuple):
-    """A section that is looked at: what is known, the release, and what was found."""
+    """A section that is checked: what is known, the release, and what was found."""
 
     document: YamlText
     section: ParamSection

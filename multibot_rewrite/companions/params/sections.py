@@ -268,7 +268,7 @@ def _skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
 
 def settings(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.ScalarNode, yaml.Node]]:
     """Every parameter by its dotted name, with its key and value; nested and dotted keys are the same.
-    ``above`` stands before all names."""
+    ``above`` is before all names."""
     for key, value in pairs(node):
         name = f"{above}{key.value}"
         if below := names_below(value):

@@ -146,9 +146,7 @@ def _changed(
         yield Problem(it.element_in(document.root), message, None, hint, (), PARTED)
     for it, *pair in meeting.undescribed(before, reading):
         image, asked, info = (name.replace(robot, ROBOT) for name in (it.name, *pair))
-        message = (
-            f"image_transport and RViz look for {asked!r} next to {image!r}, but it is {info!r}"
-        )
+        message = f"image_transport and RViz look for {asked!r} next to {image!r}: it is {info!r}"
         hint = f'start what shows it with --ros-args -r "{asked}:={info}", or {BESIDE}'
         yield Problem(it.element_in(document.root), message, None, hint, (), ELSEWHERE)
 

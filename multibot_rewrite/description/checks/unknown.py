@@ -25,9 +25,7 @@ from multibot_rewrite.description.steps.collect import SRDF, Inventory
 ANOTHER_RELEASE = (
     "name the release that the description is for with --distro, or distro: in a fleet file"
 )
-SAY_IT = (
-    "add it to a file of plugin definitions: a line for each topic and service, or opens: nothing"
-)
+SAY_IT = "define it in a file of plugin definitions, with its topics and services or opens: nothing"
 NOT_LOADED = "MB112"
 CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 

@@ -219,7 +219,7 @@ def _applied(node: ReadNode, end: RuntimeName) -> tuple[str, int | None]:
 
 def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, RuntimeName]]:
     """Each end that lost the first of those that it met, with that one, as they are now: what is left
-    as it was by the vocabulary counts as well."""
+    as it was by the plugin definitions counts as well."""
     now = _by_place((*after.names, *after.other_ends))
     was = _by_place((*before.names, *before.other_ends))
     of_topic = lists_by_key(((it.kind, it.name), at) for at, it in was.items() if at in now)
@@ -229,7 +229,7 @@ def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, Runti
 
 
 def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, str, str]]:
-    """Each image that had its camera_info beside it and has not now, with the name that is asked for
+    """Each image that had its camera_info next to it and has not now, with the name that is asked for
     and the one that it has.
 
     Who shows an image replaces the last segment of its topic (image_common camera_common.cpp

@@ -76,7 +76,7 @@ def resolved(
 
 def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
     """Name and parameter of the topics that are the world's or left as they are, below the namespace
-    that the plugin puts in front. Where that is the model's name it also stands before a slash
+    that the plugin puts in front. Where that is the model's name it also is before a slash
     (rotors_simulator gazebo_mavlink_interface.cpp, as PX4's)."""
     # One without a name gets it from its spawner.
     model = around(host).get("name") or "~"

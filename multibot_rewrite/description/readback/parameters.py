@@ -39,7 +39,7 @@ def values_of(host: _Element, site: SiteRow) -> list[str]:
 
 
 def _applies(host: _Element, site: SiteRow) -> bool:
-    """Has the sibling that decides this text? It stands beside the last step of the path."""
+    """Has the sibling that decides this text? It is next to the last step of the path."""
     sibling, _, wanted = site.when.partition("=")
     above = site.path.rpartition("/")[0]
     texts = set(wanted.split("|"))

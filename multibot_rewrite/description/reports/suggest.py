@@ -134,7 +134,7 @@ def _can_head(type_: str, name: str) -> bool:
 
 
 def _values(element: _Element, node: tree.TreeNode | None, path: str) -> Iterator[tuple[str, str]]:
-    """Path and value of every attribute and text below an element that no row speaks of."""
+    """Path and value of every attribute and text below an element that no row is about."""
     known = {""} if node is not None and node.text is not None else set()
     if node is not None:
         known |= {attribute for attribute, _ in node.attributes} | node.keeps.keys()

@@ -205,7 +205,7 @@ def _uses(inventory: Inventory) -> Iterator[Use]:
 
 
 def _how(text: str) -> tuple[str, str]:
-    """Where in a name the argument is, and the separator beside it."""
+    """Where in a name the argument is, and the separator next to it."""
     before, _, after = text.strip("/").partition(_MARK)
     if not before and not after:
         return WHOLE, ""

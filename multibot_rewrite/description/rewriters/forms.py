@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where inside a value the names are: one function per ``form=`` word of the vocabulary.
+"""Where inside a value the names are: one function per ``form=`` word of the plugin definitions.
 
 A form maps a value to its parts. Because a part is a position and not a new text, lists, scopes
 and remap rules need no writer of their own.

@@ -55,7 +55,7 @@ _Piece: TypeAlias = "Callable[[list[_State], int], int]"
 
 
 class PatternError(ValueError):
-    """Not a pattern, or more than is looked at: back references, assertions, great size."""
+    """Not a pattern, or more than is checked: back references, assertions, great size."""
 
 
 def pieces_of(pattern: str) -> Iterator[re.Match[str]]:

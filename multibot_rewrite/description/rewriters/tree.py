@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tree of rewriters: the vocabulary's sections, nested the way documents nest.
+"""The tree of rewriters: the sections of plugin definitions, nested the way documents nest.
 
 A ``Node`` answers, for one element, which of its attributes and text are sites and which node
 serves each child tag. Which plugin or hardware class an element is decides its node; those nodes
@@ -304,7 +304,7 @@ def _flavour(found: Sequence[VocabularySection], element: _Element) -> Vocabular
     """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
 
     A ``ros`` child is ROS 2, whatever was left from before: nothing in ROS 1 reads one. What decides
-    for the whole document is in the vocabulary already (``sources/dialect.py``).
+    for the whole document is in the plugin definitions already (``sources/dialect.py``).
     Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case).
     """
     if element.find("ros") is not None:

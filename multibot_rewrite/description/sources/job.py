@@ -63,7 +63,7 @@ def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
 
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
-    name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
+    name of the URDF of an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
     whose facts count, ``why`` what says it, ``ros`` the ROS that
     loads its plugins where that is known; ``aside`` are the systems that the world has to load,
     names and texts. It holds no parsed document, so it can be pickled."""
@@ -87,12 +87,12 @@ class Job(NamedTuple):
 
     @property
     def urdf_declarations(self) -> Declared:
-        """What the URDF beside an SRDF declares; raises InputError."""
+        """What the URDF of an SRDF declares; raises InputError."""
         return declarations(*self.urdf, self.tree) if self.urdf else NOTHING
 
     @property
     def inventories(self) -> list[Inventory]:
-        """What is in the description, and in the URDF beside an SRDF; raises InputError."""
+        """What is in the description, and in the URDF of an SRDF; raises InputError."""
         tree, layout = self.tree, self.naming.read_as
         own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, layout)
         urdf = [collect(read_document(*self.urdf), tree, layout=layout)] if self.urdf else []

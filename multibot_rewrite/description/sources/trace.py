@@ -113,7 +113,7 @@ _KINDS = {"xacro:property": "property", "xacro:arg": "argument", "xacro:macro": 
 
 
 class Piece(NamedTuple):
-    """``text`` is a part of a value. It stands in ``file`` from byte ``start`` to ``end``, or what
+    """``text`` is a part of a value. It is in ``file`` from byte ``start`` to ``end``, or what
     makes it does: an expression. ``kind`` says what wrote it: literal, property, argument, default,
     parameter, YAML, expression, given argument (no file)."""
 

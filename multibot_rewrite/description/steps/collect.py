@@ -71,7 +71,7 @@ def collect(
 ) -> Inventory:
     """Walk the document in order along the tree of rewriters.
 
-    ``urdf_declarations`` is what the URDF beside an SRDF declares. In a ``layout`` that names frames at
+    ``urdf_declarations`` is what the URDF of an SRDF declares. In a ``layout`` that names frames at
     run time these are not spelled as links are, and in one that keeps the names of models no topic is.
     """
     format_ = _format(document, tree, SRDF if urdf_declarations else "")

@@ -11,7 +11,7 @@ from multibot_rewrite.description.steps.document import Document, silenced, tag_
 
 
 class Spans:
-    """The place of each element; an element ends before the next one beside it, or before the end tag
+    """The place of each element; an element ends before its next sibling, or before the end tag
     of the one it is in."""
 
     def __init__(self, document: Document) -> None:

@@ -135,9 +135,7 @@ def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapp
         for it in read_xml(arm.srdf, arm.place).iterchildren("virtual_joint"):
             if it.get("type") != "fixed":
                 what = f"its virtual joint {it.get('name')!r} is {it.get('type')}"
-                raise InputError(
-                    f"{arm.where}: {what}; an arm of a cell does not move: make it fixed"
-                )
+                raise InputError(f"{arm.where}: {what}; arms of a cell are fixed: make it fixed")
         semantics.append(PartSemantics(read, arm.srdf, arm.where))
     srdf = read_xml(joined_srdf(semantics, made.data, hint=_HINT).data, cell.place)
     _add_groups(srdf, cell)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The vocabulary: which tag of which plugin holds which name. Data in ``*.vocab``, read lazily;
+"""The plugin definitions: which tag of which plugin holds which name. Data in ``*.vocab``, read lazily;
 ``README.md`` has the grammar.
 """
 

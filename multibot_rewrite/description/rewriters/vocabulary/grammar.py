@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One section of a vocabulary file: its rows read, checked and made a ``VocabularySection``.
+"""One section of a definition file: its rows read, checked and made a ``VocabularySection``.
 
 ``README.md`` has the grammar.
 """
@@ -316,7 +316,7 @@ def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str,
 
 
 def is_step(text: str) -> bool:
-    """Is this one step of a path, as a vocabulary file may have it?"""
+    """Is this one step of a path, as a definition file may have it?"""
     return _ONE_STEP.fullmatch(text) is not None
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Vocabulary that other installed packages bring: entry points ``multibot_rewrite.vocabulary``.
+"""Plugin definitions that other installed packages bring: entry points ``multibot_rewrite.vocabulary``.
 
 An entry point names a package whose ``*.vocab`` files are read; its code is not imported.
 """
@@ -20,7 +20,7 @@ _METADATA = (".dist-info", ".egg-info")
 
 
 class Installed(NamedTuple):
-    """One vocabulary file of an installed distribution."""
+    """One definition file of an installed distribution."""
 
     distribution: str
     version: str

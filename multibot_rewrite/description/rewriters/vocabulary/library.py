@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sections of vocabulary files, each parsed when it is first asked for."""
+"""The sections of definition files, each parsed when it is first asked for."""
 
 from __future__ import annotations
 

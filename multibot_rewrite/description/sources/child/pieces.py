@@ -210,7 +210,7 @@ def _known(value: Any, part: str) -> Any:
 
 
 def _quoted(text: str, part: str) -> Spot | None:
-    """Where a text stands in quotes, if that is in one place."""
+    """Where a text is in quotes, if that is in one place."""
     found = [
         part.find(f"{quote}{text}{quote}")
         for quote in "'\""
@@ -230,7 +230,7 @@ def _of(part: str) -> Spot | None:
 
 
 def _defaults(parse: Callable[[str], Any]) -> Callable[[str], Any]:
-    """xacro's reading of a macro's parameters, whose defaults know where they stand."""
+    """xacro's reading of a macro's parameters, whose defaults know where they are written."""
 
     def parsed(text: str) -> Any:
         param, value, rest = parse(text)
