@@ -218,9 +218,7 @@ MISSING = {
         "warning twist_mux: topics.a.priority is missing"
     ),
     "twist_mux {use_stamped: true, topics.a: {topic: cmd, timeout: 0.5, priority: 9}}": "",
-    "twist_mux {topics.a: {topic: cmd, timeout: 0.5, priority: 9}}": (
-        "warning twist_mux: use_stamped is missing"
-    ),
+    "twist_mux {topics.a: {topic: cmd, timeout: 0.5, priority: 9}}": "",
     "ekf_filter_node {frequency: 30.0}": (
         "warning ekf_filter_node: there is none of odom0, pose0, twist0, imu0"
     ),
