@@ -48,6 +48,7 @@ from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.lint.catalogue import rules
 
 # A word that ends so is a file, there or not.
@@ -96,6 +97,9 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     found = look_up(vocabulary, name, TYPES)
     if not found and is_name(name):
         return explain(options, [name])
+    node = None if found else every_release().nodes.get(name)
+    if node:
+        return node_source.run_known(options, node)
     if not found:
         raise _unknown(vocabulary, name, TYPES)
     if options.form == JSON:
