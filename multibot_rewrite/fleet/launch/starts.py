@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.spelling.start import NOTHING, File, Start, Text
 
 # The simulators that it can start.
 CLASSIC, GZ = "classic", "gz"
-# The launch arguments that switch something on.
+# The launch arguments of every build, or of some.
+OWN_ARGUMENTS = ("robots", "use_sim_time", "rviz", "simulator", "headless", "world")
+# Those that switch something on.
 SIMULATOR, RVIZ = "simulator", "rviz"
 TOGETHER: Mapping[str, int] = {}
 
@@ -40,7 +43,8 @@ class FleetStarts(NamedTuple):
     of all (empty name), where they are not in one. ``shown`` are all windows, those that a fleet
     without any config has among them: the launch file does not open these. ``environment`` is that of
     all processes; a value with ``:`` in front or at the end is added to what is there. ``options`` are
-    further ones of gz-sim, ``headless`` is whether it has no window by default."""
+    further ones of gz-sim, ``headless`` is whether it has no window by default. ``switches`` are
+    launch arguments of the robots' launch files, with the values by which they start all of it."""
 
     head: str
     simulators: Sequence[str]
@@ -55,6 +59,7 @@ class FleetStarts(NamedTuple):
     environment: Mapping[str, str] = NOTHING
     options: str = ""
     headless: bool = False
+    switches: Mapping[str, str] = NOTHING
 
     @property
     def every(self) -> Iterator[Start]:
@@ -86,3 +91,43 @@ def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
         yield SIMULATOR, "true", "whether to start the simulator and to spawn the robots in it"
         yield "headless", str(it.headless).lower(), "whether the simulator has no window"
         yield "world", it.world, "the world of the simulator"
+    for name, default in it.switches.items():
+        yield name, default, "as in the launch files of the robots: it turns something off"
+
+
+def with_switches(it: FleetStarts, others: Collection[str]) -> FleetStarts:
+    """Return the fleet with launch arguments that turn off what launch files start with them: those of
+    one value, by which these start nothing else as they do by ``others``. What waits for something
+    that has a condition of ours has no further one."""
+    every = (it.shared, *(robot.starts for robot in it.robots))
+    pairs = {pair: None for starts in every for one in starts for pair in one.process.switches}
+    values = lists_by_key(pairs)
+    taken = {*OWN_ARGUMENTS, *others}
+    own = {name: its[0] for name, its in values.items() if len(its) == 1 and name not in taken}
+
+    def switched(starts: Sequence[Start]) -> tuple[Start, ...]:
+        numbered = {one.number: one for one in starts if one.number >= 0}
+        return tuple(
+            one
+            if _has_condition(one, numbered)
+            else one._replace(condition=" ".join(_terms(one, own)))
+            for one in starts
+        )
+
+    robots = [one._replace(starts=switched(one.starts)) for one in it.robots]
+    made = it._replace(shared=switched(it.shared), robots=robots)
+    used = {word.lstrip("!") for one in made.every for word in one.condition.split()}
+    return made._replace(switches={name: text for name, text in own.items() if name in used})
+
+
+def _has_condition(it: Start | None, numbered: Mapping[int, Start]) -> bool:
+    while it is not None and not it.condition:
+        it = numbered.get(it.process.after)
+    return it is not None
+
+
+def _terms(it: Start, own: Mapping[str, str]) -> Iterator[str]:
+    """Yield the launch arguments of a process, ``!`` before those that are false."""
+    for name, value in it.process.switches:
+        if name in own:
+            yield name if value.lower() == "true" else f"!{name}"

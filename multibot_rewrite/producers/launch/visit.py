@@ -25,7 +25,7 @@ from multibot_rewrite.producers.launch.describe import (
     text,
 )
 from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset, started_by
-from multibot_rewrite.producers.launch.idle import wants
+from multibot_rewrite.producers.launch.idle import switches_of, wants
 from multibot_rewrite.producers.launch.includes import (
     included,
     not_here,
@@ -64,7 +64,9 @@ def visit_all(entity: Any, seen: Visit) -> None:
 def visit(entity: Any, seen: Visit) -> None:
     """Visit an entity and what is below it; what cannot be visited becomes a note."""
     file = seen.context.get_locals_as_dict().get("current_launch_file_path", seen.place.file)
-    here = seen._replace(place=place_of(entity, file))
+    switches = () if seen.every else switches_of(entity, seen)
+    switches = tuple(dict.fromkeys((*seen.switches, *switches)))
+    here = seen._replace(place=place_of(entity, file), switches=switches)
     # An include has the path of its file for what is below it; other actions may leave theirs.
     own = _is(entity, _INCLUDE)
     if not own and _is(entity, *_GIVING):
