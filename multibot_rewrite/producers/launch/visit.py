@@ -86,6 +86,8 @@ def visit(entity: Any, seen: Visit) -> None:
         for below in handle(entity, here) or ():
             visit(below, here)
     except (Exception, SystemExit) as error:
+        if isinstance(error, RecursionError) and not seen.every:
+            raise
         # A launch file is a program: it may raise anything.
         _failed(entity, error, here)
     finally:
