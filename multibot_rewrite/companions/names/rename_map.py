@@ -14,14 +14,8 @@ from multibot_rewrite.description.rewriters.spelling import resolve
 # Kinds of names in a description that a kind of value may refer to, tried in order.
 KINDS = {
     "frame": ("link", "frame"),
-    "link": ("link",),
-    "joint": ("joint",),
-    "sensor": ("sensor",),
-    "gpio": ("gpio",),
-    "hardware": ("hardware",),
-    "group": ("group",),
-    "topic": ("topic",),
-    "service": ("service",),
+    **{it: (it,) for it in ("link", "joint", "sensor", "gpio", "hardware", "group")},
+    **{it: (it,) for it in ("topic", "service")},
     # The left part of ``elbow/position``: a joint, a sensor or a gpio.
     "component": ("joint", "sensor", "gpio"),
 }

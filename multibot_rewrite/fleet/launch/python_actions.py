@@ -48,11 +48,9 @@ def actions(
         if condition:
             every = [*several]
             rest = [one for it in every for one in it.always]
-            words = condition.split()
-            inner = _processes(every, indent + 8 * len(words), own)
-            yield from _grouped(words, [*inner], indent)
-            if rest:
-                yield from _grouped([f"!{condition}"], [*_processes(rest, indent + 8, own)], indent)
+            for words, led in ((condition.split(), every), ([f"!{condition}"], rest)):
+                inner = _processes(led, indent + 8 * len(words), own) if led else ()
+                yield from _grouped(words if led else (), inner, indent)
         elif needs:
             given = (f"{space}    {value(it)}," for it in (needs, otherwise))
             inner = _processes(several, indent + 8, own)
@@ -62,7 +60,7 @@ def actions(
             yield from _processes(several, indent, own)
 
 
-def _grouped(words: Sequence[str], inner: Sequence[str], indent: int) -> Iterator[str]:
+def _grouped(words: Sequence[str], inner: Iterable[str], indent: int) -> Iterator[str]:
     """Yield what is started in a group below a group, one for each launch argument."""
     if not words:
         yield from inner

@@ -99,35 +99,24 @@ def with_switches(it: FleetStarts, others: Collection[str]) -> FleetStarts:
     """Return the fleet with launch arguments that turn off what launch files start with them: those of
     one value, by which these start nothing else as they do by ``others``. What waits for something
     that has a condition of ours has no further one."""
-    every = (it.shared, *(robot.starts for robot in it.robots))
-    pairs = {pair: None for starts in every for one in starts for pair in one.process.switches}
-    values = lists_by_key(pairs)
+    values = lists_by_key(dict.fromkeys(pair for one in it.every for pair in one.process.switches))
     taken = {*OWN_ARGUMENTS, *others}
     own = {name: its[0] for name, its in values.items() if len(its) == 1 and name not in taken}
-
-    def switched(starts: Sequence[Start]) -> tuple[Start, ...]:
-        numbered = {one.number: one for one in starts if one.number >= 0}
-        return tuple(
-            one
-            if _has_condition(one, numbered)
-            else one._replace(condition=" ".join(_terms(one, own)))
-            for one in starts
-        )
-
-    robots = [one._replace(starts=switched(one.starts)) for one in it.robots]
-    made = it._replace(shared=switched(it.shared), robots=robots)
+    robots = [one._replace(starts=_switched(one.starts, own)) for one in it.robots]
+    made = it._replace(shared=_switched(it.shared, own), robots=robots)
     used = {word.lstrip("!") for one in made.every for word in one.condition.split()}
     return made._replace(switches={name: text for name, text in own.items() if name in used})
 
 
-def _has_condition(it: Start | None, numbered: Mapping[int, Start]) -> bool:
-    while it is not None and not it.condition:
-        it = numbered.get(it.process.after)
-    return it is not None
+def _switched(starts: Sequence[Start], own: Mapping[str, str]) -> tuple[Start, ...]:
+    numbered = {it.number: it for it in starts if it.number >= 0}
 
+    def terms(it: Start) -> str:
+        first: Start | None = it
+        while first is not None and not first.condition:
+            first = numbered.get(first.process.after)
+        named = [pair for pair in it.process.switches if pair[0] in own]
+        words = (name if value.lower() == "true" else f"!{name}" for name, value in named)
+        return it.condition if first else " ".join(words)
 
-def _terms(it: Start, own: Mapping[str, str]) -> Iterator[str]:
-    """Yield the launch arguments of a process, ``!`` before those that are false."""
-    for name, value in it.process.switches:
-        if name in own:
-            yield name if value.lower() == "true" else f"!{name}"
+    return tuple(it._replace(condition=terms(it)) for it in starts)

@@ -243,6 +243,7 @@ def propose(
         **worlds_of(members),
     }
     poses = poses_of(members, wanted.apart)
+    taken = {path for it in robots for path in it.files}
     every = found.read
     bringups = [it.bringup for it in robots if it.bringup]
     other = (one for it in every for one in it.graph.nodes if not bringups)
@@ -253,7 +254,7 @@ def propose(
         members,
         poses,
         (),
-        _others(found, robots),
+        tuple(it for it in found.descriptions if it not in taken),
         refused,
         tuple(started(other)),
         tuple(unread),
@@ -274,11 +275,6 @@ def _member(it: Looked, beside: Companions, names: tuple[str, ...], reach: Reach
     own = with_controllers(it, beside.files.get("params", ()), reach)
     assert own.root is not None
     return Member(own, beside, names, reach_of(own.root) or UNKNOWN_RADIUS)
-
-
-def _others(found: Found, robots: Sequence[Looked]) -> tuple[str, ...]:
-    taken = {path for it in robots for path in it.files}
-    return tuple(it for it in found.descriptions if it not in taken)
 
 
 # The release that parameter files were written for, by the parameters and the classes of plugins that

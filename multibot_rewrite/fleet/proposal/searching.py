@@ -148,11 +148,9 @@ def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
     uris = {it: f"model://{os.path.basename(os.path.dirname(it))}<" for it in known}
     models = (it for it, uri in uris.items() if any(uri in text for text in texts))
     own = {it: known.get(it) or os.path.relpath(it) for it in (*real, *models)}
-    return {it: path for it, path in own.items() if it in known or _is_description(it)}
-
-
-def _is_description(path: str) -> bool:
-    return os.path.isfile(path) and _kind(path, data_of_file(path)) == "descriptions"
+    there = (it for it in own if it not in known and os.path.isfile(it))
+    read = {it for it in there if _kind(it, data_of_file(it)) == "descriptions"}
+    return {it: path for it, path in own.items() if it in known or it in read}
 
 
 class Undecided(UsageError):
@@ -275,10 +273,6 @@ def _of_xacro(stem: str, data: bytes) -> str:
     return "srdf" if ".srdf" in stem or b"<group " in data else kind
 
 
-def _of_xml(_: str, data: bytes) -> str:
-    return "behavior_trees" if b"<BehaviorTree" in data else ""
-
-
 def _of_yaml(stem: str, data: bytes) -> str:
     if b"ros__parameters" in data:
         return "params"
@@ -299,5 +293,6 @@ _BY_KIND = {WORLD: "worlds", SRDF: "srdf", **dict.fromkeys(DESCRIPTIONS, "descri
 _BY_TEXT = {
     **dict.fromkeys((".urdf", ".sdf", ".model", ".world"), _of_model),
     ".xacro": _of_xacro,
-    ".yaml": _of_yaml, ".yml": _of_yaml, ".xml": _of_xml,
+    ".yaml": _of_yaml, ".yml": _of_yaml,
+    ".xml": lambda _, data: "behavior_trees" if b"<BehaviorTree" in data else "",
 }  # fmt: skip
