@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
@@ -290,7 +290,7 @@ def _is_list(data: bytes) -> bool:
 
 _BY_NAME = {".srdf": "srdf", ".rviz": "rviz"}
 _BY_KIND = {WORLD: "worlds", SRDF: "srdf", **dict.fromkeys(DESCRIPTIONS, "descriptions")}
-_BY_TEXT = {
+_BY_TEXT: Mapping[str, Callable[[str, bytes], str]] = {
     **dict.fromkeys((".urdf", ".sdf", ".model", ".world"), _of_model),
     ".xacro": _of_xacro,
     ".yaml": _of_yaml, ".yml": _of_yaml,
