@@ -64,6 +64,7 @@ _REST = "rest"
 # More of a value is not shown.
 _SHOWN = 100
 _NOTHING = object()
+_TRUE = ("true", "True", "1")
 # The programs of which each process has its line, unless it is a node of a stack.
 _TOLD = (
     ("tf2_ros", "static_transform_publisher"),
@@ -119,6 +120,7 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     clock = str(not starts.use_sim_time).lower()
     off = {"use_sim_time": clock, "rviz": "false", "simulator": "false"}
     names = [it.name for it in starts.robots]
+    off |= {name: str(it.lower() != "true") for name, it in starts.switches.items()}
     other = {"headless": "true", "world": "other.sdf"}
     told = {name: it for name, it in other.items() if name in usual}
     launches = (
@@ -155,9 +157,10 @@ class _Planned(NamedTuple):
             yield from self.processes(it.starts, it.name, it.clock, it.not_bridged)
         yield from self.processes(self.starts.windows)
 
-    def is_on(self, argument: str) -> bool:
-        """Is a launch argument that switches something true?"""
-        return self.arguments.get(argument) in ("true", "1")
+    def is_on(self, condition: str) -> bool:
+        """Is each launch argument of a condition true, or false after ``!``?"""
+        words = ((it.lstrip("!"), it[0] != "!") for it in condition.split())
+        return all((self.arguments.get(it, "") in _TRUE) == wanted for it, wanted in words)
 
     def chosen(self) -> list[RobotStarts]:
         """Return the robots that are launched."""

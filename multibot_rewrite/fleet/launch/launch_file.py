@@ -15,7 +15,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_actions
 from multibot_rewrite.fleet.launch.launch_python import to_python
 from multibot_rewrite.fleet.launch.launched_simulator import launched_simulator
-from multibot_rewrite.fleet.launch.starts import GZ, RVIZ, FleetStarts, RobotStarts
+from multibot_rewrite.fleet.launch.starts import GZ, RVIZ, FleetStarts, RobotStarts, with_switches
 from multibot_rewrite.fleet.outputs import spawn, teleop, world_file
 from multibot_rewrite.fleet.outputs.companion_files import launched_values
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
@@ -59,7 +59,8 @@ def fleet_starts(
     opened = lists_by_key((name, it._replace(condition=RVIZ)) for name, it in opens)
     robots = [it._replace(starts=(*it.starts, *opened.pop(it.name, ()))) for it in robots]
     launched = launched_simulator(plan.file)
-    return FleetStarts(
+    idle = (one for it in plan.robots for one in plan.evidence_of(it).idle)
+    made = FleetStarts(
         f"Start {count} of {source}{facts_of_release(plan.file.distro)}.",
         simulators,
         launch_actions.of_all(plan, paths, simulators, values),
@@ -74,6 +75,7 @@ def fleet_starts(
         "".join(f"{it} " for it in launched.options),
         launched.headless,
     )
+    return with_switches(made, {name for it in idle for name, _ in it.asked})
 
 
 def _is_substituted(data: bytes) -> bool:

@@ -16,32 +16,6 @@ from multibot_rewrite.spelling.start import in_order
 
 # What ament_flake8 allows, and robots of which each has its line to drive.
 WIDTH, _DRIVING = 99, 4
-# The names that it imports where it uses them, in this order.
-_IMPORTS = {
-    "ament_index_python.packages": ("PackageNotFoundError", "get_package_prefix"),
-    "launch": ("LaunchDescription",),
-    "launch.actions": (
-        *("AppendEnvironmentVariable", "DeclareLaunchArgument", "EmitEvent", "ExecuteProcess"),
-        *("GroupAction", "IncludeLaunchDescription", "LogInfo", "OpaqueFunction"),
-        *("RegisterEventHandler", "SetEnvironmentVariable", "TimerAction"),
-    ),
-    "launch.conditions": ("IfCondition", "UnlessCondition"),
-    "launch.event_handlers": ("OnProcessExit", "OnProcessStart"),
-    "launch.events": ("matches_action",),
-    "launch.substitutions": (
-        *("EnvironmentVariable", "LaunchConfiguration", "PathJoinSubstitution"),
-        "PythonExpression",
-    ),
-    "launch_ros.actions": (
-        *("ComposableNodeContainer", "LifecycleNode", "Node", "PushRosNamespace", "SetRemap"),
-    ),
-    "launch_ros.descriptions": ("ComposableNode",),
-    "launch_ros.event_handlers": ("OnStateTransition",),
-    "launch_ros.events.lifecycle": ("ChangeState",),
-    "launch_ros.parameter_descriptions": ("ParameterFile", "ParameterValue"),
-    "launch_ros.substitutions": ("FindPackageShare",),
-    "lifecycle_msgs.msg": ("Transition",),
-}
 _STARTED = "[action for name in words or ROBOTS for action in ROBOTS[name]()]"
 _STARTED_APART = "[in_domain(name, ROBOTS[name]()) for name in words or ROBOTS]"
 
@@ -112,8 +86,8 @@ def _imports(body: str) -> Iterator[str]:
         yield "from functools import partial"
     yield from ("from pathlib import Path", "")
     used = frozenset(re.findall(r"\w+", body))
-    for module, every in _IMPORTS.items():
-        names = [name for name in every if name in used]
+    for module, every in (line.split(": ") for line in _part("imports")):
+        names = [name for name in every.split() if name in used]
         if module == "launch.actions" and names:
             yield from (f"from {module} import (", *(f"    {name}," for name in names), ")")
         elif names:
