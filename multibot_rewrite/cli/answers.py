@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from multiprocessing.connection import Connection
 
 from multibot_rewrite.base.bounded import OPEN_TEXTS
@@ -39,6 +40,7 @@ from multibot_rewrite.lint.files.named import descriptions_below
 from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.refactor.rename import rename_symbol
 from multibot_rewrite.refactor.symbols import Place, find_places
+from multibot_rewrite.rules.settings import Settings
 
 _LINTED = (*DESCRIPTIONS, SRDF, WORLD, *(kind for kind, _ in BESIDE))
 _ENDS = (".urdf", ".xacro", ".srdf", ".sdf")
@@ -50,12 +52,13 @@ def answer(connection: Connection) -> None:
     # The server's output is for the editor alone.
     os.dup2(2, 1)
     start_server()
-    texts, function, *given = connection.recv()
-    OPEN_TEXTS.set(texts)
-    try:
-        connection.send(function(*given))
-    except MultibotError as error:
-        connection.send(UsageError(str(error)))
+    with suppress(EOFError):  # the editor is gone
+        texts, function, *given = connection.recv()
+        OPEN_TEXTS.set(texts)
+        try:
+            connection.send(function(*given))
+        except MultibotError as error:
+            connection.send(UsageError(str(error)))
 
 
 def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
@@ -64,7 +67,7 @@ def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
     kind = recognised(data)
     try:
         config = _configured(options, path)
-        if is_excluded(path, config) or not (kind or path.endswith(_ENDS)):
+        if is_excluded(path, config):
             return ()
         if kind == FLEET:
             return _of_fleet(path, options.distro or config.distro)
@@ -74,7 +77,7 @@ def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
         return error.findings
     except MultibotError as error:
         own = error if isinstance(error, InputError) else InputError(f"{path}: {error}")
-        return [failure(path, own, Configured().settings)]
+        return [failure(path, own, Settings())]
     return ()
 
 
@@ -121,8 +124,9 @@ def places(options: argparse.Namespace, path: str, at: tuple[int, int]) -> list[
 
 def renamed(options: argparse.Namespace, path: str, place: Place, new: str) -> Mapping[str, bytes]:
     """Return the files that ``multibot rename`` changes, by path."""
-    how = {"vocabulary": _vocabulary(options, path), "distro": options.distro or ""}
-    return rename_symbol(place.name, new, _folder(path), kind=place.kind, **how).after
+    folder, known, distro = _folder(path), _vocabulary(options, path), options.distro or ""
+    made = rename_symbol(place.name, new, folder, kind=place.kind, vocabulary=known, distro=distro)
+    return made.after
 
 
 def _vocabulary(options: argparse.Namespace, path: str) -> tuple[str, ...]:

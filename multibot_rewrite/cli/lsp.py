@@ -17,7 +17,7 @@ from difflib import SequenceMatcher
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
-from typing import Any, NamedTuple
+from typing import Any
 
 try:
     from lsprotocol import types as lsp
@@ -57,13 +57,6 @@ def run(options: argparse.Namespace) -> int:
     return DONE
 
 
-class Child(NamedTuple):
-    """A process that answers one question."""
-
-    process: BaseProcess
-    connection: Connection
-
-
 class Server(LanguageServer):
     """The open files of an editor, and what was found in them."""
 
@@ -74,7 +67,7 @@ class Server(LanguageServer):
         self.context.set_forkserver_preload([_WARM])
         self.found: dict[str, Sequence[Finding]] = {}
         self.running: dict[str, asyncio.Task[None]] = {}
-        self.spares: list[Child] = []
+        self.spares: list[asyncio.Future[tuple[BaseProcess, Connection]]] = []
 
     async def ask(self, function: Callable[..., Any], uri: str, *given: Any) -> Any:
         """Return what a function of ``answers`` returns for a file; None where it does not end well. An
@@ -82,14 +75,15 @@ class Server(LanguageServer):
         documents = self.workspace.text_documents.values()
         texts = {os.path.realpath(it.path): it.source.encode() for it in documents}
         path = self.workspace.get_text_document(uri).path
-        child = self.spares.pop() if self.spares else await asyncio.to_thread(self._started)
-        question = (texts, function, self.options, path, *given)
+        self.spare()
+        child, connection = await self.spares.pop()
         try:
-            made = await asyncio.wait_for(asyncio.to_thread(_asked, child, question), MOST)
+            connection.send((texts, function, self.options, path, *given))
+            made = await asyncio.wait_for(asyncio.to_thread(connection.recv), MOST)
         except (EOFError, OSError, asyncio.TimeoutError):
             made = None
         finally:
-            child.process.kill()
+            child.kill()
             self.spare()
         if isinstance(made, MultibotError):
             self.window_show_message(lsp.ShowMessageParams(lsp.MessageType.Warning, str(made)))
@@ -99,31 +93,26 @@ class Server(LanguageServer):
     def spare(self) -> None:
         """Have a process that only waits for a question."""
         if not self.spares:
-            self.preparing = asyncio.ensure_future(self._prepare())
+            self.spares.append(asyncio.ensure_future(asyncio.to_thread(self._started)))
 
-    async def _prepare(self) -> None:
-        self.spares.append(await asyncio.to_thread(self._started))
-
-    def _started(self) -> Child:
+    def _started(self) -> tuple[BaseProcess, Connection]:
         ours, theirs = self.context.Pipe()
         child = self.context.Process(target=answers.answer, args=(theirs,), daemon=True)
         child.start()
         theirs.close()
-        return Child(child, ours)
+        return child, ours
 
-    def diagnose(self, uri: str) -> None:
-        """Lint a file that is open, once nobody has typed for a moment."""
-        self.stop(uri)
-        self.running[uri] = asyncio.create_task(self._diagnose(uri))
-
-    def stop(self, uri: str) -> None:
-        """Stop linting a file."""
-        if task := self.running.pop(uri, None):
-            task.cancel()
+    def diagnose(self, *uris: str) -> None:
+        """Lint files that are open, once nobody has typed for a moment."""
+        for uri in uris:
+            if uri in self.running:
+                self.running[uri].cancel()
+            self.running[uri] = asyncio.create_task(self._diagnose(uri))
 
     async def _diagnose(self, uri: str) -> None:
         await asyncio.sleep(PAUSE)
-        found = await self.ask(answers.diagnose, uri)
+        is_open = uri in self.workspace.text_documents
+        found = await self.ask(answers.diagnose, uri) if is_open else ()
         if found is not None:
             self.publish(uri, found)
 
@@ -156,12 +145,6 @@ class Server(LanguageServer):
         """Return a place as the editor counts."""
         document = self.workspace.get_text_document(self.uri_of(it.file))
         return lsp.Location(document.uri, _range(document, *it.start, *it.end))
-
-
-def _asked(child: Child, question: object) -> Any:
-    with child.connection as connection:
-        connection.send(question)
-        return connection.recv()
 
 
 def _range(document: TextDocument, line: int, column: int, end: int, last: int) -> lsp.Range:
@@ -201,13 +184,7 @@ def _changed(ls: Server, params: Any) -> None:
 
 
 def _saved(ls: Server, _: lsp.DidSaveTextDocumentParams) -> None:
-    for uri in tuple(ls.workspace.text_documents):  # they may include it
-        ls.diagnose(uri)
-
-
-def _closed(ls: Server, params: lsp.DidCloseTextDocumentParams) -> None:
-    ls.stop(params.text_document.uri)
-    ls.publish(params.text_document.uri, ())
+    ls.diagnose(*ls.workspace.text_documents)  # one may include it
 
 
 def _cursor(ls: Server, params: Any) -> tuple[str, int, int]:
@@ -271,7 +248,7 @@ _FEATURES: Mapping[str, tuple[Callable[..., Any], Any]] = {
     lsp.TEXT_DOCUMENT_DID_OPEN: (_changed, None),
     lsp.TEXT_DOCUMENT_DID_CHANGE: (_changed, None),
     lsp.TEXT_DOCUMENT_DID_SAVE: (_saved, None),
-    lsp.TEXT_DOCUMENT_DID_CLOSE: (_closed, None),
+    lsp.TEXT_DOCUMENT_DID_CLOSE: (_changed, None),
     lsp.TEXT_DOCUMENT_HOVER: (_hover, None),
     lsp.TEXT_DOCUMENT_CODE_ACTION: (_actions, lsp.CodeActionOptions([_FIX, _FIX_ALL])),
     lsp.TEXT_DOCUMENT_DEFINITION: (_definition, None),

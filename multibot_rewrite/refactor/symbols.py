@@ -5,20 +5,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import suppress
-from itertools import chain
+from itertools import chain, islice
 from typing import NamedTuple
 
-from multibot_rewrite.base.bounded import read_bytes
 from multibot_rewrite.base.findings.finding import locate
-from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.companions.names.rename_map import KINDS as OF_FILES
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.steps.document import tag_end
-from multibot_rewrite.fleet.one_file import names_in_file
 from multibot_rewrite.refactor.package import Description, Expanding, Package, read_package
-from multibot_rewrite.refactor.rename import KINDS
+from multibot_rewrite.refactor.rename import KINDS, files_with_names
 from multibot_rewrite.refactor.source_edits import (
     SourceEdit,
     ValueEdit,
@@ -39,11 +35,6 @@ class Place(NamedTuple):
     name: str
     declares: bool
 
-    @property
-    def size(self) -> tuple[int, int]:
-        """How many lines, and how many columns, it covers."""
-        return self.end[0] - self.start[0], self.end[1] - self.start[1]
-
 
 def find_places(path: str, at: tuple[int, int], folder: str, tree: Tree) -> list[Place]:
     """Return all places of the link, joint, frame or topic at a place of a file; none where there is
@@ -53,7 +44,8 @@ def find_places(path: str, at: tuple[int, int], folder: str, tree: Tree) -> list
     every = dict.fromkeys((*described, *_in_other_files(package)))
     real = os.path.realpath(path)
     here = (it for it in every if it.start <= at <= it.end and os.path.realpath(it.file) == real)
-    found = min(here, key=lambda it: (it.size, not it.declares), default=None)
+    # Where tags and names begin, the name is the last; a declaration says more than a use.
+    found = max(here, key=lambda it: (it.start, it.declares), default=None)
     return [it for it in every if found and (it.name, it.kind) == (found.name, found.kind)]
 
 
@@ -90,18 +82,17 @@ def _span(it: Description, change: ValueEdit) -> SourceEdit | None:
 
 def _in_other_files(package: Package) -> Iterator[Place]:
     """Return the names in the files that belong to the first description."""
-    found = package.found
-    urdf = next((it for it in package.descriptions if it.path in found.descriptions), None)
-    others = (*found.params, *found.rviz, *found.bridge, *found.moveit, *found.behavior_trees)
-    for path in others if urdf else ():
-        data = read_bytes(path)
-        with suppress(MultibotError):
-            file = names_in_file(data, path, urdf.inventory.document.source)
+    own = (it for it in package.descriptions if it.path in package.found.descriptions)
+    for urdf in islice(own, 1):
+        source = urdf.inventory.document.source
+        for path, data, file in files_with_names(package, source):
             text, before = file.text, len(data) - len(file.text.encode())
             for site in file.names:
                 kind = _kind(site.kind, *OF_FILES.get(site.kind, ()))
                 at = text.find(site.text, site.slot.start + site.at, site.slot.end)
                 if kind and at >= 0:
-                    sizes = (len(text[:end].encode()) for end in (at, at + len(site.text)))
-                    ends = (locate(data, before + size) for size in sizes)
-                    yield Place(path, *ends, kind, site.text, False)
+                    start, end = (
+                        locate(data, before + len(text[:it].encode()))
+                        for it in (at, at + len(site.text))
+                    )
+                    yield Place(path, start, end, kind, site.text, False)
