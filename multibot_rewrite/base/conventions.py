@@ -18,7 +18,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 
 
 def _rows() -> Mapping[str, Sequence[tuple[list[str], str]]]:
-    """Return the words of each row and what stands behind them, by the parts of the table."""
+    """Return the words of each row and what follows them, by the parts of the table."""
     found: dict[str, list[tuple[list[str], str]]] = {}
     name = ""
     with open(os.path.join(os.path.dirname(__file__), "conventions.txt"), encoding="utf-8") as file:
@@ -119,7 +119,7 @@ BY_HAND = ("teleop_twist_keyboard", "rviz2")
 
 
 def tool_patterns() -> tuple[str, ...]:
-    """The patterns of all tools, without those inside another."""
+    """Return the name patterns of all tools, without those inside another pattern."""
     from fnmatch import fnmatchcase  # few commands ask for a pattern
 
     every = [it.pattern for it in TOOLS]
@@ -137,7 +137,7 @@ def is_tool_word(word: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def only_looks(word: str) -> bool:
-    """Does a node called so only look, or pass on what a person asks for?"""
+    """Return whether a node of this name only observes, or passes on what a person asks for."""
     return _any_of(tuple(it.pattern for it in TOOLS if it.looks)).fullmatch(word) is not None
 
 
@@ -149,7 +149,7 @@ def _any_of(patterns: tuple[str, ...]) -> re.Pattern[str]:
 
 
 def types_of(word: str) -> tuple[str, ...]:
-    """The types of messages, or how they begin, of which a convention says this."""
+    """Return the message types, or their beginnings, that a convention lists for this word."""
     return tuple(type_ for (type_, *said), _ in ROWS["types"] if word in said)
 
 
@@ -198,13 +198,13 @@ _CHOOSES = lazy_compile(r"mux|prioriti|arbit|selector|switch|twist_manager")
 
 
 def team(node: str) -> str:
-    """The node's name, or that of the nodes that it takes turns with."""
+    """Return the node's name, or the name of the nodes that it takes turns with."""
     last = node.rpartition("/")[2]
     return next((name for name, nodes in TEAMS.items() if _any_of(nodes).fullmatch(last)), node)
 
 
 def chooses(node: str) -> bool:
-    """Does the node choose between several senders, like twist_mux?"""
+    """Return whether the node chooses between several senders, like twist_mux."""
     return bool(_CHOOSES.search(node.rpartition("/")[2]))
 
 

@@ -117,7 +117,7 @@ _STARTS = {
 
 
 def recognised(data: bytes) -> str:
-    """The kind of a file; empty for one of no known kind."""
+    """Return the kind of a file by its contents, empty for one of no known kind."""
     text = data[:_LOOKED_AT].removeprefix(BOM_UTF8).lstrip()
     started = next((kind for start, kind in _STARTS.items() if text.startswith(start)), "")
     if started:
@@ -132,15 +132,15 @@ def _first(marks: tuple[tuple[str, re.Pattern[bytes]], ...], text: bytes) -> str
 
 
 def refuse_others(data: bytes, file: str, *wanted: str) -> None:
-    """Raises InputError that says what a file is, and which command takes it, unless it is of a wanted
-    kind, or of none that is known."""
+    """Raise InputError that names the kind of a file and the command for it, unless it is of a wanted
+    kind or of no known one."""
     kind = recognised(data)
     if kind and kind not in wanted:
         raise InputError(f"{file}: {KINDS[kind].words}; {KINDS[kind].use}")
 
 
 def refuse_templates(data: bytes, file: str) -> None:
-    """Raises InputError for a text that a template language fills in: it is none of the kinds yet."""
+    """Raise InputError for a text that a template language has yet to fill in."""
     # One character is found in a hundredth of the time of two, and most descriptions have none.
     if b"{" not in data or (b"{{" not in data and b"{%" not in data):
         return

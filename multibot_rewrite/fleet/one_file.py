@@ -27,7 +27,7 @@ from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.rules.files.wheels import with_description
 
-# Code -> what is counted and what is said of it. A file with one of these findings is not proved.
+# Code -> what is counted and what is said of it. A file with one of these findings is not verified.
 REASONS = {code: (" ".join(what), said) for (code, *what), said in ROWS["reasons"]}
 _DECLARED = frozenset(it for kinds in KINDS.values() for it in kinds)
 # Kinds of names that are spelled without a description.
@@ -36,13 +36,13 @@ _IN_GRAPH = frozenset(("topic", "service"))
 
 class RewrittenFile(NamedTuple):
     """A file as one robot needs it: its ``kind`` (params, rviz, moveit, bridge, tree or lua), its
-    bytes, what is wrong in it, and why robots may meet all the same (empty where it is proved)."""
+    bytes, what is wrong in it, and why robots may meet all the same (empty where it is verified)."""
 
     robot: str
     kind: str
     data: bytes
     findings: tuple[Finding, ...]
-    not_proved: tuple[str, ...]
+    not_verified: tuple[str, ...]
 
     @property
     def text(self) -> str:

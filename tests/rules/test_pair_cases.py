@@ -124,7 +124,7 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
         (
             ALONE.format("robot1/laser, "),
             ["MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
-             " no planned node sends its description: is what sends it started?"],
+             " no planned node publishes its description: is the node that does it running?"],
         ),
         (
             ALONE.format("robot1/laser, ") + DESCRIBED,
@@ -139,7 +139,7 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
         (
             TWO + "running: /robot1/arm\nrunning: /robot1/driver",
             ["MG109 none of the 1 nodes of robot2 is in the graph; is the robot started, and with"
-             " this ROS_DOMAIN_ID? Only this machine is looked at: range LOCALHOST, no"
+             " this ROS_DOMAIN_ID? Only this machine is checked: range LOCALHOST, no"
              " ROS_STATIC_PEERS"],
         ),
         (

@@ -185,14 +185,14 @@ OWN = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
         (
             (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
              f"/robot1/b publishes /robot1/cmd_vel {TWIST}"),
-            ["MG312 warning /robot1/b: publishes /robot1/cmd_vel beside /robot1/a, and"
+            ["MG312 warning /robot1/b: publishes /robot1/cmd_vel, and so does /robot1/a;"
              " /robot1/driver obeys both"],
         ),
         (
             (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
              f"/teleop_twist_keyboard publishes /robot1/cmd_vel {TWIST}"),
-            ["MG312 warning /teleop_twist_keyboard: publishes /robot1/cmd_vel beside /robot1/a,"
-             " and /robot1/driver obeys both"],
+            ["MG312 warning /teleop_twist_keyboard: publishes /robot1/cmd_vel, and so does /robot1/a;"
+             " /robot1/driver obeys both"],
         ),
         # A bridge in both directions orders nothing itself.
         (
@@ -361,7 +361,7 @@ ELSEWHERE = (
         ),
         (
             (WAITS, "/robot1/amcl subscribes /robot1/imu sensor_msgs/msg/Imu as imu"),
-            ["MG316 no known node sends /robot1/imu, /robot1/scan; name a stack or nodes that do, if"
+            ["MG316 no known node sends /robot1/imu, /robot1/scan; name a node set or nodes that do, if"
              " no driver of its own does"],
         ),
         (
@@ -770,7 +770,7 @@ def reads(frame: str, rest: str, node: str = "planner", level: str = "warning") 
             (STILL, "/robot1/planner looks up odom", f"/robot1/planner subscribes /robot1/tf {TF}"),
             reads(
                 "odom",
-                "no known node sends it; name the node or stack that sends it",
+                "no known node sends it; name the node or node set that sends it",
                 level="note",
             ),
         ),
@@ -912,7 +912,8 @@ PARTS = {
 }
 LACKS_SCAN = (
     "/robot2/lidar: lacks /robot2/scan, which /robot1/lidar has; it is used by"
-    " /robot2/odometer in vain; see its log; a remap rule, a parameter or a version of its own?"
+    " /robot2/odometer in vain; see its log;"
+    " does it have other remap rules, parameters or another version?"
 )
 NO_LIDAR = (
     "robot2: robot2 has no lidar, as robot1 has (/robot1/lidar); /robot2/scan is used by"

@@ -40,7 +40,7 @@ class CompanionNames(NamedTuple):
 
 
 def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True) -> str:
-    """The robot's version of ``value``, a name of the kind ``word``; other values stay.
+    """Return the robot's version of ``value``, a name of the kind ``word``; other values stay.
 
     ``namespaced`` is true if a relative topic is resolved in the robot's namespace.
     """
@@ -58,7 +58,7 @@ def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True)
 
 
 def with_srdf(declared: Declared, semantics: Declared) -> Declared:
-    """What a description declares, and the groups and virtual joints of its SRDF."""
+    """Return the names that a description declares, with the groups and virtual joints of its SRDF."""
     more = {
         kind: {**declared.get(kind, {}), **semantics.get(kind, {})} for kind in ("group", "joint")
     }
@@ -104,5 +104,5 @@ def _without_argument(
 
 
 def is_declared(names: CompanionNames, word: str, value: str) -> bool:
-    """Does the description declare this link, joint, sensor, gpio or hardware?"""
+    """Return whether the description declares this link, joint, sensor, gpio or hardware."""
     return any(value in names.declared.get(kind, ()) for kind in KINDS[word])

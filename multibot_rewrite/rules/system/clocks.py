@@ -117,9 +117,7 @@ def clock_stands_or_goes_back(seen: Index) -> Iterator[Finding]:
             cause = "is a bag played in a loop, or was the simulation reset?"
             yield clock_stands_or_goes_back.finding(message, cause, level=WARNING, **about)
         elif it.age == inf and nodes:
-            message = (
-                f"the time on {CLOCK} stands: {clocks[0]} sends none, and {nodes[0]} waits for it"
-            )
+            message = f"{CLOCK} stopped: {clocks[0]} sends no time, and {nodes[0]} waits for it"
             yield clock_stands_or_goes_back.finding(message, "is the simulation paused?", **about)
 
 
@@ -150,7 +148,7 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
             cause, level = "set use_sim_time: true for all nodes of the robot", ERROR
         elif others and robot:
             message = f"{robot} is on the machine's time, {first} on simulated time"
-            cause = f"a real robot beside a simulation? Else set use_sim_time: true for {robot}"
+            cause = f"if {robot} is not a real robot in a simulation, set use_sim_time: true for it"
             level = WARNING
         else:
             continue

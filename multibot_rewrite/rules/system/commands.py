@@ -290,7 +290,7 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
         loose = [it for it in teams.values() if it not in guards]
         tool = next((node for node in loose if is_tool(node)), max(loose or teams.values()))
         others = [node for node in teams.values() if node != tool]
-        message = f"publishes {ends.name} beside {shorten(others)}, and {readers[0]} obeys both"
+        message = f"publishes {ends.name}, and so does {shorten(others)}; {readers[0]} obeys both"
         past = bool(guards) and tool not in guards
         cause = f"{_MUX} {guards[0]}{_EACH}" if past else _CHOOSE
         if past and chooses(guards[0]):

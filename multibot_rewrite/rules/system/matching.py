@@ -10,9 +10,10 @@ from math import inf
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, STAMP_SWITCHES, switch
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Setting
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.knowledge.stacks import older_node
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_set
 from multibot_rewrite.system import words
@@ -77,11 +78,19 @@ def _differs(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End])
     both, node = (*others, *own), own[0].node
     switched = to_stamp(seen, both) if stamped else Cause("")
     level = WARNING if is_viewer(node) else ERROR
+    if stale := _stale(seen, both):
+        level, cause = NOTE, f"{cause}; {stale}: its type may be another one now"
     robot = seen.robot(node) or seen.robot(ends.name)
     return types_differ.finding(
         message, f"{cause}{switched.hint}{see(both)}", settings=switched.settings,
         level=level, robot=robot, node=node, names=(ends.name,), **where(both),
     )  # fmt: skip
+
+
+def _stale(seen: Index, ends: Iterable[End]) -> str:
+    """Say that the type of one of the ends is known of an earlier version of its node only."""
+    known = (seen.node[it.node].known for it in ends if it.node in seen.node)
+    return next(filter(None, (older_node(it, seen.system.release) for it in known)), "")
 
 
 def to_stamp(seen: Index, ends: Iterable[End]) -> Cause:
