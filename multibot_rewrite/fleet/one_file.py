@@ -4,7 +4,6 @@ bridge, a behavior tree, Lua."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -20,6 +19,7 @@ from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.formats import kind_alone, read_named, rewrite_alone
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
+from multibot_rewrite.description.checks.verdict import OF_FILES, not_proved
 from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.sources.job import Job, read_jobs
 from multibot_rewrite.description.sources.read import Source
@@ -27,22 +27,6 @@ from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.rules.files.wheels import with_description
 
-# Code -> what is counted and what is said of it. A file with one of these findings is not proved.
-REASONS = {
-    "MB853": ("frame", "in no description"),
-    "MB854": ("joint", "in no description"),
-    "MB901": ("name", "not understood"),
-    "MB876": ("name", "in a block of text"),
-    "MB105": ("placeholder", "that a launch file has to replace"),
-    "MB422": ("prefix parameter", "that no postfix reaches"),
-    "MB412": ("resource", "shared by all robots"),
-    "MF120": ("topic", "that remap rules move"),
-    "MF203": ("tf topic", "that rviz2 has to be given"),
-    "MB891": ("display", "not known"),
-    "MB881": ("value", "not rewritten"),
-    "MB887": ("file", "that it includes"),
-    "MB888": ("frame", "that is no plain string"),
-}
 _DECLARED = frozenset(it for kinds in KINDS.values() for it in kinds)
 # Kinds of names that are spelled without a description.
 _IN_GRAPH = frozenset(("topic", "service"))
@@ -189,12 +173,7 @@ def _for_robot(
     named = with_description(named, job.inventories[0].document) if job else named
     findings = tuple(dict.fromkeys((*made.findings, *judged_once(named))))
     ordered = tuple(sorted(findings, key=lambda it: (it.line, it.column, it.code)))
-    counted = Counter(it.code for it in findings)
-    reasons = [
-        f"{plural(counted[code], what)} {why}"
-        for code, (what, why) in REASONS.items()
-        if counted[code]
-    ]
+    reasons = [*not_proved(findings, OF_FILES)]
     if made.kept:
         reasons.append(f"{plural(made.kept, 'name')} not the robot's")
     return RewrittenFile(robot, kind, made.text.encode(), ordered, tuple(reasons))

@@ -15,7 +15,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.knowledge.worlds import SYSTEMS
+from multibot_rewrite.knowledge.worlds import DRIVES, SYSTEMS
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -43,25 +43,6 @@ CLASSIC = Simulator(
     "Gazebo Classic", ("gazebo_ros2_control/GazeboSystem",), ("gazebo_ros2_control",), _TAKES
 )
 SIMULATORS = (GAZEBO, CLASSIC)
-# Parameters of systems of Gazebo and plugins of Classic that command a joint.
-DRIVES = {
-    "gz-sim-diff-drive-system": ("left_joint", "right_joint"),
-    "gz-sim-ackermann-steering-system": (
-        *("left_joint", "right_joint", "left_steering_joint", "right_steering_joint"),
-    ),
-    "gz-sim-mecanum-drive-system": (
-        *("front_left_joint", "front_right_joint", "back_left_joint", "back_right_joint"),
-    ),
-    "gz-sim-joint-controller-system": ("joint_name",),
-    "gz-sim-joint-position-controller-system": ("joint_name",),
-    "gz-sim-joint-trajectory-controller-system": ("joint_name",),
-    "gazebo_ros_diff_drive": ("left_joint", "right_joint"),
-    "gazebo_ros_ackermann_drive": (
-        *("front_left_joint", "front_right_joint", "rear_left_joint", "rear_right_joint"),
-        *("left_steering_joint", "right_steering_joint"),
-    ),
-    "gazebo_ros_tricycle_drive": ("steering_joint", "actuated_wheel_joint"),
-}
 
 
 @memoized

@@ -11,6 +11,7 @@ from math import isfinite
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.bounded import own_rows
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.description.checks.links_and_joints import Robot
@@ -18,25 +19,9 @@ from multibot_rewrite.description.checks.planning_groups import is_pinocchios, t
 from multibot_rewrite.description.checks.problem import Problem, fault
 
 # Element -> required attributes, other attributes, children.
-_PAIR = (("link1", "link2"), ("reason",), ())
-ELEMENTS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]] = {
-    "group": (("name",), (), ("link", "joint", "passive_joint", "chain", "group")),
-    "group/link": (("name",), (), ()),
-    "group/joint": (("name",), (), ()),
-    "group/passive_joint": (("name",), (), ()),
-    "group/chain": (("base_link", "tip_link"), (), ()),
-    "group/group": (("name",), (), ()),
-    "group_state": (("name", "group"), (), ("joint",)),
-    "group_state/joint": (("name", "value"), (), ()),
-    "end_effector": (("name", "group", "parent_link"), ("parent_group",), ()),
-    "virtual_joint": (("name", "child_link", "parent_frame", "type"), (), ()),
-    "passive_joint": (("name",), (), ()),
-    "disable_collisions": _PAIR,
-    "enable_collisions": _PAIR,
-    "disable_default_collisions": (("link",), (), ()),
-    "link_sphere_approximation": (("link",), (), ("sphere",)),
-    "link_sphere_approximation/sphere": (("center", "radius"), (), ()),
-    "joint_property": (("joint_name", "property_name", "value"), (), ()),
+ELEMENTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
+    element: tuple(tuple(it.split()) for it in rest)
+    for element, *rest in own_rows(__file__, "srdf.schema")
 }
 _TOP = tuple(it for it in ELEMENTS if "/" not in it)
 # How many numbers a joint's state has; other types have one.
