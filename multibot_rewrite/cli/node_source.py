@@ -106,7 +106,7 @@ def _source(it: Endpoint | Param, folder: str = "") -> str:
 
 
 def _near(text: str, folder: str) -> str:
-    """A place as it is below the package."""
+    """Return a place relative to the package."""
     return text.replace(os.path.join(os.path.realpath(folder), ""), "") if folder else text
 
 

@@ -4,11 +4,12 @@ bridge, a behavior tree, Lua."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.arguments import checked
-from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
+from multibot_rewrite.base.conventions import ROWS, SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, Naming, make_naming
@@ -19,7 +20,6 @@ from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.formats import kind_alone, read_named, rewrite_alone
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
-from multibot_rewrite.description.checks.verdict import OF_FILES, not_proved
 from multibot_rewrite.description.rewriters.made_topics import words_of
 from multibot_rewrite.description.sources.job import Job, read_jobs
 from multibot_rewrite.description.sources.read import Source
@@ -27,6 +27,8 @@ from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.rules.files.wheels import with_description
 
+# Code -> what is counted and what is said of it. A file with one of these findings is not verified.
+REASONS = {code: (" ".join(what), said) for (code, *what), said in ROWS["reasons"]}
 _DECLARED = frozenset(it for kinds in KINDS.values() for it in kinds)
 # Kinds of names that are spelled without a description.
 _IN_GRAPH = frozenset(("topic", "service"))
@@ -34,13 +36,13 @@ _IN_GRAPH = frozenset(("topic", "service"))
 
 class RewrittenFile(NamedTuple):
     """A file as one robot needs it: its ``kind`` (params, rviz, moveit, bridge, tree or lua), its
-    bytes, what is wrong in it, and why robots may meet all the same (empty where it is proved)."""
+    bytes, what is wrong in it, and why robots may meet all the same (empty where it is verified)."""
 
     robot: str
     kind: str
     data: bytes
     findings: tuple[Finding, ...]
-    not_proved: tuple[str, ...]
+    not_verified: tuple[str, ...]
 
     @property
     def text(self) -> str:
@@ -173,7 +175,12 @@ def _for_robot(
     named = with_description(named, job.inventories[0].document) if job else named
     findings = tuple(dict.fromkeys((*made.findings, *judged_once(named))))
     ordered = tuple(sorted(findings, key=lambda it: (it.line, it.column, it.code)))
-    reasons = [*not_proved(findings, OF_FILES)]
+    counted = Counter(it.code for it in findings)
+    reasons = [
+        f"{plural(counted[code], what)} {why}"
+        for code, (what, why) in REASONS.items()
+        if counted[code]
+    ]
     if made.kept:
         reasons.append(f"{plural(made.kept, 'name')} not the robot's")
     return RewrittenFile(robot, kind, made.text.encode(), ordered, tuple(reasons))

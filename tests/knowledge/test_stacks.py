@@ -272,7 +272,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
         ),
         (
             "stacks: {a: {nodes: [amcl, {node: map_server, as: amcl}]}}",
-            "stack 'a' has two different nodes called 'amcl'",
+            "node set 'a' has two different nodes called 'amcl'",
         ),
     ],
 )

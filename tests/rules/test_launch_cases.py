@@ -43,7 +43,7 @@ from multibot_rewrite.system.records import Node, Place, Robot, System
 
 START = (
     "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
-    "that starts it beside this one"
+    "that starts it in addition to this one"
 )
 TF = ("tf2_ros", "static_transform_publisher", "s")
 STATE = ("robot_state_publisher", "robot_state_publisher", "rsp")
@@ -267,8 +267,8 @@ def described(text: str = "<robot name='r'><link name='a'/></robot>") -> Launche
 
 
 CREATE = ("ros_gz_sim", "create", "create")
-BESIDE = "name the launch file that does beside this one, if there is one"
-UNSURE = "a node that is not known may; see what is incomplete"
+BESIDE = "name the launch file that starts it in addition to this one, if there is one"
+UNSURE = "an unknown node may do it: see what is reported as incomplete"
 
 
 def test_a_spawner_without_its_manager(known: Knowledge) -> None:
@@ -342,7 +342,7 @@ def test_joints_without_a_description(known: Knowledge) -> None:
     assert judged(known, "MG724", joints, described()) == []
 
 
-LEFT = "no node of its stack or file is started here: name the launch file that does, too"
+LEFT = "no node of its node set or file is started here: name the launch file that does, too"
 
 
 @pytest.mark.parametrize(

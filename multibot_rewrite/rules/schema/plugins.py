@@ -121,7 +121,7 @@ def _unread(
     parent = child.getparent()
     there = (it for it in blocks if it and parent is not None and parent.find(it) is not None)
     if beside := next(there, ""):
-        message = f"{title(section)} reads {name!r} in <{beside}>, not beside it"
+        message = f"{title(section)} reads {name!r} in <{beside}>, not outside of it"
         yield fault("misplaced", child, None, message, f"move it into <{beside}>")
 
 
