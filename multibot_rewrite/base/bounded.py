@@ -121,6 +121,13 @@ def own_text(module: str, name: str) -> str:
     return read_text(os.path.join(os.path.dirname(module), name))
 
 
+def own_rows(module: str, name: str) -> list[list[str]]:
+    """Return the rows of a table of this package, beside ``module``; ``|`` is between columns."""
+    lines = own_text(module, name).splitlines()
+    rows = (it.split("|") for it in lines if it and not it.startswith("#"))
+    return [[column.strip() for column in row] for row in rows]
+
+
 def compose_yaml(text: str, file: str, remedy: str = CORRECT) -> yaml.Node | None:
     """Return PyYAML's node of the one document; raises InputError with the place in ``file``."""
     import yaml

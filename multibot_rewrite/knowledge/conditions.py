@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
+from multibot_rewrite.base.bounded import own_rows
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
@@ -18,46 +19,16 @@ from multibot_rewrite.knowledge.packages import by_version
 Values = Callable[[str], object]
 RELEASE, VERSION, PROGRAM, HEARD, UNSENT = "release", "version", "program", "heard", "unsent"
 OPEN_KIND, CHOSEN, NODL, SOURCE = "open", "chosen", "nodl", "source"
+_ROWS = own_rows(__file__, "conditions.schema")
 # Subject -> what its words are, and who decides.
-KINDS = {
-    "given": "a parameter that whoever starts it passes: its parameters",
-    HEARD: "an own topic that has a subscriber: all that a launch starts",
-    "missing": "a parameter that is not passed: its parameters",
-    PROGRAM: "the executable that runs it: the launch file",
-    RELEASE: "releases of ROS, for an endpoint: the release",
-    "run": "simulated or real: use_sim_time",
-    UNSENT: "a topic that no other node of the robot sends: its other nodes",
-    VERSION: "the package, and its version or a newer one: whoever installed it",
-    OPEN_KIND: "what is not known before the robot runs",
-}
+KINDS = {kind: what for kind, what, _ in _ROWS if what}
 # What is open -> as people read it. What is open may be there: no rule needs it, and it needs nobody.
 # The launch file of a fleet starts such a node only where a parameter file declares it; CHOSEN is a
 # word of nodes alone.
-OPEN = {
-    CHOSEN: "only where you start it",
-    "device": "only if the device has it",
-    "moment": "only for a time, or for one request",
-    "code": "only as its code was built",
-    "file": "only if a file says so",
-    NODL: "its NoDL file does not have it",
-    SOURCE: "only if its code comes to it",
-}
+OPEN = {it.removeprefix("open: "): said for it, _, said in _ROWS if it.startswith("open: ")}
 AND, OR, ALSO = " and ", " or ", "|"
 # A kind, or what is asked of a parameter -> how people read it.
-_SAID = {
-    "given": "{} is passed",
-    HEARD: "{} has a subscriber",
-    "missing": "{} is not passed",
-    PROGRAM: "it is started as {}",
-    RELEASE: "on {}",
-    "run": "the robot is {}",
-    UNSENT: "no other node sends {}",
-    VERSION: "{} or newer",
-    "=": "is",
-    "!=": "is not",
-    "set": "is set",
-    "unset": "is not set",
-}
+_SAID = {kind: said for kind, _, said in _ROWS if said}
 _KIND = lazy_compile(r"(?P<kind>[a-z]+): (?P<words>\S.*)")
 _TERM = lazy_compile(
     r"(?P<parameter>[^\s=!]+)"

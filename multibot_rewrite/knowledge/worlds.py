@@ -1,36 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The systems of gz-sim that a world needs, and what they send. Source: the names in gz-sim8
-src/systems, and include/gz/sim/server.config for those of a world that names none;
-SceneBroadcaster.cc SetupTransport, SimulationRunner.cc for the topics, which are below /world/NAME."""
+"""The systems of gz-sim that a world needs, what they send, and plugins that drive joints, as
+``worlds.schema`` has them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
+from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.base.conventions import ROWS
+from multibot_rewrite.base.bounded import own_rows
 
 DEFAULTS = ("physics", "user-commands", "scene-broadcaster")
-SENT_BY_ANY: Mapping[str, str] = MappingProxyType({"clock": "Clock", "stats": "WorldStatistics"})
-SENT_BY: Mapping[str, Mapping[str, str]] = MappingProxyType(
-    {system: dict(it.split("=") for it in sent) for (system, *sent), _ in ROWS["sent by systems"]}
-)
-_CAMERAS = "sensors", "Sensors"
+_SENDS, _DRIVES = "sends", "drives"
+_ROWS = own_rows(__file__, "worlds.schema")
+
+
+def _of(kind: str) -> Iterator[tuple[str, list[str]]]:
+    yield from ((library, words.split()) for library, what, words in _ROWS if what == kind)
+
+
+_SENT = {name: dict(it.split("=") for it in words) for name, words in _of(_SENDS)}
+SENT_BY_ANY: Mapping[str, str] = _SENT.pop("*")
+SENT_BY: Mapping[str, Mapping[str, str]] = _SENT
+# Parameters that hold joints which a plugin commands, by its library.
+DRIVES: Mapping[str, tuple[str, ...]] = {name: tuple(words) for name, words in _of(_DRIVES)}
 # The library and the class, by the type of a sensor.
-SYSTEMS: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {
-        **dict.fromkeys(("camera", "depth_camera", "depth", "rgbd_camera", "rgbd"), _CAMERAS),
-        **dict.fromkeys(("gpu_lidar", "gpu_ray", "lidar", "ray"), _CAMERAS),
-        **dict.fromkeys(("thermal_camera", "thermal", "wide_angle_camera"), _CAMERAS),
-        **dict.fromkeys(("segmentation_camera", "segmentation"), _CAMERAS),
-        **dict.fromkeys(("boundingbox_camera", "boundingbox"), _CAMERAS),
-        "imu": ("imu", "Imu"),
-        "magnetometer": ("magnetometer", "Magnetometer"),
-        "altimeter": ("altimeter", "Altimeter"),
-        "air_pressure": ("air-pressure", "AirPressure"),
-        "air_speed": ("air-speed", "AirSpeed"),
-        "force_torque": ("forcetorque", "ForceTorque"),
-        "logical_camera": ("logical-camera", "LogicalCamera"),
-        **dict.fromkeys(("navsat", "gps"), ("navsat", "NavSat")),
-    }
-)
+SYSTEMS: Mapping[str, tuple[str, str]] = {
+    type_: (library, class_)
+    for library, class_, types in _ROWS
+    for type_ in (types.split() if class_ not in (_SENDS, _DRIVES) else ())
+}

@@ -37,6 +37,7 @@ VOLUME = GZ.format(
     "<link_name>w</link_name><min_volume>{}</min_volume><max_volume>{}</max_volume>",
 )
 SENSOR = '<gazebo reference="base"><sensor name="s" type="{}">{}</sensor></gazebo>'
+CONTACT = SENSOR.format("contact", "{}<contact><collision>c</collision>{}</contact>")
 IMU = SENSOR.format(
     "imu",
     "<imu><orientation_reference_frame><localization>{}</localization>"
@@ -64,6 +65,8 @@ IN_SENSOR = '<sensor name="ft"><{}_interface name="force.x"/></sensor>'
         ("MB125", MECANUM, ("0.4",), ("0",)),
         ("MB124", IMU, ("ENU",), ("EUN",)),
         ("MB125", LIDAR, ("gpu_lidar", "0.1"), ("gpu_lidar", "0")),
+        # The Contact system reads the topic in <contact> alone.
+        ("MB402", CONTACT, ("<topic>t</topic>", ""), ("", "<topic>t</topic>")),
         # No camera draws a lidar that casts rays.
         ("MB125", LIDAR, ("lidar", "0"), ("gpu_ray", "0")),
         ("MB124", CONTROL, ("calculate_dynamics", "true", ""), ("calculate_dynamics", "yes", "")),
@@ -88,3 +91,11 @@ def test_what_nobody_means_is_told(
     for values, count in ((good, 0), (bad, 1)):
         text = ROBOT.format(form.format(*values))
         assert len(lint_data("r.urdf", text.encode(), settings)) == count, values
+
+
+@pytest.mark.parametrize(("release", "count"), [("humble", 0), ("jazzy", 1), ("kilted", 0)])
+def test_a_topic_that_a_release_does_not_read_is_not_shared(release: str, count: int) -> None:
+    """PosePublisher has read it since gz-sim 8, and gz-sim 9 up to 9.5.0 does not."""
+    text = ROBOT.format(GZ.format("pose-publisher", "PosePublisher", "<topic>pose</topic>"))
+    settings = Settings(select=("MB402",), distro=release)
+    assert len(lint_data("r.urdf", text.encode(), settings)) == count

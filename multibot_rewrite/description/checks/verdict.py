@@ -6,14 +6,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from multibot_rewrite.base.conventions import ROWS
+from multibot_rewrite.base.bounded import own_rows
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.meeting import ELSEWHERE
 from multibot_rewrite.description.readback import meeting
 
 # Code -> what is counted and what is said of it. A rewrite with one of these findings is not verified.
-REASONS = {it: (" ".join(what), said) for (it, *what), said in ROWS["reasons of descriptions"]}
+REASONS = {code: (what, why) for code, what, why in own_rows(__file__, "reasons.schema")}
 
 # What is verified of a description and hangs on what starts it: a code, and how the summary says it.
 GIVEN = {

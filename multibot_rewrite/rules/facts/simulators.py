@@ -13,10 +13,9 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.knowledge.worlds import SYSTEMS
+from multibot_rewrite.knowledge.worlds import DRIVES, SYSTEMS
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -44,8 +43,6 @@ CLASSIC = Simulator(
     "Gazebo Classic", ("gazebo_ros2_control/GazeboSystem",), ("gazebo_ros2_control",), _TAKES
 )
 SIMULATORS = (GAZEBO, CLASSIC)
-# Parameters of systems of Gazebo and plugins of Classic that command a joint.
-DRIVES = {plugin: tuple(names) for (plugin, *names), _ in ROWS["drives"]}
 
 
 @memoized

@@ -135,12 +135,7 @@ def _stem(endings: Any, value: Any) -> str:
 
 
 _SHAPES: dict[str, Callable[[Any, Any], str]] = {
-    "limits": _limits,
-    "square": _square,
-    "polygon": _polygon,
-    "unique": _unique,
-    "some": _some,
-    "stem": _stem,
+    it.__name__[1:]: it for it in (_limits, _square, _polygon, _unique, _some, _stem)
 }
 
 

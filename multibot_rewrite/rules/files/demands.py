@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, rule
@@ -252,22 +252,18 @@ def _text(value: Value) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-_PAIRS: dict[str, Callable[[Demand], str]] = {
-    "with": _with,
-    "without": _without,
-    "unlike": _unlike,
-    "among": _among,
-    "foreign": _foreign,
-    "as_many": _as_many,
-    "instead": _instead,
-    "is_one": _is_one,
-    "together": _together,
-    "or_true": _or_true,
-    "alone": _alone,
-    "period": _period,
-    "once": _once,
-    "renamed": _renamed,
-    "bonded": _bonded,
-    "listed": _listed,
-}
+_OF_OTHERS = (
+    _with,
+    _without,
+    _unlike,
+    _among,
+    _as_many,
+    _instead,
+    _together,
+    _or_true,
+    _alone,
+    _period,
+)
+_OF_WORDS = _foreign, _is_one, _once, _renamed, _bonded, _listed
+_PAIRS = {it.__name__[1:]: it for it in (*_OF_OTHERS, *_OF_WORDS)}
 _ROUNDED = 1e-4

@@ -6,12 +6,12 @@ Sources: srdfdom model.cpp; moveit_core robot_model.cpp (joint properties).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import isfinite
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.conventions import ROWS
+from multibot_rewrite.base.bounded import own_rows
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.description.checks.links_and_joints import Robot
@@ -19,9 +19,9 @@ from multibot_rewrite.description.checks.planning_groups import is_pinocchios, t
 from multibot_rewrite.description.checks.problem import Problem, fault
 
 # Element -> required attributes, other attributes, children.
-ELEMENTS = {
-    element: (tuple(required), *(tuple(it.split()) for it in more.split("|")))
-    for (element, *required), more in ROWS["elements of srdf"]
+ELEMENTS: Mapping[str, tuple[tuple[str, ...], ...]] = {
+    element: tuple(tuple(it.split()) for it in rest)
+    for element, *rest in own_rows(__file__, "srdf.schema")
 }
 _TOP = tuple(it for it in ELEMENTS if "/" not in it)
 # How many numbers a joint's state has; other types have one.
