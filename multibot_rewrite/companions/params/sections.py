@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.conventions import PLACEHOLDER, WORLD_NODES
 from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.naming import spelled
@@ -31,18 +32,6 @@ _MARK = re.compile(r"[&*][^\s*\[\]{},/:]")
 NO_NAME = "a key is a mapping or a list; use a name as key"
 # Helper nodes of old releases: they have sections, but no names of their own.
 INNER = ("_rclcpp_node", "_client")
-# A key that only one kind of file has -> what that file is.
-_OTHER_FILES = {
-    "Visualization Manager": "it is an RViz config; list it under rviz",
-    "Panels": "it is an RViz config; list it under rviz",
-    "image": "it is a map file for map_server, which holds no robot's name; leave it out",
-    "joint_limits": "it holds MoveIt joint limits; list it under moveit",
-    "controller_names": "it holds MoveIt controllers; list it under moveit",
-    "moveit_simple_controller_manager": "it holds MoveIt controllers; list it under moveit",
-    "planner_configs": "it holds MoveIt planners; list it under moveit",
-    "initial_positions": "it holds initial joint positions for xacro; leave it out",
-    "robots": "it is a fleet file",
-}
 
 
 class ParamSection(NamedTuple):
@@ -113,15 +102,13 @@ def _looks_like(root: yaml.Node | None) -> str:
     if isinstance(root, yaml.SequenceNode):
         keys = {key.value for item in root.value for key, _ in pairs(item)}
         bridge = keys & {"topic_name", "ros_topic_name", "gz_topic_name"}
-        return (
-            "it is a ros_gz_bridge file; list it under bridge"
-            if bridge
-            else f"it is a list; {_TO_DO}"
-        )
+        own = "it is a ros_gz_bridge file; list it under bridge"
+        return own if bridge else f"it is a list; {_TO_DO}"
     if not isinstance(root, yaml.MappingNode):
         return f"it holds a single value; {_TO_DO}"
     keys = {key.value for key, _ in pairs(root)}
-    found = next((what for key, what in _OTHER_FILES.items() if key in keys), "")
+    others = load_own_yaml(__file__, "other_files.yaml").items()
+    found = next((what for key, what in others if key in keys), "")
     inner = {key.value for _, value in pairs(root) for key, _ in pairs(value)}
     if not found and "kinematics_solver" in inner:
         return "it holds MoveIt kinematics; list it under moveit"
