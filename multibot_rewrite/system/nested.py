@@ -38,6 +38,8 @@ from multibot_rewrite.system.records import (
 )
 
 ROW = ("role", "kind", "name", "type", "code_name")
+# What a row of an end that only may be there says besides.
+WHEN = "when"
 # Between the types of a row.
 OR = " | "
 _NOTHING_MORE = ("", None, "", NOWHERE)
