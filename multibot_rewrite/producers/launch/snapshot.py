@@ -101,10 +101,9 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
     parts = [it._replace(edges=(*it.edges, *of_plugins.get(it.name, ()))) for it in parts]
     bridged = bridged_domains(nodes)
     every_note = (*graph.notes, *notes, *bridged.notes)
-    rcl = f"rcl refuses {plural(len(refused), 'node')}: {shorten(refused)}"
     caveats = (
         *([Caveat(NOT_WHOLE, False, STOOD_IN)] if graph.stood_in else ()),
-        *([Caveat(REFUSED, True, rcl)] if refused else ()),
+        *_refused(refused),
         *_caveats(every_note, nodes),
         *_of_bridges(nodes, inside),
         *of_simulator(graph, models),
@@ -197,6 +196,12 @@ def _nodes(running: Iterable[Run], parts: Iterable[_Part]) -> Iterator[Node]:
         yield Node(part.name, it.process, place=it.place, known=known, untold=untold)
         own = dict.fromkeys(end.node for end in part.endpoints if end.node != part.name)
         yield from (Node(name, it.process, place=it.place, known=known) for name in own)
+
+
+def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
+    if nodes:
+        text = f"rcl refuses {plural(len(nodes), 'node')}: {shorten(nodes)}"
+        yield Caveat(REFUSED, True, text)
 
 
 def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Caveat]:
