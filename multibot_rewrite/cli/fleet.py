@@ -119,7 +119,7 @@ def _from_words(options: argparse.Namespace) -> Fleet:
 
 
 def own_nodes(options: argparse.Namespace) -> tuple[str | None, list[str]]:
-    """What ``--nodes`` names: the user's file of nodes and stacks, and NoDL files or folders."""
+    """Return the values of ``--nodes``: the user's file of nodes, and NoDL files or folders."""
     nodl = [it for it in options.nodes if _is_nodl(it)]
     files = [it for it in options.nodes if it not in nodl]
     if len(files) > 1:

@@ -61,18 +61,18 @@ _PLAIN = ("urdf", "baseline", "fail_on", "trust")
 
 def run(options: argparse.Namespace) -> int:
     """Lint or fix; returns the exit code."""
+    if options.lsp:
+        from multibot_rewrite.cli import lsp  # pygls is an extra
+
+        return lsp.run(options)
     check_use(options)
     config = configured(".", options.config)
-    asked = options.distro or config.distro
-    if doubt := release_doubt(asked):
+    if doubt := release_doubt(options.distro or config.distro):
         note(options, f"warning: {doubt}")
     alone = config
     config = with_options(config, **given(options))
     paths, unreadable = _files(options, config)
-    told = release_told(asked)
-    said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
-    settings = config.settings._replace(distro=said.release, ros=ROS_2 if told else "")
-    config = config._replace(settings=settings)
+    config, why = of_release(options, config, paths)
     _check_selecting(options, paths)
     # Before the work: nothing that is linted is written over.
     for option in ("--output", "--write-baseline"):
@@ -90,11 +90,22 @@ def run(options: argparse.Namespace) -> int:
         write_files(options, [(options.write_baseline, text)])
         note(options, f"{options.write_baseline}: {_count(findings)} are known from now on")
         return DONE
-    return _conclude(options, config, paths, findings, said.why or why_here(asked))
+    return _conclude(options, config, paths, findings, why)
+
+
+def of_release(
+    options: argparse.Namespace, config: Configured, paths: Sequence[str]
+) -> tuple[Configured, str]:
+    """Return the configuration for the release that the files are for, and why it is that one."""
+    asked = options.distro or config.distro
+    told = release_told(asked)
+    said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
+    settings = config.settings._replace(distro=said.release, ros=ROS_2 if told else "")
+    return config._replace(settings=settings), said.why or why_here(asked)
 
 
 def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[Finding]]:
-    """What is to be linted, and findings for folders that cannot be looked into."""
+    """Return the files to lint, and findings for folders that cannot be read."""
     paths = plain_words(options)
     if paths == [STDIN]:
         return paths, []
@@ -131,7 +142,7 @@ def _check_selecting(options: argparse.Namespace, paths: Sequence[str]) -> None:
     check_xacro(options, paths)
     alone = (".urdf", ".xacro", ".sdf")
     if options.urdf and all(it.endswith(alone) and ".srdf" not in it for it in paths):
-        raise UsageError("--urdf is for an SRDF or a file beside a description, and there is none")
+        raise UsageError("--urdf is for an SRDF or a related file; no such file is given")
 
 
 def _check_shared(
@@ -166,7 +177,7 @@ def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str])
 
 
 def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Finding]) -> list[str]:
-    """The files that are fixed. With --diff none is, and the changes are printed."""
+    """Apply fixes and return the fixed files. With --diff print the changes and fix none."""
     from multibot_rewrite.cli.output import diff
     from multibot_rewrite.description.sources.read import read_file
     from multibot_rewrite.lint.fix import fix
@@ -248,7 +259,7 @@ def check_use(options: argparse.Namespace) -> None:
 
 @contextmanager
 def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | None]:
-    """The cache for a lint, which is saved at the end; a folder that cannot be written is no error."""
+    """Yield the cache for a lint, or None, and save it at the end if its folder can be written."""
     # What trusted files look at is not known.
     if options.trust:
         yield None
@@ -268,7 +279,7 @@ def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | 
 
 
 def given(options: argparse.Namespace) -> dict[str, object]:
-    """What the command line says about the settings, by the names of ``with_options``."""
+    """Return the settings of the command line, by the names of ``with_options``."""
     said: dict[str, object] = {
         name: tuple(value) for name in _LISTS if (value := getattr(options, name))
     }

@@ -58,12 +58,12 @@ _OUT = "the bridge leaves it out"
 
 
 def row_of(node: yaml.Node) -> Row:
-    """The keys and values of an entry by the texts of the keys."""
+    """Return the keys and values of an entry by the texts of the keys."""
     return {str(key.value): (key, value) for key, value in pairs(node)}
 
 
 def text_in(row: Row, key: str) -> str:
-    """The value of a key as text; empty if it is missing or not a scalar."""
+    """Return the value of a key as text; empty if it is missing or not a scalar."""
     value = row[key][1] if key in row else None
     return str(value.value) if isinstance(value, yaml.ScalarNode) else ""
 
@@ -91,7 +91,7 @@ def faults(node: yaml.Node) -> Iterator[RowFault]:
 
 
 def below(name: str, above: str) -> str:
-    """A ROS name of a bridge that runs in a namespace below the robot's."""
+    """Return a ROS name of a bridge that runs in the namespace ``above`` below the robot's."""
     return f"/{above}/{name}" if above and not name.startswith("/") else name
 
 
@@ -105,5 +105,5 @@ def models(document: YamlText) -> Iterator[tuple[yaml.Node, str]]:
 
 
 def model_of(document: YamlText) -> str:
-    """The model that a file is for: the first in its gz topics, empty for none."""
+    """Return the model that a file is for: the first in its gz topics, empty for none."""
     return next((name for _, name in models(document)), "")

@@ -177,7 +177,7 @@ def facts_of(
         added = () if has_publisher else nodes_of(known, STATE_PUBLISHER)
         return (*found, *added)
     if has_publisher:
-        hint = f"leave out one of the stacks, {NO_STATE_PUBLISHER} or the one that has it"
+        hint = f"leave out one of the node sets, {NO_STATE_PUBLISHER} or the one that has it"
         raise UsageError(f"{STATE_PUBLISHER} is asked for and left out; {hint}")
     return tuple(found)
 
@@ -256,7 +256,7 @@ def expected(fleet: Fleet) -> System:
     plan = planned(fleet)
     nothing = vacuous(plan)
     if nothing:
-        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
+        hint = f"name a node set of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
     return plan
 

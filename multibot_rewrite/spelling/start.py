@@ -26,9 +26,10 @@ _COMMANDS = {("rviz2", "rviz2"): ("rviz2",)}
 
 
 class File(NamedTuple):
-    """The path of a file of the build."""
+    """The path of a file of the build; ``substituted``: the launch replaces the substitutions in it."""
 
     path: str
+    substituted: bool = False
 
 
 class Text(NamedTuple):
@@ -45,7 +46,7 @@ NOTHING: Mapping[str, str] = {}
 class Process(NamedTuple):
     """How a process runs, besides what its node is given.
 
-    ``prefix`` stands before its command, ``cwd`` is its folder, with ``shell`` a shell reads the line.
+    ``prefix`` is before its command, ``cwd`` is its folder, with ``shell`` a shell reads the line.
     With ``respawn`` it is started again when it ends, after ``respawn_delay`` seconds. It starts
     ``delay`` seconds after the launch, or after the ``event`` (one of ``EVENTS``) of the process that
     is number ``after`` in its launch, -1 for none. ``is_include`` is true for a launch file of a

@@ -66,7 +66,7 @@ def _tf_topics(robot: Robot, namespaced: bool) -> tuple[tuple[str, str], ...]:
 
 
 def _group(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
-    """The displays of a robot, in its colour."""
+    """Return the displays of a robot, in its colour."""
     robot = shown.robot
     model = {
         **_display("RobotModel", "RobotModel", {**_LATCHED, "Value": shown.description}, True),
@@ -124,7 +124,7 @@ def _plain(kind: str) -> dict[str, Any]:
 
 
 def _lines(value: Any) -> Iterator[str]:
-    """A mapping as lines of YAML. PyYAML takes longer than the rest of a build."""
+    """Yield a mapping as lines of YAML. PyYAML takes longer than the rest of a build."""
     for key, there in value.items():
         if isinstance(there, dict):
             yield f"{key}:"
@@ -152,7 +152,7 @@ BARE_HEADERS = declare("MF216", "rviz-bridged-messages", WARNING, formats=("flee
 def bridged_window(
     document: YamlText, robots: Sequence[RvizRobot], world: str
 ) -> tuple[RvizText, tuple[Finding, ...]]:
-    """The config for all robots, and what it cannot show; raises as ``rewrite_rviz``."""
+    """Return the config for all robots, and its limits as findings; raises as ``rewrite_rviz``."""
     shared = [world] if world else []
     naming = make_naming(layout=AT_RUN_TIME, affix=PREFIX, shared_frames=shared)
     bridged = []
@@ -171,7 +171,8 @@ def _bare_headers(document: YamlText) -> Iterator[Finding]:
     if found:
         names = ", ".join(it.name or it.cls for it in found)
         message = (
-            f"in the window for all robots nothing is shown by {names}: headers have bare frames"
+            f"the window for all robots shows nothing of {names}: "
+            "frames in headers are without the robot's name"
         )
         hint = "each robot has a window for it; or take layout both"
         yield found_at(document, found[0].node, BARE_HEADERS, message, hint)

@@ -31,7 +31,13 @@ from multibot_rewrite.fleet.launch.starts import (
     launch_arguments,
 )
 from multibot_rewrite.fleet.outputs.relays import BRIDGE
-from multibot_rewrite.producers.launch.performed import END, Action, Launching, performed, share
+from multibot_rewrite.producers.launch.performed import (
+    END,
+    Action,
+    Launching,
+    performed,
+    share,
+)
 from multibot_rewrite.producers.launch.ros_arguments import ros2_run, ros_arguments
 from multibot_rewrite.spelling.start import (
     File,
@@ -259,7 +265,8 @@ class _Planned(NamedTuple):
     def value(self, it: Any) -> Any:
         """Return a value as the launch has it."""
         if isinstance(it, File):
-            return os.path.join(self.home, it.path)
+            path = os.path.join(self.home, it.path)
+            return {"param_file": path, "allow_substs": True} if it.substituted else path
         if isinstance(it, Text):
             return _text_of(it.path)
         if isinstance(it, Mapping):
@@ -317,7 +324,7 @@ def _as_commanded(it: Start) -> Start:
     return it._replace(
         namespace="" if it.namespace == "/" else it.namespace,
         name=names["__node"],
-        parameters=(*(one for one in it.parameters if isinstance(one, File)), values),
+        parameters=(*(File(one.path) for one in it.parameters if isinstance(one, File)), values),
         remappings=tuple(pair for pair in it.remappings if not pair[0].startswith("__")),
         arguments=tuple(map(path_of, it.arguments)),
     )

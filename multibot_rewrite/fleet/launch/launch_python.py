@@ -12,7 +12,7 @@ from textwrap import wrap
 from multibot_rewrite.fleet.launch.each_robot import Function, functions
 from multibot_rewrite.fleet.launch.python_actions import OF_ALL, actions, comment, lines, value
 from multibot_rewrite.fleet.launch.starts import FleetStarts, RobotStarts, launch_arguments
-from multibot_rewrite.spelling.start import File, in_order
+from multibot_rewrite.spelling.start import in_order
 
 # What ament_flake8 allows, and robots of which each has its line to drive.
 WIDTH, _DRIVING = 99, 4
@@ -131,10 +131,9 @@ def _robot(it: RobotStarts) -> Iterator[str]:
             text = comment(f"Not started: {name} ({why})")
             rows = wrap(text, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
             yield from (f"    # {row}" for row in rows)
-    files = tuple(File(path) for path in it.files)
-    if files:
-        yield from (f"    {line}" for line in lines("params = ", [*files]))
-    own = OF_ALL._replace(files=files)
+    if it.files:
+        yield from (f"    {line}" for line in lines("params = ", [*it.files]))
+    own = OF_ALL._replace(files=it.files)
     if it.clock is not None:
         own = own._replace(clock={"use_sim_time": it.clock})
     yield "    return ["

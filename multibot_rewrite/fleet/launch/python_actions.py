@@ -216,7 +216,8 @@ def value(it: Any) -> str:
     if isinstance(it, Code):
         return str(it)
     if isinstance(it, File):
-        return f"file({value(it.path)})"
+        path = f"file({value(it.path)})"
+        return f"ParameterFile({path}, allow_substs=True)" if it.substituted else path
     if isinstance(it, Text):
         return f"text({value(it.path)})"
     if isinstance(it, Mapping):

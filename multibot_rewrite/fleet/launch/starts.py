@@ -28,7 +28,7 @@ class RobotStarts(NamedTuple):
     name: str
     description: str
     where: str
-    files: tuple[str, ...]
+    files: tuple[File, ...]
     starts: tuple[Start, ...]
     left: tuple[tuple[str, str], ...] = ()
     not_bridged: str = ""

@@ -89,7 +89,7 @@ def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
         if _near(base, file) == len(os.path.abspath(base)):
             at = max(others, key=lambda it: _near(it, file), default=own)
             if _near(at, file) > _near(own, file):
-                yield file, f"it is beside {os.path.basename(others[at])}"
+                yield file, f"it is next to {os.path.basename(others[at])}"
 
 
 def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterator[tuple[str, str]]:
@@ -227,7 +227,7 @@ def moveit_of_others(robot: Looked, srdf: str, found: Found) -> Mapping[str, str
             left[file] = f"it names no group of {os.path.basename(srdf)}"
         best = max(found.srdf, key=lambda it: _near(os.path.dirname(it), file))
         if _near(os.path.dirname(best), file) > _near(os.path.dirname(srdf), file):
-            left[file] = f"it is beside {os.path.basename(best)}"
+            left[file] = f"it is next to {os.path.basename(best)}"
     return left
 
 

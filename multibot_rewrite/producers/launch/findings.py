@@ -64,7 +64,7 @@ def launch_findings(
     for one in left:
         if not one.when:
             message = f"{one.name} of {one.origin} is not launched; it is left out"
-            hint = "leave out the stack, or name the launch file that starts it, too"
+            hint = "leave out the node set, or name the launch file that starts it, too"
             place = Place(next((it.place.file for it in graph.nodes), ""), 1)
             yield NOT_LAUNCHED.finding(message, hint, **_place(place))
 

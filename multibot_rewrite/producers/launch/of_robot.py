@@ -69,9 +69,7 @@ NOTHING: Mapping[str, HandedOn] = {}
 # rclcpp, qos_overriding_options: qos_overrides.TOPIC.publisher.POLICY.
 QOS = "qos_overrides."
 NO_QOS: Mapping[str, object] = {}
-_SPAWNED = (
-    "{} puts something beside the robot into the simulator, which is not started; add it to a world"
-)
+_SPAWNED = "{} spawns something in addition to the robot, which is not started; add it to a world"
 
 
 class Launched(NamedTuple):

@@ -37,7 +37,7 @@ def programs() -> Programs:
 
 
 _BESIDE = "it puts something beside the robots into the simulator that they are in"
-_LOOKS = "it only looks, or passes on what a person asks for"
+_LOOKS = "it only shows data or forwards an operator's commands"
 
 
 def once_for_all(node: LaunchedNode) -> str:

@@ -39,11 +39,11 @@ from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVICE, SUBSCRIBES
 
 _START_MANAGER = (
     "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
-    "that starts it beside this one"
+    "that starts it in addition to this one"
 )
 _CHANGE, _BOND = "/change_state", "bond"
-_UNSURE = "a node that is not known may; see what is incomplete"
-_ELSEWHERE = "name the launch file that does beside this one, if there is one"
+_UNSURE = "an unknown node may do it: see what is reported as incomplete"
+_ELSEWHERE = "name the launch file that starts it in addition to this one, if there is one"
 
 
 @launch_rule("MG721", "launch-fails")

@@ -291,7 +291,7 @@ def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
         "ros_gz_bridge parameter_bridge: config_file",
         "driver (acme driver)",
         "Once for all robots; `own_nodes: [NAME]` gives each its own:",
-        "rviz2 rviz2, since it only looks, or passes on what a person asks for",
+        "rviz2 rviz2, since it only shows data or forwards an operator's commands",
     ]
     assert "unread" not in text
 
