@@ -22,8 +22,6 @@ from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.producers.launch.source_packages import packages_for
 from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
 
-_KEYS = ("role", "kind", "name", "type", "parameter", "when")
-
 
 def is_program(word: str) -> bool:
     """Is it a program of a package that is here, or a class of one?"""

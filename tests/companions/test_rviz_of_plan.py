@@ -105,7 +105,7 @@ def test_every_type_has_its_display() -> None:
         "nav_msgs/msg/OccupancyGrid": "Map", "nav_msgs/msg/Path": "Path",
         "geometry_msgs/msg/PolygonStamped": "Polygon", "geometry_msgs/msg/PoseArray": "PoseArray",
         **{f"visualization_msgs/msg/{it}": it for it in ("Marker", "MarkerArray")},
-    } == of_plan._DISPLAYS  # fmt: skip
+    } == rviz_data()["shown"]  # fmt: skip
     assert {*of_plan._COLOURED} == {
         "LaserScan", "PointCloud2", "Range", "Path", "Polygon", "PoseArray"
     }  # fmt: skip

@@ -49,9 +49,9 @@ robots:
         ("/gz", "simulator"),
         ("/usr/bin/gzserver", "simulator"),
         ("nav2_map_server/map_server", "map"),
-        ("rviz2/rviz2", "looks"),
-        ("rqt_gui/rqt_gui", "looks"),
-        ("foxglove_bridge/foxglove_bridge", "looks"),
+        ("rviz2/rviz2", "shows"),
+        ("rqt_gui/rqt_gui", "shows"),
+        ("foxglove_bridge/foxglove_bridge", "shows"),
         ("web_video_server/web_video_server", "person"),
         ("/ros2 bag record -a", "person"),
         # Of these each robot has its own.

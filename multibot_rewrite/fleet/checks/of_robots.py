@@ -47,8 +47,6 @@ from multibot_rewrite.system.records import DEVICE, SERVES, Address, Place, Robo
 
 # Robots of which each pair is looked at; of more the nearest neighbours in a list are.
 MOST = 400
-# A robot, where it starts, and how far it reaches.
-_Placed = tuple[RewrittenRobot, tuple[float, float, float], float]
 
 
 def of_robots(plan: FleetPlan) -> Iterator[Finding]:

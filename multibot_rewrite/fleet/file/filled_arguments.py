@@ -35,13 +35,6 @@ _KNOWN = ("link", "joint", "frame")
 OWN_ARGUMENT = declare("MF840", "own-argument", NOTE, formats=("fleet",))
 
 
-class WithArguments(NamedTuple):
-    """A fleet with the arguments that were filled, and what is said of them, by robot."""
-
-    file: FleetFile
-    notes: Mapping[str, Sequence[Finding]]
-
-
 class _Choice(NamedTuple):
     """What a robot's argument gets; if nothing, why, where it could."""
 
@@ -50,8 +43,11 @@ class _Choice(NamedTuple):
     reason: str = ""
 
 
-def with_own_arguments(file: FleetFile, naming: Naming, trust: bool) -> WithArguments:
-    """The fleet with a value for each argument that names robots, where it fits the layout.
+def with_own_arguments(
+    file: FleetFile, naming: Naming, trust: bool
+) -> tuple[FleetFile, Mapping[str, Sequence[Finding]]]:
+    """The fleet with a value for each argument that names robots, where it fits the layout, and what is
+    said of them, by robot.
 
     A file that cannot be expanded is left to whoever reads it.
     """
@@ -92,7 +88,7 @@ def with_own_arguments(file: FleetFile, naming: Naming, trust: bool) -> WithArgu
                 hint = "give its value under arguments, or set separators"
             message = f"robot {it.name!r}: the argument {one.name} of its xacro {what}"
             said.append(OWN_ARGUMENT.finding(message, hint, file=it.file, line=it.line))
-    return WithArguments(file._replace(robots=tuple(robots)), notes)
+    return file._replace(robots=tuple(robots)), notes
 
 
 def _choice(it: Argument, naming: Naming, robot: RobotSpec) -> _Choice:

@@ -48,16 +48,9 @@ class _Named(NamedTuple):
     robot: str
 
 
-class LaunchedFiles(NamedTuple):
-    """A fleet with the parameter files of its launch files, and for each robot by its name notes of
-    those that are left out."""
-
-    file: FleetFile
-    notes: Mapping[str, Sequence[Finding]]
-
-
-def with_launched_files(file: FleetFile) -> LaunchedFiles:
-    """The fleet with parameter files that only its launch files name.
+def with_launched_files(file: FleetFile) -> tuple[FleetFile, Mapping[str, Sequence[Finding]]]:
+    """The fleet with parameter files that only its launch files name, and for each robot by its name
+    notes of those that are left out.
 
     Raises InputError for a launch file that cannot be read. Robots with the same launch files have
     those of the first; an argument that names a file by ``{robot}`` makes them differ.
@@ -67,7 +60,7 @@ def with_launched_files(file: FleetFile) -> LaunchedFiles:
     found = [_with(it, named.get(it.launch, ())) for it in file.robots]
     bridged = {launch: _bridged(spec) for launch, spec in first.items()}
     robots = tuple(_with_bridges(it, *bridged.get(it.launch, ({}, ()))) for it, _ in found)
-    return LaunchedFiles(file._replace(robots=robots), {it.name: notes for it, notes in found})
+    return file._replace(robots=robots), {it.name: notes for it, notes in found}
 
 
 def _named(spec: RobotSpec) -> Iterator[_Named]:

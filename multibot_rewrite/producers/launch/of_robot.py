@@ -59,13 +59,6 @@ from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, state_publisher_of
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
 
-# Their words have names, or name files of the robot.
-_WORDS_OF_BUILD = (
-    "static_transform_publisher",
-    "robot_state_publisher",
-    "rviz2",
-    "cartographer_node",
-)
 # Packages of launch files alone, and how those of their nodes begin.
 _FAMILIES = {"nav2_bringup": "nav2_"}
 # What is built gives these their descriptions anyway.

@@ -225,18 +225,11 @@ def orders_in_words(
 
 def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
     """What several launch files start, as one."""
-    return LaunchGraph(
-        tuple(_joined_nodes(graphs)),
-        tuple(note for it in graphs for note in it.notes),
-        tuple(file for it in graphs for file in it.files),
-        any(it.stood_in for it in graphs),
-        tuple(one for it in graphs for one in it.unread),
-        tuple(one for it in graphs for one in it.includes),
-        tuple({pair: None for it in graphs for pair in it.environment}),
-        tuple(one for it in graphs for one in it.declared),
-        tuple(one for it in graphs for one in it.read),
-        tuple(one for it in graphs for one in it.idle),
-    )
+    listed = (name for name, it in LaunchGraph._field_defaults.items() if it == ())
+    every = {name: tuple(one for it in graphs for one in getattr(it, name)) for name in listed}
+    every["environment"] = tuple(dict.fromkeys(every["environment"]))
+    every["nodes"] = tuple(_joined_nodes(graphs))
+    return LaunchGraph(**every, stood_in=any(it.stood_in for it in graphs))
 
 
 def _joined_nodes(graphs: Sequence[LaunchGraph]) -> Iterator[LaunchedNode]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.producers.launch.programs import program_of, programs
@@ -22,14 +22,10 @@ def of_first_robot(graph: LaunchGraph) -> LaunchGraph:
     robots = _robots(graph.nodes)
     if not robots:
         return graph
-    first, others = robots[0], frozenset(robots[1:])
+    others = frozenset(robots[1:])
     kept = [at for at, it in enumerate(graph.nodes) if others.isdisjoint(_names(it))]
     places = {old: new for new, old in enumerate(kept)}
-    nodes = []
-    for it in (graph.nodes[at] for at in kept):
-        after = places.get(it.process.after, -1)
-        own = unnamed(it, first)
-        nodes.append(own._replace(process=own.process._replace(after=after)))
+    nodes = (_unnamed(graph.nodes[at], robots[0], places) for at in kept)
     return graph._replace(nodes=tuple(nodes), robots=robots)
 
 
@@ -68,8 +64,8 @@ def without(text: str, robot: str) -> str:
     return text.replace(f"/{robot}/", "/")
 
 
-def unnamed(it: LaunchedNode, robot: str) -> LaunchedNode:
-    """Return what is started without the name of its robot."""
+def _unnamed(it: LaunchedNode, robot: str, places: Mapping[int, int]) -> LaunchedNode:
+    """Return what is started without the name of its robot, and what it waits for by its new place."""
 
     def home(text: str) -> str:
         return without(f"{text}/", robot).rstrip("/")
@@ -80,4 +76,5 @@ def unnamed(it: LaunchedNode, robot: str) -> LaunchedNode:
         remappings=tuple((without(old, robot), without(new, robot)) for old, new in it.remappings),
         arguments=tuple(without(word, robot) for word in it.arguments),
         parameters=tuple(own._replace(text=without(own.text, robot)) for own in it.parameters),
+        process=it.process._replace(after=places.get(it.process.after, -1)),
     )

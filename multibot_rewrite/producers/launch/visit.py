@@ -152,6 +152,10 @@ def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
     return found
 
 
+def _pass(entity: Any, seen: Visit) -> None:
+    return None
+
+
 def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not wants(entity, seen):
         return None
@@ -267,7 +271,7 @@ Handler = Callable[[Any, Visit], "Iterable[Any] | None"]
 def _handlers() -> Mapping[str, Handler]:
     return {
         **dict.fromkeys(names().executed.split(), _execute),
-        **dict.fromkeys(names().passed.split(), lambda *_: None),
+        **dict.fromkeys(names().passed.split(), _pass),
         _INCLUDE: _include,
         "ComposableNodeContainer": _container,
         "LoadComposableNodes": _loaded,

@@ -87,7 +87,7 @@ companions:
   params: [p.yaml, q.yaml]
   rviz: v.rviz
 
-# Found beside them and not taken:
+# Other files in these folders, not taken:
 #   z/bad.yaml: it is bad
 #   a/b/o.yaml: why two
 #   c.yaml: why
