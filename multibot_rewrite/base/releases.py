@@ -18,6 +18,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 
 RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
+RELEASE_OR_NONE = ("", *RELEASES)
 NEWEST_LTS = "lyrical"
 # Which ROS loads a plugin that both have.
 ROS_1, ROS_2 = "1", "2"

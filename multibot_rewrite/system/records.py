@@ -8,7 +8,7 @@ Texts for people decide nothing.
 from typing import Annotated, NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.base.releases import RELEASE_OR_NONE
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
@@ -383,7 +383,7 @@ class System(NamedTuple):
     robots: tuple[Robot, ...] = ()
     topics: tuple[Topic, ...] = ()
     layout: str = ""
-    release: Annotated[str, ("", *RELEASES)] = ""
+    release: Annotated[str, RELEASE_OR_NONE] = ""
     shared_topics: tuple[str, ...] = ()
     shared_frames: tuple[str, ...] = ()
     ignored_nodes: tuple[str, ...] = ()

@@ -259,6 +259,7 @@ def _by_place(names: Iterable[RuntimeName]) -> Mapping[Place, RuntimeName]:
     for it in names:
         if it.kind in (TOPIC, SERVICE) and not it.of_controllers:
             place = it.tag, it.number, it.path, it.kind
-            found[(*place, seen[place])] = it
+            numbered = (*place, seen[place])
+            found[numbered] = it
             seen[place] += 1
     return found

@@ -95,8 +95,8 @@ no_manager = spawner_managers.NO_MANAGER._replace(
 @launch_rule("MG730", "name-of-a-whole-process", distro="humble")
 def names_all(launched: Launched) -> Iterator[Finding]:
     """A manager that gets a name, where it loads controllers."""
-    given = {it.place for it in launched.graph.nodes if it.name}
-    for run in (it for it in launched.nodes if it.place in given):
+    given = {(it.place, it.name) for it in launched.graph.nodes}
+    for run in (it for it in launched.nodes if (it.place, it.name) in given):
         others = {it.name for it in launched.spawned if it.manager == run.full_name}
         if others and names_its_process(run.fact.known, launched.release):
             who = shorten(sorted(others))

@@ -140,7 +140,8 @@ def _qualities(seen: Index) -> _Values:
         for key, end in made.ends.items():
             if end.qos:
                 words = " ".join(qos_words(end))
-                found[(*key, "qos")][robot] = _Told(end.node, end.name, words, words)
+                about = (*key, "qos")
+                found[about][robot] = _Told(end.node, end.name, words, words)
     return found
 
 

@@ -33,9 +33,10 @@ HIT = (
 SENSORS = (
     '<gazebo><plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/></gazebo>'
 )
+# A plugin of ROS 1 alone: no rule of its own moves its transforms.
 DRIVE = (
-    '<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">'
-    "<robotNamespace>/a</robotNamespace><updateRate>10</updateRate><commandTopic>cmd_vel</commandTopic></plugin></gazebo>"
+    '<gazebo><plugin name="d" filename="libgazebo_ros_skid_steer_drive.so">'
+    "<robotNamespace>/a</robotNamespace><broadcastTF>true</broadcastTF></plugin></gazebo>"
 )
 PARAM = (
     '<gazebo><plugin name="c" filename="libgazebo_ros_control.so"><robotParam>{}</robotParam>'
