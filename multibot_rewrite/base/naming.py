@@ -10,33 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypedDict
 
-from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
+from multibot_rewrite.base.conventions import NAME_SEPARATORS, SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 
 PREFIX, POSTFIX, NAMESPACE = "prefix", "postfix", "namespace"
 TF_TOPICS = ("tf", "tf_static")
 # Order and grouping as shown in reports; the value is the default separator.
-SEPARATORS = {
-    "link": "/",
-    "joint": "_",
-    "frame": "/",
-    "sensor": "_",
-    "light": "_",
-    "transmission": "_",
-    "actuator": "_",
-    "hardware": "_",
-    "gpio": "_",
-    "model": "_",
-    "group": "_",
-    "shape": "_",
-    "node": "_",
-    "stem": "_",
-    "topic": "/",
-    "subtopic": "/",
-    "service": "/",
-    "namespace": "/",
-}
+SEPARATORS = NAME_SEPARATORS
 # What a ROS 2 name can hold: a node name is one token, a topic a path of tokens; no remap rule can
 # hold two underscores in a row (rcl lexer.c).
 ROS_SEPARATORS = {

@@ -20,6 +20,8 @@ from multibot_rewrite.base.nearest import did_you_mean_one_of
 RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 RELEASE_OR_NONE = ("", *RELEASES)
 NEWEST_LTS = "lyrical"
+# The days on which they came; rolling goes on from the last one.
+CAME = dict(zip(RELEASES, ("2022-05-23", "2024-05-23", "2025-05-23", "2026-05-22"), strict=False))
 # Which ROS loads a plugin that both have.
 ROS_1, ROS_2 = "1", "2"
 VARIABLE = "ROS_DISTRO"

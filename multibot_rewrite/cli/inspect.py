@@ -48,6 +48,7 @@ from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.lint.catalogue import rules
 
 # A word that ends so is a file, there or not.
@@ -96,12 +97,15 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     found = look_up(vocabulary, name, TYPES)
     if not found and is_name(name):
         return explain(options, [name])
+    node = None if found else every_release().nodes.get(name)
+    if node:
+        return node_source.run_known(options, node)
     if not found:
         raise _unknown(vocabulary, name, TYPES)
     if options.form == JSON:
         deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
-        deliver_report(options, _details(found))
+        deliver_report(options, details(found))
     return DONE
 
 
@@ -125,8 +129,8 @@ def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     yield Grid(("type", "name", "ROS", "also called", "rows", "source"), rows)
 
 
-def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
-    """Everything known, a block of lines a section."""
+def details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
+    """Return everything known, a block of lines a section."""
     for number, section in enumerate(sections):
         yield from [""] * (number > 0)
         yield f"{section.name}  {section.file}:{section.line}"

@@ -22,18 +22,9 @@ BOTH, ROS, GZ = "topic_name", "ros_topic_name", "gz_topic_name"
 TYPES = ("ros_type_name", "gz_type_name")
 DIRECTIONS = ("BIDIRECTIONAL", "GZ_TO_ROS", "ROS_TO_GZ")
 SERVICE, FRAME = "service_name", "frame_id"
-KEYS: tuple[str, ...] = (
-    BOTH,
-    ROS,
-    GZ,
-    *TYPES,
-    SERVICE,
-    "direction",
-    "publisher_queue",
-    "subscriber_queue",
-    "lazy",
-)
-KEYS += ("publish_optical_frame", FRAME, "qos_profile", "gz_req_type_name", "gz_rep_type_name")
+KEYS: tuple[str, ...] = (BOTH, ROS, GZ, *TYPES, SERVICE, "direction", "publisher_queue")
+KEYS += ("subscriber_queue", "lazy", "publish_optical_frame", FRAME, "qos_profile")
+KEYS += ("gz_req_type_name", "gz_rep_type_name")
 GZ_MODEL = re.compile(r"(?P<above>/?(?:world/[^/]+/)?model/)(?P<model>[^/]+)(?P<rest>/.*)?")
 # A link, joint or sensor in a gz topic.
 PART = re.compile(r"(?<=/)(link|joint|sensor)/([^/]+)")

@@ -68,7 +68,7 @@ def test_a_stack_names_each_node_once(name: str) -> None:
 def test_shared_nodes_are_those_that_serve_all() -> None:
     shared = {name for name, node in load_nodes(NEWEST_LTS).items() if node.shared}
     bridges = {"domain_bridge", "foxglove_bridge", "ros_gz_bridge", "rosbridge_websocket"}
-    assert shared == {*bridges, "rviz2", "map_merging", "Ros2Supervisor"}
+    assert shared == {*bridges, "rviz2", "map_merge", "map_merging", "Ros2Supervisor"}
     assert [node.shared for node in load_stack("rviz_nav2", NEWEST_LTS)] == [False]
 
 

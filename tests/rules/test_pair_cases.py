@@ -94,14 +94,12 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
         (
             f"planned: {ORDER}\nrunning: {ORDER}Stamped",
             [f"MG306 uses /robot1/cmd_vel as {TWIST}Stamped, but the plan has it as {TWIST};"
-             " enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side? If this type"
-             " is right, correct the plan"],
+             " velocities are stamped on one side? If this type is right, correct the plan"],
         ),
         (
             f"planned: {ORDER}Stamped\nrunning: {ORDER}",
             [f"MG306 uses /robot1/cmd_vel as {TWIST}, but the plan has it as {TWIST}Stamped;"
-             " enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side? If this type"
-             " is right, correct the plan"],
+             " velocities are stamped on one side? If this type is right, correct the plan"],
         ),
         (
             f"planned: {ORDER}\nrunning: {ORDER}X",

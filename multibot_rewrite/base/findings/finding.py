@@ -60,7 +60,7 @@ def _characters(text: bytes) -> int:
 
 
 class Remap(NamedTuple):
-    """A remap rule ``old:=new`` for a node of a graph; all are full names."""
+    """A remap rule ``old:=new`` for a node of a graph: full names, or `__ns` or `__node` as old."""
 
     node: str
     old: str

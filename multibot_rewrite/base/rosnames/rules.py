@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.rosnames.names import (
@@ -32,17 +33,7 @@ _TOKEN = lazy_compile(_ONE)
 _PATH = lazy_compile(rf"(?:~?/)?{_ONE}(?:/{_ONE})*")
 _NAMESPACE = lazy_compile(rf"/(?:{_ONE}(?:/{_ONE})*/?)?")
 _FORMS = {_PATH: "a name", _TOKEN: "a node's name", _NAMESPACE: "a namespace that starts with '/'"}
-_HINTS = {
-    "*": "a wildcard, which rcl does not have",
-    "\\": "a back reference, which rcl does not have",
-    "{": "a substitution, which no rule can hold",
-    "__": "two underscores in a row, which no rule can hold",
-    "~": "a '~', which must lead and have a slash and a name after it",
-    "/": "a slash out of place",
-    ":=": "':='",
-    "rostopic://": "a scheme, which only the left side can have",
-    "rosservice://": "a scheme, which only the left side can have",
-}
+_HINTS = {mark: said for (mark,), said in ROWS["no rules"]}
 
 
 class RemapRule(NamedTuple):

@@ -6,25 +6,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN, Naming, spelled
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import NO_WORDS, Stems
 from multibot_rewrite.description.rewriters.spelling import resolve
 
 # Kinds of names in a description that a kind of value may refer to, tried in order.
-KINDS = {
-    "frame": ("link", "frame"),
-    "link": ("link",),
-    "joint": ("joint",),
-    "sensor": ("sensor",),
-    "gpio": ("gpio",),
-    "hardware": ("hardware",),
-    "group": ("group",),
-    "topic": ("topic",),
-    "service": ("service",),
-    # The left part of ``elbow/position``: a joint, a sensor or a gpio.
-    "component": ("joint", "sensor", "gpio"),
-}
+KINDS = {kind: tuple(meant) for (kind, *meant), _ in ROWS["referred"]}
 TOPIC = "topic"
 NO_OWN: Mapping[tuple[str, str], str] = {}
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.base.conventions import PLACEHOLDER, WORLD_NODES
+from multibot_rewrite.base.conventions import PLACEHOLDER, ROWS, WORLD_NODES
 from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.naming import spelled
 from multibot_rewrite.companions.context import NAMESPACE_SLOT, Context, full_name
@@ -32,17 +32,7 @@ NO_NAME = "a key is a mapping or a list; use a name as key"
 # Helper nodes of old releases: they have sections, but no names of their own.
 INNER = ("_rclcpp_node", "_client")
 # A key that only one kind of file has -> what that file is.
-_OTHER_FILES = {
-    "Visualization Manager": "it is an RViz config; list it under rviz",
-    "Panels": "it is an RViz config; list it under rviz",
-    "image": "it is a map file for map_server, which holds no robot's name; leave it out",
-    "joint_limits": "it holds MoveIt joint limits; list it under moveit",
-    "controller_names": "it holds MoveIt controllers; list it under moveit",
-    "moveit_simple_controller_manager": "it holds MoveIt controllers; list it under moveit",
-    "planner_configs": "it holds MoveIt planners; list it under moveit",
-    "initial_positions": "it holds initial joint positions for xacro; leave it out",
-    "robots": "it is a fleet file",
-}
+_OTHER_FILES = {" ".join(key): said for key, said in ROWS["other files"]}
 
 
 class ParamSection(NamedTuple):

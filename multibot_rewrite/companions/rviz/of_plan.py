@@ -14,25 +14,13 @@ from typing import Any
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, make_naming
 from multibot_rewrite.companions.rviz.display_groups import leaves
-from multibot_rewrite.companions.rviz.read_config import TOPIC, palette, read_config
+from multibot_rewrite.companions.rviz.read_config import TOPIC, palette, read_config, rviz_data
 from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import TF_PREFIX, RvizRobot
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, quoted
 from multibot_rewrite.spelling.shown import Shown, shown_by_robot, world_of_plan
 from multibot_rewrite.system.records import Robot, System
 
-# The display of a type.
-_DISPLAYS = {
-    "sensor_msgs/msg/LaserScan": "LaserScan",
-    "sensor_msgs/msg/PointCloud2": "PointCloud2",
-    "sensor_msgs/msg/Range": "Range",
-    "nav_msgs/msg/OccupancyGrid": "Map",
-    "nav_msgs/msg/Path": "Path",
-    "geometry_msgs/msg/PolygonStamped": "Polygon",
-    "geometry_msgs/msg/PoseArray": "PoseArray",
-    "visualization_msgs/msg/Marker": "Marker",
-    "visualization_msgs/msg/MarkerArray": "MarkerArray",
-}
 _BEST_EFFORT = {"Reliability Policy": "Best Effort"}
 _LATCHED = {"Durability Policy": "Transient Local"}
 _QOS = {"LaserScan": _BEST_EFFORT, "PointCloud2": _BEST_EFFORT, "Map": _LATCHED}
@@ -92,8 +80,9 @@ def _group(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
 
 
 def _displays(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:
-    for topic in sorted(shown.of_type(_DISPLAYS)):
-        kind = _DISPLAYS[shown.sent[topic]]
+    kinds = rviz_data()["shown"]
+    for topic in sorted(shown.of_type(kinds)):
+        kind = kinds[shown.sent[topic]]
         enabled = kind != "Map" or shown.is_called(topic, _MAP)
         made = _display(kind, topic, {**_QOS.get(kind, {}), "Value": topic}, enabled)
         if colour and kind in _COLOURED:

@@ -88,9 +88,9 @@ def _parameter(
             yield fault("value", child, "", f"{where} {wrong.problem}{instead}", "", WARNING)
         elif row.words and text not in row.words:
             near = nearest(text, row.words)
-            if near:
-                message = f"{where} is not a word that {title(section)} knows"
-                yield fault("word", child, "", message, f"did you mean {near!r}?", WARNING)
+            hint = f"did you mean {near!r}?" if near else f"write {' or '.join(row.words)}"
+            message = f"{where} is not a word that {title(section)} knows"
+            yield fault("word", child, "", message, hint, WARNING)
 
 
 def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Problem]:

@@ -37,7 +37,6 @@ _ENOUGH = 3
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"\d{4}")
-_CHANGE = "/change_state"
 # Node, kind, role and name, without the robot's.
 _Key = tuple[str, str, str, str]
 
@@ -176,7 +175,7 @@ def _is_needy(end: End) -> bool:
     or a sensor of which one robot's program makes use is not, nor what seldom has all its inputs."""
     if end.role == SUBSCRIBES and chooses(end.node):
         return False
-    wants = end.role in (SUBSCRIBES, CALLS) or end.name.endswith(_CHANGE)
+    wants = end.role in (SUBSCRIBES, CALLS) or end.name.endswith(words.CHANGE_STATE)
     return wants or end.type == words.JOINTS or words.moves(end.name, end.type)
 
 

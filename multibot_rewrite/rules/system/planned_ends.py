@@ -259,7 +259,10 @@ def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
         remaps = (Remap(planned.node, used, planned.name),) if remap_rule(planned) else ()
         hint = f"{instead}: {why.hint}{how_to_remap(plan, planned)}"
         return why._replace(hint=hint, remaps=remaps)
-    return _why_remapped(plan, planned, used, instead)
+    cause = _why_remapped(plan, planned, used, instead)
+    types = (it.type for it in _unplanned(plan, seen, planned) if it.name == used)
+    alike = all(it in ("", planned.type) for it in types) or not planned.type
+    return cause._replace(remaps=(Remap(planned.node, used, planned.name),) if alike else ())
 
 
 def _why_remapped(plan: Index, planned: End, used: str, instead: str) -> Cause:

@@ -429,6 +429,13 @@ BAD = {
         "x = DeclareLaunchArgument('ip')", "it has to be given ip; write ip:=VALUE after it",
     ),
     "it includes itself": ("x = IncludeLaunchDescription(__file__)", "without an end"),
+    "it includes itself after a node": (
+        "x = GroupAction([Node(package='a', executable='b'), IncludeLaunchDescription(__file__)])",
+        "without an end",
+    ),
+    "it starts too much": (
+        "x = GroupAction([Node(package='a', executable='b')] * 1001)", "starts 1001 processes",
+    ),
     "it writes": ("x = open('FOLDER/made', 'w')", "give --trust"),
     "it starts nothing": ("x = LogInfo(msg='a')", "starts no node with these arguments"),
     "it is no Python": (")", "SyntaxError"),
