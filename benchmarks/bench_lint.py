@@ -49,51 +49,25 @@ LINT = os.path.join(os.path.dirname(sys.executable), "urdf-lint")
 _TRANSMISSION = re.compile(rb"  <transmission.*?</transmission>\n", re.DOTALL)
 VERSION = "import sys; from importlib.metadata import version; print(version(sys.argv[1]))"
 NOTES = """\
-The goals in process and of the command are missed. Before and after the last changes to the lint of a
-file, same findings for 2,949 files, by instructions: 7 % fewer for the file of 118 kB, 5 % fewer for
-public files.
+The goals in process and of the command are missed.
 
-In one process a tenth of the time is libxml2 and the offsets of the tags, a third is the schema, the
-claims and the tree of links, and half is some 230 rules: one of them, the search for names that
-nothing claims (MB901), is a twelfth of all, the torques of gravity (MB633) and the collisions that are
-away (MB631) a twenty-fifth each, and of most others each is less than a hundredth; 150 have nothing to
-look at, and take 4 % together. A file of one link takes 0.3 ms, a public file ten times that.
+In one process half of the time is some 230 rules, a third is the schema, the claims and the tree of
+links, and a tenth is libxml2 and the offsets of the tags. The search for names that nothing claims
+(MB901) is a twelfth of all; 150 rules take 4 % together. A file of one link takes 0.3 ms, a public
+file ten times that. For a ratio of 4 a third less Python would be needed: some 23,000 calls for 2,849
+elements.
 
-What helped: one walk, and elements handed out by tag, also the first child of a tag by its parent (a
-sixth of the time of asking each element); no search by path for a single tag, which takes ten times as
-long as an attribute; the schema compared by columns of values instead of element by element; blanks
-between elements that are not kept; shapes, limits, axes, numbers and poses read once for all rules;
-loops looked for only where the joints are no tree; a similar name looked for once; one look at all
-values that tells that none holds a name, and one at an element that tells that it has no suspect
-value; what a walk asks of a node in one look; the weight at a joint times its arm before the torque;
-messages made for faults alone; only the namespaces of a plugin where only those are asked for; no
-passes of the garbage collector within a file.
+What helped most: one walk that hands out elements by tag; no search by path for a single tag; shapes,
+limits, axes and poses read once for all rules; messages made for faults alone; no passes of the garbage
+collector within a file. What did not: XPath for interesting values, rules left out where their tags do
+not occur, records instead of elements.
 
-What did not: XPath that picks the values worth a look (three to five times slower than all of them);
-rules that are left out where their tags do not occur, which saves the call alone, as the list of a
-missing tag is empty; offsets of tags by splitting the text; one count of all values. Rules that read
-records instead of elements would not pay either. Of the time of the rules an eighth is in lxml's code,
-of the whole a sixth, with the making and freeing of the tree, which stays. A record of tag, attributes
-and text for each element takes an eighth of the whole, and the floor of this page, which is expat that
-makes them, half as long again as libxml2 with the offsets. What would be needed for 4 is a third less
-Python: some 23,000 calls for 2,849 elements.
-
-The command spends more on starting than on linting: of its time two fifths are Python and lxml, a fifth
-is the lint itself, an eighth the rules' modules, an eighth options, settings and output, a tenth what
-is made at the first file (sections of the vocabulary, the schema, two dozen regular expressions), a
-twentieth the index of the vocabulary. It leaves without taking Python down, and a lint of a URDF loads
-no rules of other files, no comments, no xacro. What does not change loads neither lxml nor a rule.
-What helped: records that are made without compiling their annotations (a fifteenth of the
-instructions); a typed dictionary that only fleets load (a fiftieth); of the folders above a description
-their package.xml alone, as a list of all temporary files took 3 ms; no error for each package without
-entry points; no module for a path, a byte order mark or a text without odd characters. Left out: a
-parser of the options beside argparse, which with its translations takes a twentieth; the index of the
-vocabulary in a file of its own (a fortieth), or the code of all modules in one (an eighth), each one
-more thing that can be out of date; imports in functions, where a module is seldom used.
+The command spends more on starting than on linting: two fifths of its time are Python and lxml, a fifth
+is the lint itself. An unchanged file loads neither lxml nor a rule.
 
 The files for the peers hold no transmissions, which urdf_validate refuses unread; simcheck simulates
-each robot. check_urdf, ign sdf -k and urdf_validate take one file a process. The peers look for less:
-check_urdf reads the file, ign sdf -k converts it and checks names and inertia.
+each robot. The peers check less: check_urdf reads the file, ign sdf -k converts it and checks names and
+inertia.
 """
 
 

@@ -91,12 +91,6 @@ def tried(idiom: Idiom, folder: Path) -> str:
 
 
 HEAD = fixture_text("launch_idioms_head.txt")
-MIDDLE = """
-
-## Others beside ours
-
-Two robots with what others offer, and those of a fleet. Both stand in one launch file, and both run.
-"""
 
 
 def page(outcomes: dict[str, str]) -> str:
@@ -107,13 +101,7 @@ def page(outcomes: dict[str, str]) -> str:
         f"{outcomes[it.file.name]} |"
         for it in every
     ]
-    shown = [f"\n### {it.about}\n\n```python\n{_body(it.file)}```\n" for it in every if it.needs]
-    return f"{HEAD}{chr(10).join(rows)}{MIDDLE}{''.join(shown)}"
-
-
-def _body(file: Path) -> str:
-    """The file without the lines about it."""
-    return file.read_text().split("\n\n", 1)[1]
+    return f"{HEAD}{chr(10).join(rows)}\n"
 
 
 def main() -> int:

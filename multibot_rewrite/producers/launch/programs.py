@@ -36,7 +36,7 @@ def programs() -> Programs:
     return Programs(**{**data, **sets})
 
 
-_BESIDE = "it puts something beside the robots into the simulator that they are in"
+_BESIDE = "it spawns something in addition to the robots into their simulator"
 _LOOKS = "it only shows data or forwards an operator's commands"
 
 
