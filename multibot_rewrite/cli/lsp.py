@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from multiprocessing.forkserver import ensure_running
 from multiprocessing.process import BaseProcess
 from typing import Any
 
@@ -38,7 +39,7 @@ from multibot_rewrite.refactor.symbols import Place
 from multibot_rewrite.version import __version__
 
 # Seconds: without a change before a file is linted, and after which an answer is given up.
-PAUSE, MOST = 0.05, 60.0
+PAUSE, MOST = 0.05, 90.0
 _FIX, _FIX_ALL = lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll
 _WARM = "multibot_rewrite.cli.warm"
 _SEVERITIES = {ERROR: lsp.DiagnosticSeverity.Error, WARNING: lsp.DiagnosticSeverity.Warning}
@@ -50,7 +51,11 @@ _WORD = re.compile(r"[^\s\"'<>=,(){}\[\]]+")
 def run(options: argparse.Namespace) -> int:
     """Serve an editor until it says exit; returns the exit code."""
     gc.enable()
-    server = Server(options)
+    server, here = Server(options), os.getcwd()
+    # Python looks for its own modules in the folder in which the process is started.
+    os.chdir(os.sep)
+    ensure_running()
+    os.chdir(here)
     for name, (function, about) in _FEATURES.items():
         server.feature(name, about)(function)
     server.start_io()
