@@ -305,6 +305,9 @@ def test_typing_shows_the_last_text_once(editor: Editor, package: Path) -> None:
     ]
     (found,) = [it for it in editor.change(path, *texts) if it.code == "MB202"]
     assert "'whee'" in found.message
+    # Those of the texts before would come later.
+    time.sleep(0.5)
+    editor.hover(path, URDF, "<|joint")
     assert editor.times[path.as_uri()] == before + 1
     editor.close(path)
 
